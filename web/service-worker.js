@@ -26,39 +26,32 @@ async function loadVerifiedFile(path, hash) {
   return response;
 }
 
-// Stores all files or none: if a file is missing, the older build stays in use.
-self.addEventListener('install', (event) => {
-  event.waitUntil(
-    (async () => {
-      const files = await Promise.all(FILES.map(async ([path, hash]) => [path, await loadVerifiedFile(path, hash)]));
-      const cache = await caches.open(CACHE_NAME);
-      for (const [path, response] of files) await cache.put(toUrl(path), response);
-    })(),
-  );
-});
+/** Stores all files or none: if a file is missing, the older build stays in use. */
+async function install() {
+  const files = await Promise.all(FILES.map(async ([path, hash]) => [path, await loadVerifiedFile(path, hash)]));
+  const cache = await caches.open(CACHE_NAME);
+  for (const [path, response] of files) await cache.put(toUrl(path), response);
+}
+self.addEventListener('install', (event) => event.waitUntil(install()));
 
-self.addEventListener('activate', (event) => {
-  event.waitUntil(
-    (async () => {
-      for (const name of await caches.keys()) if (name.startsWith(CACHE_PREFIX) && name !== CACHE_NAME) await caches.delete(name);
-      await self.clients.claim();
-    })(),
-  );
-});
+async function activate() {
+  for (const name of await caches.keys()) if (name.startsWith(CACHE_PREFIX) && name !== CACHE_NAME) await caches.delete(name);
+  await self.clients.claim();
+}
+self.addEventListener('activate', (event) => event.waitUntil(activate()));
 
 // The user requests the newer build.
 self.addEventListener('message', ({ data }) => {
   if (data === 'take over') void self.skipWaiting();
 });
 
+async function respond(request) {
+  const url = new URL(request.url);
+  const address = url.href === self.registration.scope || request.mode === 'navigate' ? toUrl('index.html') : url.origin + url.pathname;
+  return (await (await caches.open(CACHE_NAME)).match(address)) ?? fetch(request);
+}
 self.addEventListener('fetch', (event) => {
   const { request } = event;
   if (request.method !== 'GET' || !request.url.startsWith(self.registration.scope)) return;
-  event.respondWith(
-    (async () => {
-      const url = new URL(request.url);
-      const address = url.href === self.registration.scope || request.mode === 'navigate' ? toUrl('index.html') : url.origin + url.pathname;
-      return (await (await caches.open(CACHE_NAME)).match(address)) ?? fetch(request);
-    })(),
-  );
+  event.respondWith(respond(request));
 });

@@ -119,19 +119,13 @@ pub fn run_on_avr8js(
         script += &format!("analogue {} {mv}\n", pin.number());
     }
     for SerialByte { cycle, byte } in received {
-        script += &format!(
-            "{} {byte:02x}\n",
-            cycle.saturating_add_signed(AVR8JS_LAG_CYCLES)
-        );
+        let cycle = cycle.saturating_add_signed(AVR8JS_LAG_CYCLES);
+        script += &format!("{cycle} {byte:02x}\n");
     }
     script += &format!("end {end_cycle}\n");
-    let output_text = run_program(
-        node_command()?
-            .arg(judge_dir().join("run.js"))
-            .arg(hex_path),
-        "nodejs",
-        &script,
-    )?;
+    let mut node = node_command()?;
+    node.arg(judge_dir().join("run.js")).arg(hex_path);
+    let output_text = run_program(&mut node, "nodejs", &script)?;
     let mut run = parse_run(&output_text)
         .ok_or_else(|| format!("malformed output of the judge:\n{output_text}"))?;
     run.outputs.end_cycle = end_cycle;
@@ -209,10 +203,8 @@ fn parse_run(output_text: &str) -> Option<Avr8jsRun> {
             }),
             ["eeprom", bytes] => {
                 let parse_byte = |index| u8::from_str_radix(bytes.get(index..index + 2)?, 16).ok();
-                run.eeprom = (0..bytes.len())
-                    .step_by(2)
-                    .map(parse_byte)
-                    .collect::<Option<_>>()?;
+                let contents = (0..bytes.len()).step_by(2).map(parse_byte);
+                run.eeprom = contents.collect::<Option<_>>()?;
             }
             ["cpu", ms] => run.cpu_ms = ms.parse().ok()?,
             _ => return None,
@@ -261,34 +253,25 @@ pub fn compare_pulses(
     servo_pins: &[Pin],
 ) -> Result<Agreement, String> {
     let select_servo_pulses = |outputs: &Outputs| -> Vec<PinPulse> {
-        let pulses = outputs.pulses.iter().copied();
-        pulses
-            .filter(|pulse| servo_pins.contains(&pulse.pin))
-            .collect()
+        let is_servo = |pulse: &PinPulse| servo_pins.contains(&pulse.pin);
+        outputs.pulses.iter().copied().filter(is_servo).collect()
     };
-    let (simavr_pulses, avr8js_pulses) = (select_servo_pulses(simavr), select_servo_pulses(avr8js));
+    let [mut simavr_pulses, mut avr8js_pulses] = [simavr, avr8js].map(select_servo_pulses);
     let (Some(first_simavr), Some(first_avr8js)) = (simavr_pulses.first(), avr8js_pulses.first())
     else {
         return Err("no servo gets a pulse on one simulator".into());
     };
     let offset_cycles = first_avr8js.rise_cycle as i64 - first_simavr.rise_cycle as i64;
-    let avr8js_pulses: Vec<PinPulse> = avr8js_pulses
-        .iter()
-        .map(|pulse| PinPulse {
-            rise_cycle: pulse.rise_cycle.saturating_add_signed(-offset_cycles),
-            ..*pulse
-        })
-        .collect();
+    for pulse in &mut avr8js_pulses {
+        pulse.rise_cycle = pulse.rise_cycle.saturating_add_signed(-offset_cycles);
+    }
     let end_cycle = simavr.end_cycle.min(avr8js.end_cycle) - IGNORED_END_CYCLES;
-    let (simavr_pulses, avr8js_pulses) = (
-        select_ended_pulses(&simavr_pulses, end_cycle),
-        select_ended_pulses(&avr8js_pulses, end_cycle),
-    );
-    let pairs = simavr_pulses.iter().zip(&avr8js_pulses).enumerate();
-    if let Some((index, (simavr_pulse, avr8js_pulse))) = pairs
-        .into_iter()
-        .find(|(_, (simavr_pulse, avr8js_pulse))| simavr_pulse != avr8js_pulse)
-    {
+    for pulses in [&mut simavr_pulses, &mut avr8js_pulses] {
+        pulses.retain(|pulse| pulse.rise_cycle + pulse.width <= end_cycle);
+    }
+    let mut pairs = simavr_pulses.iter().zip(&avr8js_pulses).enumerate();
+    let difference = pairs.find(|(_, (simavr_pulse, avr8js_pulse))| simavr_pulse != avr8js_pulse);
+    if let Some((index, (simavr_pulse, avr8js_pulse))) = difference {
         return Err(format!(
             "pulse {index}: on simavr {simavr_pulse}; on avr8js {avr8js_pulse}, \
              after subtracting the constant delay of {offset_cycles} cycles"
@@ -332,12 +315,8 @@ pub fn compare_console(simavr: &Outputs, avr8js: &Outputs) -> Result<Agreement, 
                 excerpt(&avr8js.sent_bytes, index)
             ));
         }
-        jitter_cycles = jitter_cycles.max(
-            avr8js_byte
-                .cycle
-                .saturating_add_signed(-offset_cycles)
-                .abs_diff(simavr_byte.cycle),
-        );
+        let cycle = avr8js_byte.cycle.saturating_add_signed(-offset_cycles);
+        jitter_cycles = jitter_cycles.max(cycle.abs_diff(simavr_byte.cycle));
     }
     let count = simavr.sent_bytes.len().min(avr8js.sent_bytes.len());
     for (name, outputs) in [("simavr", simavr), ("avr8js", avr8js)] {
@@ -354,14 +333,6 @@ pub fn compare_console(simavr: &Outputs, avr8js: &Outputs) -> Result<Agreement, 
         offset_cycles,
         jitter_cycles,
     })
-}
-
-/// Returns the pulses that have ended by `end_cycle`.
-fn select_ended_pulses(pulses: &[PinPulse], end_cycle: u64) -> Vec<PinPulse> {
-    let pulses = pulses.iter().copied();
-    pulses
-        .filter(|pulse| pulse.rise_cycle + pulse.width <= end_cycle)
-        .collect()
 }
 
 /// Returns an excerpt of 60 bytes, about a line, that ends with byte `index`.

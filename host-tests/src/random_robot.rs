@@ -246,21 +246,16 @@ fn random_gaits(rng: &mut Rng, base: &RobotBase) -> Vec<SizedGait> {
     let mut gaits = Vec::new();
     let random_period = |rng: &mut Rng| round(random_between(rng, 0.7, 3.0));
     let format_leg_table = |values: [f64; 4]| {
-        let pairs: Vec<String> = LEG_NAMES
-            .iter()
-            .zip(values)
-            .map(|(leg, value)| format!("{leg} = {value}"))
-            .collect();
+        let format_pair = |(leg, value): (&&str, f64)| format!("{leg} = {value}");
+        let pairs: Vec<String> = LEG_NAMES.iter().zip(values).map(format_pair).collect();
         format!("{{ {} }}", pairs.join(", "))
     };
     let mut random_factors = |min: f64, max: f64| -> [f64; 4] {
         std::array::from_fn(|_| round_factor(random_between(rng, min, max)))
     };
-    let (wave_starts, wave_gains, held_gains) = (
-        random_factors(0.0, 1.0),
-        random_factors(0.4, 1.0),
-        random_factors(-1.0, 1.0),
-    );
+    let wave_starts = random_factors(0.0, 1.0);
+    let wave_gains = random_factors(0.4, 1.0);
+    let held_gains = random_factors(-1.0, 1.0);
     let wave_text = format!(
         "[gait.wander]\nperiod = {}\nwaveform = \"wave\"\nduty = {}\nstart = {}\ngain = {}",
         random_period(rng),
@@ -285,15 +280,11 @@ fn random_gaits(rng: &mut Rng, base: &RobotBase) -> Vec<SizedGait> {
     gaits.push(Box::new(|_| {
         "[gait.other-hand]\nmirror = \"creep-along\"".into()
     }));
-    let curve_text = format!(
-        "[gait.curve]\nlike = \"wander\"\nperiod = {}",
-        random_period(rng)
-    );
+    let period = random_period(rng);
+    let curve_text = format!("[gait.curve]\nlike = \"wander\"\nperiod = {period}");
     gaits.push(Box::new(move |size| {
-        format!(
-            "{curve_text}\ngain = {}",
-            format_leg_table([size, 1.0, 0.5 * size, -0.5 * size].map(round_factor))
-        )
+        let gains = [size, 1.0, 0.5 * size, -0.5 * size].map(round_factor);
+        format!("{curve_text}\ngain = {}", format_leg_table(gains))
     }));
     // A path of head or tail is centred on the end point's position in the neutral pose.
     let Ok(solution) = base.lizard.solve(&base.neutral.into()) else {
@@ -363,10 +354,8 @@ mod tests {
                 (robot.limits().type1, robot.limits().leg),
                 (robot.limits().type1, robot.limits().type2),
             ];
-            assert!(
-                pairs.iter().all(|(first, second)| first != second),
-                "{text}"
-            );
+            let are_distinct = pairs.iter().all(|(first, second)| first != second);
+            assert!(are_distinct, "{text}");
             gait_count += robot.gaits().len();
         }
         println!("{gait_count} gaits of 20 robots");

@@ -60,10 +60,8 @@ pub fn robot_with_patrol(text: &str) -> Result<Robot, lizard_robot::Error> {
         let names = robot.gaits().iter().skip(1).map(|gait| gait.name());
         // A gait to which another gait or a routine refers cannot be removed.
         let mut shorter_texts = names.rev().map(|name| without_gait(text, name));
-        let shorter_text = shorter_texts
-            .find(|text| Robot::parse(text).is_ok())
-            .ok_or(error)?;
-        robot_with_patrol(&shorter_text)
+        let shorter_text = shorter_texts.find(|text| Robot::parse(text).is_ok());
+        robot_with_patrol(&shorter_text.ok_or(error)?)
     })
 }
 
@@ -105,10 +103,9 @@ pub fn robots() -> &'static [NamedRobot] {
             name: format!("random robot {number} of seed {}", seed()),
             robot: random_robot(&mut rng(number)).1,
         });
-        load_robots_from_files()
-            .into_iter()
-            .chain(random_robots)
-            .collect()
+        let mut robots = load_robots_from_files();
+        robots.extend(random_robots);
+        robots
     });
     &ROBOTS
 }
@@ -120,12 +117,8 @@ pub fn robots() -> &'static [NamedRobot] {
 pub fn load_robots_from_files() -> Vec<NamedRobot> {
     let folder = std::fs::read_dir(root().join("robots")).expect("the folder robots/ is readable");
     let files = folder.map(|entry| entry.expect("the folder entry is readable").path());
-    let mut files: Vec<PathBuf> = files
-        .filter(|path| {
-            path.extension()
-                .is_some_and(|extension| extension == "toml")
-        })
-        .collect();
+    let is_toml = |path: &PathBuf| path.extension() == Some("toml".as_ref());
+    let mut files: Vec<PathBuf> = files.filter(is_toml).collect();
     files.sort();
     assert!(!files.is_empty(), "robots/ contains no robots");
     let robot_under_test = NamedRobot {

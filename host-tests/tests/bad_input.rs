@@ -26,12 +26,9 @@ fn run_on_threads(test: impl Fn(&mut Rng, u64) + Sync) {
     thread::scope(|scope| {
         let spawn_test = |thread_number| {
             let test = &test;
-            scope.spawn(move || {
-                test(
-                    &mut lizard_host_tests::rng(1000 + thread_number),
-                    scaled_count(INPUT_COUNT) / THREAD_COUNT,
-                )
-            })
+            let mut rng = lizard_host_tests::rng(1000 + thread_number);
+            let count = scaled_count(INPUT_COUNT) / THREAD_COUNT;
+            scope.spawn(move || test(&mut rng, count))
         };
         let handles: Vec<_> = (0..THREAD_COUNT).map(spawn_test).collect();
         for handle in handles {

@@ -29,9 +29,8 @@ fn extract_code(image: &Image) -> Vec<u8> {
 fn embedded_image() -> Image {
     let mut image = Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX");
     let section_addresses = u32::from(START_ADDRESS)..0x7e00;
-    image
-        .replace(section_addresses, &robot().section())
-        .expect("the section fits");
+    let result = image.replace(section_addresses, &robot().section());
+    result.expect("the section fits");
     image
 }
 
@@ -60,13 +59,12 @@ fn record_minute(image: Image) -> Recording {
         (48_023, "stand"),
         (55_027, "rest"),
     ];
+    let steps = commands.map(|(ms, command)| Step {
+        ms,
+        command: command.to_owned(),
+    });
     let script = Script {
-        steps: commands
-            .map(|(ms, command)| Step {
-                ms,
-                command: command.to_owned(),
-            })
-            .to_vec(),
+        steps: steps.to_vec(),
         end_ms: 60_000,
         ..Script::default()
     };
@@ -83,9 +81,8 @@ fn record_minute(image: Image) -> Recording {
 fn the_program_contains_the_code_built_from_the_source() {
     let embedded_code = extract_code(&Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX"));
     let mut built_image = FirmwareBench::image();
-    built_image
-        .replace(u32::from(START_ADDRESS)..0x7e00, &[])
-        .expect("the robot can be removed");
+    let result = built_image.replace(u32::from(START_ADDRESS)..0x7e00, &[]);
+    result.expect("the robot can be removed");
     let built_code = extract_code(&built_image);
     let recorded_versions = std::fs::read_to_string(root().join("firmware/tools.txt"));
     let recorded_versions = recorded_versions.expect("firmware/tools.txt is readable");
@@ -104,9 +101,8 @@ fn the_program_contains_the_code_built_from_the_source() {
          minute of behaviour instead of the bytes. Recorded:\n{recorded_versions}Installed:\n{}",
         read_tool_versions()
     );
-    std::io::stderr()
-        .write_all(note.as_bytes())
-        .expect("stderr works");
+    let result = std::io::stderr().write_all(note.as_bytes());
+    result.expect("stderr works");
     let [embedded_recording, built_recording] =
         [embedded_image(), FirmwareBench::image()].map(record_minute);
     assert_eq!(
@@ -133,17 +129,11 @@ fn the_code_in_the_program_walks_once_a_robot_is_added() {
     let recording = record_minute(embedded_image());
     let banner = recording.banner.expect("the firmware prints its banner");
     let robot_label = lizard_host::firmware::format_robot_label(robot().firmware());
-    assert!(
-        banner.contains(&format!(" robot {robot_label}")),
-        "{banner}"
-    );
+    let robot_text = format!(" robot {robot_label}");
+    assert!(banner.contains(&robot_text), "{banner}");
     assert!(recording.frames.widths.len() > 2700);
-    let code = Image::parse_hex(CODE_HEX)
-        .expect("code.hex is Intel HEX")
-        .flash();
-    assert!(
-        (20_000..=usize::from(START_ADDRESS)).contains(&code.len()),
-        "{} bytes",
-        code.len()
-    );
+    let code = Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX");
+    let byte_count = code.flash().len();
+    let allowed_counts = 20_000..=usize::from(START_ADDRESS);
+    assert!(allowed_counts.contains(&byte_count), "{byte_count} bytes");
 }

@@ -42,18 +42,12 @@ fn every_fault_in_the_docs_names_an_existing_test() {
         let [.., file, _, test_name, _] = pieces[..] else {
             panic!("the row names no test: {row}");
         };
-        let folders = [
-            root().join("host-tests/tests"),
-            root().join("crates/core/src"),
-        ];
-        let source = folders
-            .iter()
-            .find_map(|folder| fs::read_to_string(folder.join(file)).ok());
+        let folders = ["host-tests/tests", "crates/core/src"];
+        let read = |folder: &&str| fs::read_to_string(root().join(folder).join(file)).ok();
+        let source = folders.iter().find_map(read);
         let source = source.unwrap_or_else(|| panic!("the file {file} does not exist"));
-        assert!(
-            source.contains(&format!("#[test]\nfn {test_name}()")),
-            "{file} contains no test {test_name}"
-        );
+        let is_found = source.contains(&format!("#[test]\nfn {test_name}()"));
+        assert!(is_found, "{file} contains no test {test_name}");
         row_count += 1;
     }
     assert!(row_count > 20, "only {row_count} rows");
@@ -121,16 +115,11 @@ fn the_firmware_page_states_every_offset_and_size_in_a_robots_section() {
         format!("{REGION_BYTES} bytes"),
     ];
     let page = read_file("docs/firmware.md");
-    let missing_texts: Vec<String> = [
-        &header_rows[..],
-        &number_rows[..],
-        &part_rows[..],
-        &address_texts[..],
-    ]
-    .concat()
-    .into_iter()
-    .filter(|text| !page.contains(text))
-    .collect();
+    let mut missing_texts = header_rows.to_vec();
+    missing_texts.extend(number_rows);
+    missing_texts.extend(part_rows);
+    missing_texts.extend(address_texts);
+    missing_texts.retain(|text| !page.contains(text));
     assert!(
         missing_texts.is_empty(),
         "missing in docs/firmware.md:\n{}",
@@ -147,16 +136,12 @@ fn split_words(text: &str) -> BTreeSet<&str> {
 #[test]
 fn the_license_lists_every_crate_with_or_without_libsimavr() {
     let license = read_file("LICENSE");
-    let (_, text) = license
-        .split_once("therefore licensed")
-        .expect("LICENSE names the users of libsimavr");
-    let (text_about_simavr_users, text_about_others) = text
-        .split_once("The firmware")
-        .expect("LICENSE has both lists");
-    let (simavr_users, others) = (
-        split_words(text_about_simavr_users),
-        split_words(text_about_others),
-    );
+    let pieces = license.split_once("therefore licensed");
+    let (_, text) = pieces.expect("LICENSE names the users of libsimavr");
+    let lists = text.split_once("The firmware");
+    let (text_about_simavr_users, text_about_others) = lists.expect("LICENSE has both lists");
+    let simavr_users = split_words(text_about_simavr_users);
+    let others = split_words(text_about_others);
     let workspace_manifest = read_file("crates/Cargo.toml");
     let members = find_text_between(&workspace_manifest, "members = [", "]");
     let member_folders: Vec<&str> = members.split('"').skip(1).step_by(2).collect();
@@ -174,11 +159,8 @@ fn the_license_lists_every_crate_with_or_without_libsimavr() {
             simavr_users.contains(crate_path) || crate_folder == "crates/simulated-uno",
             others.contains(crate_path),
         ];
-        assert_eq!(
-            is_listed,
-            [uses_simavr, !uses_simavr],
-            "LICENSE and {crate_folder}/Cargo.toml"
-        );
+        let expected = [uses_simavr, !uses_simavr];
+        assert_eq!(is_listed, expected, "LICENSE and {crate_folder}/Cargo.toml");
     }
 }
 
@@ -189,10 +171,8 @@ fn every_code_path_on_a_page_names_an_existing_item() {
     for page in pages.filter(|page| page.extension().is_some_and(|extension| extension == "md")) {
         let text = read_file(&page);
         for path in text.split('`').filter(|code| code.starts_with("lizard_")) {
-            let Some((crate_name, item)) = path
-                .strip_prefix("lizard_")
-                .and_then(|path| path.split_once("::"))
-            else {
+            let rest = path.strip_prefix("lizard_");
+            let Some((crate_name, item)) = rest.and_then(|rest| rest.split_once("::")) else {
                 continue;
             };
             let sources = read_sources(&root().join("crates").join(crate_name).join("src"));
@@ -210,12 +190,11 @@ fn every_code_path_on_a_page_names_an_existing_item() {
 
 /// Reads the text of all Rust files in a folder and its subfolders.
 fn read_sources(folder: &Path) -> String {
-    list_paths(folder)
-        .map(|path| match path.is_dir() {
-            true => read_sources(&path),
-            false => read_file(path),
-        })
-        .collect()
+    let read = |path: PathBuf| match path.is_dir() {
+        true => read_sources(&path),
+        false => read_file(path),
+    };
+    list_paths(folder).map(read).collect()
 }
 
 /// Finds the files that contain a whole word in upper or lower case. `path` is a file, or a folder that is searched
@@ -229,10 +208,9 @@ fn find_files_with_word(path: &Path, word: &str) -> BTreeSet<PathBuf> {
     let text = read_file(path);
     let mut words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
     let has_word = words.any(|candidate| candidate.eq_ignore_ascii_case(word));
-    let path = path
-        .strip_prefix(root())
-        .expect("the path is below the root");
-    has_word.then(|| path.to_path_buf()).into_iter().collect()
+    let path = path.strip_prefix(root());
+    let path = path.expect("the path is below the root").to_path_buf();
+    has_word.then_some(path).into_iter().collect()
 }
 
 /// Compares the files that CONTRIBUTING.md lists for a console command with the files that contain the command
@@ -257,10 +235,8 @@ fn a_console_command_is_in_at_most_seven_files_and_the_docs_name_them() {
         .iter()
         .flat_map(|folder| find_files_with_word(&root().join(folder), "center"))
         .collect();
-    files_with_command.extend(find_files_with_word(
-        &root().join("crates/core/src/console/text.rs"),
-        "deadman",
-    ));
+    let text_file = root().join("crates/core/src/console/text.rs");
+    files_with_command.extend(find_files_with_word(&text_file, "deadman"));
     assert_eq!(listed_files, files_with_command);
     assert!(listed_files.len() <= 7, "{listed_files:?}");
 }
@@ -292,15 +268,12 @@ fn find_links(text: &str) -> Vec<&str> {
 fn find_anchors(text: &str) -> Vec<String> {
     let to_anchor = |line: &str| {
         let title = line.trim_start_matches('#').trim().to_lowercase();
-        let letters = title
-            .chars()
-            .filter(|c| c.is_alphanumeric() || " -_".contains(*c));
-        letters.collect::<String>().replace(' ', "-")
+        let is_kept = |c: &char| c.is_alphanumeric() || " -_".contains(*c);
+        let letters: String = title.chars().filter(is_kept).collect();
+        letters.replace(' ', "-")
     };
-    text.lines()
-        .filter(|line| line.starts_with('#'))
-        .map(to_anchor)
-        .collect()
+    let headings = text.lines().filter(|line| line.starts_with('#'));
+    headings.map(to_anchor).collect()
 }
 
 #[test]
@@ -318,9 +291,8 @@ fn every_link_of_a_page_has_an_existing_target() {
             };
             assert!(target.exists(), "{}: {link}", page.display());
             if !anchor.is_empty() {
-                let has_anchor = find_anchors(&read_file(&target))
-                    .iter()
-                    .any(|candidate| candidate == anchor);
+                let anchors = find_anchors(&read_file(&target));
+                let has_anchor = anchors.iter().any(|candidate| candidate == anchor);
                 assert!(has_anchor, "{}: {link}", page.display());
             }
             link_count += 1;
@@ -334,27 +306,16 @@ fn the_book_contains_every_page_of_docs_and_the_readme_is_short() {
     let book = read_file("mkdocs.yml");
     let count = |name: &str| book.matches(name).count();
     for (page, _) in read_pages() {
-        let name = page
-            .file_name()
-            .expect("the page has a file name")
-            .to_str()
-            .expect("the file name is UTF-8");
+        let name = page.file_name().expect("the page has a file name");
+        let name = name.to_str().expect("the file name is UTF-8");
         if page.parent().is_some_and(|folder| folder.ends_with("docs")) {
-            assert_eq!(
-                count(&format!("{name},"))
-                    + count(&format!("{name}]"))
-                    + count(&format!("{name}\n")),
-                1,
-                "{name}"
-            );
+            let counts = [",", "]", "\n"].map(|end| count(&format!("{name}{end}")));
+            assert_eq!(counts.iter().sum::<usize>(), 1, "{name}");
         }
     }
     let readme = read_file("README.md");
-    assert!(
-        readme.lines().count() <= 150,
-        "{} lines",
-        readme.lines().count()
-    );
+    let line_count = readme.lines().count();
+    assert!(line_count <= 150, "{line_count} lines");
 }
 
 #[test]
@@ -366,18 +327,13 @@ fn no_picture_is_on_two_pages_of_the_book() {
         if !folder.ends_with("docs") {
             continue;
         }
-        for link in find_links(&text) {
-            if [".svg", ".png"]
-                .iter()
-                .any(|extension| link.ends_with(extension))
-            {
-                let picture = folder.join(link);
-                assert!(
-                    pictures.insert(picture),
-                    "{}: {link} is also on another page",
-                    page.display()
-                );
-            }
+        let is_picture = |link: &&str| link.ends_with(".svg") || link.ends_with(".png");
+        for link in find_links(&text).into_iter().filter(is_picture) {
+            assert!(
+                pictures.insert(folder.join(link)),
+                "{}: {link} is also on another page",
+                page.display()
+            );
         }
     }
     assert!(pictures.len() > 5, "{pictures:?}");
@@ -392,10 +348,8 @@ fn the_pages_name_the_current_version() {
         .expect("Cargo.toml has a version")
         .trim_matches('"');
     let changelog = read_file("CHANGELOG.md");
-    assert!(
-        changelog.contains(&format!("\n## {version} (")),
-        "CHANGELOG.md has no section for {version}"
-    );
+    let has_section = changelog.contains(&format!("\n## {version} ("));
+    assert!(has_section, "CHANGELOG.md has no section for {version}");
     let mut version_count = 0;
     for (page, text) in read_pages() {
         // `lizard-0.2.0-page.zip`, `git tag v0.2.0`, `# lizard 0.2.0 tables`.

@@ -49,26 +49,19 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
     board.edges.clear();
     run_frames(&mut board, 110);
     let pins = servo_pins(robot());
-    let first_edge = board
-        .edges
-        .iter()
-        .find(|edge| edge.is_rising && edge.pin == pins[0]);
+    let mut edges = board.edges.iter();
+    let first_edge = edges.find(|edge| edge.is_rising && edge.pin == pins[0]);
     let start_cycle = first_edge.expect("A1 has a pulse").cycle;
-    let walked_widths: Vec<[u64; 4]> = group_frames(&board.edges, pins, start_cycle, 100)
-        .iter()
-        .map(Frame::expect_all_widths)
-        .collect();
+    let frames = group_frames(&board.edges, pins, start_cycle, 100);
+    let walked_widths: Vec<[u64; 4]> = frames.iter().map(Frame::expect_all_widths).collect();
 
     // Runs the same image in a simulation without boot loader, port and wall clock.
     let mut bench = FirmwareBench::boot_with(Fidelity::DataSheet);
     bench.say("stand");
     bench.run_for_frames(AWAKE_FRAMES);
     bench.say("walk");
-    let bench_widths: Vec<[u64; 4]> = bench
-        .run_for_frames(150)
-        .iter()
-        .map(Frame::expect_all_widths)
-        .collect();
+    let frames = bench.run_for_frames(150);
+    let bench_widths: Vec<[u64; 4]> = frames.iter().map(Frame::expect_all_widths).collect();
     assert!(
         bench_widths
             .windows(walked_widths.len())
@@ -86,10 +79,8 @@ fn an_upload_keeps_the_eeprom() {
     let mut shell = start_make_flash(&board);
     // Compares the EEPROM before the firmware can write to it.
     board.wait_for_text(&shell, "bytes of flash verified");
-    assert!(
-        board.uno.eeprom() == eeprom,
-        "the upload changed the EEPROM"
-    );
+    let is_unchanged = board.uno.eeprom() == eeprom;
+    assert!(is_unchanged, "the upload changed the EEPROM");
     shell.interrupt();
 }
 
@@ -151,9 +142,6 @@ fn a_board_that_never_answers_ends_the_upload_with_an_explanation() {
     let shell = start_make_flash(&board);
     let screen = board.run_until_exit(&shell);
     assert!(screen.contains("the board does not answer"), "{screen}");
-    assert!(
-        board.uno.flash()[..BOOT_LOADER_START]
-            .iter()
-            .all(|&byte| byte == 0xff)
-    );
+    let mut bytes = board.uno.flash()[..BOOT_LOADER_START].iter();
+    assert!(bytes.all(|&byte| byte == 0xff));
 }

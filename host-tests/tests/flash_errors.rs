@@ -5,7 +5,7 @@ use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
 use std::process::Command;
 
-use lizard_host_tests::root;
+use lizard_host_tests::{assert_contains, root};
 use lizard_time_limit::TIME_LIMIT;
 use simulated_uno::Port;
 use tempfile::TempDir;
@@ -29,9 +29,8 @@ fn check_ports_as(
     if let Some(port) = port {
         command.env("RAVEDUDE_PORT", port);
     }
-    let output = TIME_LIMIT
-        .run_command(&mut command, b"")
-        .expect("the script ends");
+    let output = TIME_LIMIT.run_command(&mut command, b"");
+    let output = output.expect("the script ends");
     let error_output = String::from_utf8_lossy(&output.stderr).into_owned();
     match output.status.success() {
         true => Ok(error_output),
@@ -72,11 +71,8 @@ fn copy_scripts() -> TempDir {
 #[test]
 fn without_a_board_the_message_names_the_cable_to_connect() {
     let error_output = check_ports(create_folder().path()).expect_err("there is no board");
-    assert!(error_output.contains("no board found"), "{error_output}");
-    assert!(
-        error_output.contains("cable that carries data"),
-        "{error_output}"
-    );
+    assert_contains(&error_output, "no board found");
+    assert_contains(&error_output, "cable that carries data");
 }
 
 #[test]
@@ -93,14 +89,8 @@ fn with_several_boards_the_user_must_name_a_port() {
         File::create(port_folder.path().join(name)).expect("the file can be created");
     }
     let error_output = check_ports(port_folder.path()).expect_err("there are two boards");
-    assert!(
-        error_output.contains("several boards found"),
-        "{error_output}"
-    );
-    assert!(
-        error_output.contains("make flash RAVEDUDE_PORT="),
-        "{error_output}"
-    );
+    assert_contains(&error_output, "several boards found");
+    assert_contains(&error_output, "make flash RAVEDUDE_PORT=");
     let named_port = port_folder.path().join("ttyUSB3");
     assert!(check_ports_as(&[], port_folder.path(), Some(&named_port)).is_ok());
 }
@@ -110,14 +100,8 @@ fn a_missing_port_is_named_in_the_message() {
     let missing_port = Path::new("/dev/no-such-port");
     let error_output = check_ports_as(&[], create_folder().path(), Some(missing_port))
         .expect_err("the port does not exist");
-    assert!(
-        error_output.contains("/dev/no-such-port does not exist"),
-        "{error_output}"
-    );
-    assert!(
-        error_output.contains("of this machine: none"),
-        "{error_output}"
-    );
+    assert_contains(&error_output, "/dev/no-such-port does not exist");
+    assert_contains(&error_output, "of this machine: none");
 }
 
 #[test]
@@ -130,10 +114,8 @@ fn the_message_names_the_program_that_has_the_port_open() {
     let open_port = options.read(true).write(true).open(port.path());
     let error_output = check_ports(port_folder.path()).expect_err("the port is open");
     let own_process = format!("(process {})", std::process::id());
-    assert!(
-        error_output.contains("is open in ") && error_output.contains(&own_process),
-        "{error_output}"
-    );
+    assert_contains(&error_output, "is open in ");
+    assert_contains(&error_output, &own_process);
     drop(open_port);
     assert!(check_ports(port_folder.path()).is_ok());
 }
@@ -149,26 +131,18 @@ fn without_permission_the_message_names_the_group_to_join() {
         // Only root can run the script as another user. A port that its owner may not open has the same effect.
         fs::set_permissions(&port, Permissions::from_mode(0o000)).expect("the test owns the file");
         let error_output = check_ports(port_folder.path()).expect_err("the port may not be opened");
-        assert!(error_output.contains("may not open"), "{error_output}");
+        assert_contains(&error_output, "may not open");
         return;
     }
     let mut chgrp = Command::new("chgrp");
     chgrp.arg("dialout").arg(&port);
     let chgrp_output = TIME_LIMIT.run_command(&mut chgrp, b"").expect("chgrp ends");
-    assert!(
-        chgrp_output.status.success(),
-        "the group dialout does not exist"
-    );
+    let is_changed = chgrp_output.status.success();
+    assert!(is_changed, "the group dialout does not exist");
     let error_output = check_ports_as(&nobody_command, port_folder.path(), None)
         .expect_err("nobody may not open the port");
-    assert!(
-        error_output.contains("nobody may not open"),
-        "{error_output}"
-    );
-    assert!(
-        error_output.contains("usermod -aG dialout nobody"),
-        "{error_output}"
-    );
+    assert_contains(&error_output, "nobody may not open");
+    assert_contains(&error_output, "usermod -aG dialout nobody");
 }
 
 #[test]
@@ -198,10 +172,8 @@ fn without_avrdude_the_message_names_the_package_to_install() {
     let output = TIME_LIMIT.run_command(&mut command, b"");
     let output = output.expect("bash runs (as root with setpriv of Debian package util-linux)");
     let stdout_text = String::from_utf8_lossy(&output.stdout);
-    assert!(stdout_text.contains("setup:"), "{stdout_text}");
+    assert_contains(&stdout_text, "setup:");
     assert!(!output.status.success());
-    assert!(
-        stdout_text.contains("As root, run:\n    apt-get install -y avrdude"),
-        "{stdout_text}"
-    );
+    let instruction = "As root, run:\n    apt-get install -y avrdude";
+    assert_contains(&stdout_text, instruction);
 }

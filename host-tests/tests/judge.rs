@@ -42,12 +42,9 @@ fn check_agreement(bench: &mut FirmwareBench, case_name: &str, tolerance: TimeTo
     let edges = bench.uno.edges();
     let simavr_outputs = Outputs::new(&edges, bench.bytes(), end_cycle);
     let received_bytes = bench.uno.received_by_uno();
-    let avr8js = unwrap_or_panic(run_on_avr8js(
-        &FirmwareBench::image(),
-        &received_bytes,
-        end_cycle,
-        robot(),
-    ));
+    let image = FirmwareBench::image();
+    let avr8js = run_on_avr8js(&image, &received_bytes, end_cycle, robot());
+    let avr8js = unwrap_or_panic(avr8js);
     let pulse_agreement = compare_pulses(&simavr_outputs, &avr8js.outputs, &servo_pins(robot()));
     let pulse_agreement =
         pulse_agreement.unwrap_or_else(|difference| panic!("{case_name}: {difference}"));
@@ -109,21 +106,14 @@ fn two_simulators_agree_on_saved_settings() {
         bench.say(line);
         bench.run_ms(2_000);
     }
-    let written_count = bench
-        .uno
-        .eeprom()
-        .iter()
-        .filter(|byte| **byte != 0xff)
-        .count();
+    let eeprom = bench.uno.eeprom();
+    let written_count = eeprom.iter().filter(|byte| **byte != 0xff).count();
     assert!(
         written_count > 100,
         "only {written_count} bytes of two calibrations and a pose were written"
     );
-    check_agreement(
-        &mut bench,
-        "two calibrations and a pose",
-        TimeTolerance::LoopIteration,
-    );
+    let case_name = "two calibrations and a pose";
+    check_agreement(&mut bench, case_name, TimeTolerance::LoopIteration);
 }
 
 #[test]

@@ -170,10 +170,8 @@ fn find_folders(source_directory: &Path) -> Vec<Folder> {
 
 impl Folder {
     fn find_modules(&self) -> BTreeSet<&str> {
-        self.root_text
-            .lines()
-            .filter_map(parse_declared_module)
-            .collect()
+        let lines = self.root_text.lines();
+        lines.filter_map(parse_declared_module).collect()
     }
 
     /// Finds the uses among the folder's modules. A module and its submodules count as one module. If
@@ -183,11 +181,8 @@ impl Folder {
         // A use of `crate::Name` counts as a use of the module from which the root file exports this name.
         let mut module_by_name: BTreeMap<&str, &str> =
             modules.iter().map(|name| (*name, *name)).collect();
-        for (_, path) in self
-            .root_text
-            .split(';')
-            .filter_map(|item| item.split_once("use "))
-        {
+        let items = self.root_text.split(';');
+        for (_, path) in items.filter_map(|item| item.split_once("use ")) {
             if let Some((module_name, names)) = path.split_once("::")
                 && let Some(module_name) = modules.get(module_name)
             {
@@ -200,46 +195,31 @@ impl Folder {
             let used = modules
                 .iter()
                 .filter(|module| self.root_text.contains(&format!("{module}::")));
-            uses.insert(
-                ROOT_FILE.to_owned(),
-                used.map(ToString::to_string).collect(),
-            );
+            let used = used.map(ToString::to_string).collect();
+            uses.insert(ROOT_FILE.to_owned(), used);
         }
         for module in &modules {
             let module_folder = self.directory.join(module);
-            let mut text = resolve_super(
-                &read_code(&module_folder.with_extension("rs")),
-                &self.path_prefix,
-            );
+            let code = read_code(&module_folder.with_extension("rs"));
+            let mut text = resolve_super(&code, &self.path_prefix);
             for path in find_source_files(&module_folder) {
-                let relative_path = path
-                    .strip_prefix(&self.directory)
-                    .expect("the path is in the folder");
-                let parents = relative_path
-                    .parent()
-                    .expect("the file is in a folder")
-                    .iter();
+                let relative_path = path.strip_prefix(&self.directory);
+                let parents = relative_path.expect("the path is in the folder").parent();
+                let parents = parents.expect("the file is in a folder").iter();
                 let parents = parents.map(|name| name.to_string_lossy());
                 let parents: Vec<_> = std::iter::once((*module).into()).chain(parents).collect();
                 // `mod.rs` is the module of its folder.
                 let depth = parents.len() - usize::from(path.ends_with("mod.rs"));
-                let parent_path: String = parents[..depth]
-                    .iter()
-                    .map(|name| format!("{name}::"))
-                    .collect();
-                text += &resolve_super(
-                    &read_code(&path),
-                    &format!("{}{parent_path}", self.path_prefix),
-                );
+                let parents = parents[..depth].iter().map(|name| format!("{name}::"));
+                let parent_path = self.path_prefix.clone() + &parents.collect::<String>();
+                text += &resolve_super(&read_code(&path), &parent_path);
             }
             let used = find_names_after(&text, &self.path_prefix).into_iter();
             let others = used
                 .filter_map(|name| module_by_name.get(name))
                 .filter(|other| *other != module);
-            uses.insert(
-                module.to_string(),
-                others.map(ToString::to_string).collect(),
-            );
+            let others = others.map(ToString::to_string).collect();
+            uses.insert(module.to_string(), others);
         }
         uses
     }
@@ -267,19 +247,16 @@ fn resolve_super(text: &str, parent_path: &str) -> String {
     let mut text = text.to_owned();
     let parts: Vec<&str> = parent_path.split_inclusive("::").collect();
     for level_count in (1..=parts.len()).rev() {
-        text = text.replace(
-            &"super::".repeat(level_count),
-            &parts[..parts.len() + 1 - level_count].concat(),
-        );
+        let ancestor = parts[..parts.len() + 1 - level_count].concat();
+        text = text.replace(&"super::".repeat(level_count), &ancestor);
     }
     text
 }
 
 /// Returns the name of the module that a line of a root file declares; `None` if the line declares no module.
 fn parse_declared_module(line: &str) -> Option<&str> {
-    let line = line
-        .trim_start_matches("pub(crate) ")
-        .trim_start_matches("pub ");
+    let line = line.trim_start_matches("pub(crate) ");
+    let line = line.trim_start_matches("pub ");
     line.strip_prefix("mod ")?.strip_suffix(';')
 }
 
@@ -306,10 +283,8 @@ fn read_code(path: &Path) -> String {
         Some((code, _)) => code.to_string(),
         None => text,
     };
-    let lines: Vec<&str> = text
-        .lines()
-        .filter(|line| !line.trim_start().starts_with("//"))
-        .collect();
+    let is_code = |line: &&str| !line.trim_start().starts_with("//");
+    let lines: Vec<&str> = text.lines().filter(is_code).collect();
     let is_for_tests = |index: usize| index > 0 && lines[index - 1].trim() == "#[cfg(test)]";
     let indices = (0..lines.len()).filter(|index| !is_for_tests(*index));
     indices.map(|index| format!("{}\n", lines[index])).collect()

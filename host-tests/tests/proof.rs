@@ -20,10 +20,8 @@ fn the_guard_decides_correctly_for_every_pair_of_positions_outside_the_band_or_i
         };
 
         let proof = Proof::compute(&robot, robot.firmware(), sample, &|_| {});
-        let pair_counts = proof
-            .findings
-            .iter()
-            .map(|finding| finding.tally.pair_count);
+        let findings = proof.findings.iter();
+        let pair_counts = findings.map(|finding| finding.tally.pair_count);
         let pair_count: u64 = pair_counts.sum();
         assert!(pair_count > 250_000, "only {pair_count} pairs were checked");
         let certified_count = proof.certified_count();

@@ -61,11 +61,8 @@ fn eight_servos_are_exact_to_the_cycle_during_a_flood_of_echoed_bytes() {
             }
             for pair in pulses.windows(2) {
                 // The rising edges are exactly one frame apart.
-                assert_eq!(
-                    pair[1].start - pair[0].start,
-                    frame_length_cycles,
-                    "{fidelity:?}, pin {pin}"
-                );
+                let interval = pair[1].start - pair[0].start;
+                assert_eq!(interval, frame_length_cycles, "{fidelity:?}, pin {pin}");
             }
         }
         let echo: Vec<u8> = uno.transmitted().iter().map(|byte| byte.byte).collect();
@@ -76,10 +73,8 @@ fn eight_servos_are_exact_to_the_cycle_during_a_flood_of_echoed_bytes() {
             let expected_echo: Vec<u8> = text.iter().cycle().take(echo.len()).copied().collect();
             let wrong_index = (0..echo.len()).find(|index| echo[*index] != expected_echo[*index]);
             assert_eq!(wrong_index, None, "the first wrong byte of the echo");
-            assert_eq!(
-                (uno.overrun_count(), uno.sent_byte_count()),
-                (0, echo.len() as u64)
-            );
+            assert_eq!(uno.overrun_count(), 0);
+            assert_eq!(uno.sent_byte_count(), echo.len() as u64);
         } else {
             assert!(echo.len() > 100_000, "{} bytes", echo.len());
         }
@@ -105,10 +100,9 @@ fn the_costs_in_the_readme_match_the_example() {
     let count_interrupt_cycles = |uno: &Uno| {
         let interrupts = uno.interrupt_stats();
         let handler_cycles = |vector| {
-            interrupts
-                .iter()
-                .find(|interrupt| interrupt.vector == vector)
-                .map_or(0, |interrupt| interrupt.cycles)
+            let mut interrupts = interrupts.iter();
+            let handler = interrupts.find(|interrupt| interrupt.vector == vector);
+            handler.map_or(0, |interrupt| interrupt.cycles)
         };
         handler_cycles(11) + handler_cycles(12) // TIMER1_COMPA and TIMER1_COMPB
     };
@@ -140,15 +134,9 @@ fn the_costs_in_the_readme_match_the_example() {
         );
     };
     assert_near("cycles of the interrupts per frame", cycles_per_frame);
-    let image = uno.image();
-    assert_near(
-        "flash of the whole example, bytes",
-        image.flash_used().into(),
-    );
-    assert_near(
-        "static RAM of the whole example, bytes",
-        image.static_ram().into(),
-    );
+    let (flash_used, static_ram) = (uno.image().flash_used(), uno.image().static_ram());
+    assert_near("flash of the whole example, bytes", flash_used.into());
+    assert_near("static RAM of the whole example, bytes", static_ram.into());
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Tests of the stack depth computed from machine code, which is compared with known and measured depths.
 
 use lizard_host::bench::{StackDepth, StackError};
+use lizard_host_tests::assert_contains;
 use lizard_host_tests::avr_gcc::{assemble, compile_c};
 use lizard_linker::ROUTINES;
 use simulated_uno::{Fidelity, Image, Uno};
@@ -77,16 +78,10 @@ fn stack_frames_and_final_jumps_are_counted() {
         last: push r16 $ pop r16
         leaf: ret"
         ));
-        assert_eq!(
-            compute_depth(&image).max_depth(),
-            2 + 2 + frame_bytes + 2,
-            "{frame_bytes}"
-        );
-        assert_eq!(
-            measure_depth(&image),
-            2 + 2 + frame_bytes + 2,
-            "{frame_bytes}"
-        );
+        let expected = 2 + 2 + frame_bytes + 2;
+        let computed = compute_depth(&image).max_depth();
+        assert_eq!(computed, expected, "{frame_bytes}");
+        assert_eq!(measure_depth(&image), expected, "{frame_bytes}");
     }
 }
 
@@ -134,14 +129,10 @@ fn the_depth_of_compiled_c_is_an_upper_bound_near_the_measured_depth() {
     );
     let (computed_depth, measured_depth) =
         (compute_depth(&image).max_depth(), measure_depth(&image));
-    assert!(
-        measured_depth > 100 && measured_depth <= computed_depth,
-        "{measured_depth} of {computed_depth}"
-    );
-    assert!(
-        computed_depth - measured_depth < 20,
-        "{measured_depth} of {computed_depth}"
-    );
+    let depths = format!("{measured_depth} of {computed_depth}");
+    assert!(measured_depth > 100, "{depths}");
+    assert!(measured_depth <= computed_depth, "{depths}");
+    assert!(computed_depth - measured_depth < 20, "{depths}");
 }
 
 #[test]
@@ -156,10 +147,8 @@ fn the_error_for_recursion_names_the_function() {
         int main(void) { for (;;) deeper(PINB); }",
     );
     let error = expect_error(&image).to_string();
-    assert!(
-        error.contains("deeper") && error.contains("calls itself"),
-        "{error}"
-    );
+    assert_contains(&error, "deeper");
+    assert_contains(&error, "calls itself");
 }
 
 #[test]
@@ -173,18 +162,12 @@ fn the_error_for_an_indirect_call_names_the_function() {
         int main(void) { chosen = PINB ? one : two; for (;;) choose(); }",
     );
     let error = expect_error(&image).to_string();
-    assert!(
-        error.contains("choose") && error.contains("computed address"),
-        "{error}"
-    );
+    assert_contains(&error, "choose");
+    assert_contains(&error, "computed address");
     for jump in ["ijmp", "icall"] {
         let image = assemble(&format!("{SET_STACK_POINTER}\n{jump}\nend: rjmp end"));
-        assert!(
-            expect_error(&image)
-                .to_string()
-                .contains("computed address"),
-            "{jump}"
-        );
+        let error = expect_error(&image).to_string();
+        assert!(error.contains("computed address"), "{jump}");
     }
 }
 
@@ -258,16 +241,10 @@ fn the_registers_and_locals_of_shared_prologues_are_counted() {
         ));
         // The stack contains the return address of `framed`, the saved registers, the local variables, and the return
         // address of `leaf`.
-        assert_eq!(
-            compute_depth(&image).max_depth(),
-            2 + saved_bytes + locals_bytes + 2,
-            "{first_register}"
-        );
-        assert_eq!(
-            measure_depth(&image),
-            2 + saved_bytes + locals_bytes + 2,
-            "{first_register}"
-        );
+        let expected = 2 + saved_bytes + locals_bytes + 2;
+        let computed = compute_depth(&image).max_depth();
+        assert_eq!(computed, expected, "{first_register}");
+        assert_eq!(measure_depth(&image), expected, "{first_register}");
     }
 }
 

@@ -37,11 +37,8 @@ fn faults_at_any_moment_violate_no_rule() {
     assert_eq!(tested_activities, all_activities);
     for (activity, (run_count, _)) in counts_by_activity {
         let scenarios_of_13 = if activity == Activity::Driving { 4 } else { 1 };
-        assert_eq!(
-            run_count,
-            scenarios_of_13 * SCENARIO_COUNT / 13,
-            "{activity}"
-        );
+        let expected_count = scenarios_of_13 * SCENARIO_COUNT / 13;
+        assert_eq!(run_count, expected_count, "{activity}");
     }
 }
 
@@ -50,10 +47,8 @@ fn seed_and_number_determine_a_scenario() {
     for number in 0..100 {
         let scenario = Scenario::generate(7, number, patrolling_robot());
         assert_eq!(scenario, Scenario::generate(7, number, patrolling_robot()));
-        assert_ne!(
-            scenario.steps,
-            Scenario::generate(8, number, patrolling_robot()).steps
-        );
+        let other_scenario = Scenario::generate(8, number, patrolling_robot());
+        assert_ne!(scenario.steps, other_scenario.steps);
     }
 }
 
@@ -65,10 +60,8 @@ fn most_patrols_reach_the_wait_for_an_obstacle() {
     let patrols = scenarios.filter(|scenario| scenario.activity == Activity::Patrolling);
     let reaches_obstacle_wait = |scenario: &Scenario| {
         let record = run_scenario(&image, patrolling_robot(), scenario);
-        record
-            .printed_lines
-            .iter()
-            .any(|line| line.text == "# waiting for nose")
+        let mut lines = record.printed_lines.iter();
+        lines.any(|line| line.text == "# waiting for nose")
     };
     let walking_count = patrols.filter(reaches_obstacle_wait).count() as u64;
     assert!(

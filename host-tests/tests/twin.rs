@@ -43,11 +43,8 @@ fn the_image_moves_the_body_as_predicted() {
         .iter()
         .filter_map(|row| Some((row, row.cycle.as_ref()?)))
         .collect();
-    let moving_gait_count = robot()
-        .gaits()
-        .iter()
-        .filter(|gait| gait.has_movement())
-        .count();
+    let gaits = robot().gaits().iter();
+    let moving_gait_count = gaits.filter(|gait| gait.has_movement()).count();
     assert_eq!(
         cycles.len(),
         moving_gait_count,
@@ -72,11 +69,8 @@ fn the_image_moves_the_body_as_predicted() {
         let (displacement, expected) = (&cycle.displacement, &cycle.ideal_displacement);
         compare("forward", displacement.forward, expected.forward, 0.5);
         compare("turn", displacement.turn, expected.turn, 0.3);
-        assert!(
-            row.servo_rate <= robot().speed_limits().gait_slew + 5.0,
-            "{}",
-            row.command
-        );
+        let max_rate = robot().speed_limits().gait_slew + 5.0;
+        assert!(row.servo_rate <= max_rate, "{}", row.command);
         let (name, margin) = row.margin.expect("the loops close at every pose");
         let limits = robot().limits();
         let smallest_limit = limits.type2.min(limits.type1).min(limits.leg);

@@ -9,8 +9,6 @@ async function getFile(path: string): Promise<Response> {
 
 const getBytes = async (path: string): Promise<Uint8Array> => new Uint8Array(await (await getFile(path)).arrayBuffer());
 
-const getText = async (path: string): Promise<string> => (await getFile(path)).text();
-
 const getJson = async <T>(path: string): Promise<T> => (await getFile(path)).json() as Promise<T>;
 
 /** Compiled modules by their paths; workers share them. */
@@ -28,7 +26,7 @@ export const files = {
   /** The names of the robot files without extension: of `all` robots, and of the robots for `tests`. */
   robots: (): Promise<{ all: string[]; tests: string[] }> => getJson('files/robots.json'),
   /** The robot.toml with this file name. */
-  toml: (name: string): Promise<string> => getText(`files/${name}.toml`),
+  toml: async (name: string): Promise<string> => (await getFile(`files/${name}.toml`)).text(),
   /** The predictions of a robot's gaits; null if the file is missing, because the page can also compute predictions. */
   predictions: (name: string): Promise<Predictions | null> => getJson<Predictions>(`files/${name}.predictions.json`).catch(() => null),
   /** The firmware's image without a robot, from address 0. */

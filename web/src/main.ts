@@ -79,12 +79,12 @@ async function start(): Promise<void> {
     },
     onSent(line) {
       log.showSent(line);
-      measure?.handleSent(line);
+      measure?.protocol?.handleSent(line);
     },
     onReceived(line) {
       log.showReceived(line);
       setup.handleReceived(line);
-      measure?.handleReceived(line);
+      measure?.protocol?.handleReceived(line);
       if (line.startsWith('# fault')) remote.vibrate();
     },
     confirmUno: () =>
@@ -237,10 +237,7 @@ async function start(): Promise<void> {
 
   element('reset').addEventListener('click', () => void session.reset());
 
-  if (!hasSerial()) {
-    element('no-serial').textContent = IPHONE_ADVICE ?? NO_SERIAL_MESSAGE;
-    element('no-serial').hidden = false;
-  }
+  if (!hasSerial()) showMessage(element('no-serial'), IPHONE_ADVICE ?? NO_SERIAL_MESSAGE);
   async function connectBoard(open: () => Promise<Link | null> = () => PortLink.open()): Promise<void> {
     try {
       if (session.isReal) await session.disconnect();

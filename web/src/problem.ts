@@ -9,6 +9,5 @@
 export type Cause = 'robot' | 'own' | 'line' | 'port' | 'board' | 'other' | 'fault' | 'simulation' | 'page';
 
 /** Returns the message of a thrown value, which may not be an `Error`. */
-export function getMessage(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
-}
+export const getMessage = (error: unknown) =>
+  error instanceof Error ? error.message : String(error);

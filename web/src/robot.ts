@@ -28,9 +28,7 @@ export function load(module: WebAssembly.Module): Robot {
   return new Robot();
 }
 
-export function isRefused(result: object): result is Refusal {
-  return 'refused' in result;
-}
+export const isRefused = (result: object): result is Refusal => 'refused' in result;
 
 /** Returns true if a leg can lag behind its servo. */
 export const canLag = ({ kind, play }: Floor) => kind !== 'rigid' || play > 0;

@@ -173,9 +173,12 @@ export class Session {
     }
   }
 
-  /** Loads a changed robot.toml or returns its refusal. The simulated UNO restarts with it and keeps its EEPROM. */
-  async change(toml: string): Promise<Refusal | null> {
-    const refusal = this.loadToml(toml);
+  /**
+   * Loads a changed robot.toml or returns its refusal. The simulated UNO restarts with it and keeps its EEPROM. The
+   * floor set in the page stays, unless `floor` replaces it.
+   */
+  async change(toml: string, floor = this.state.floor.value): Promise<Refusal | null> {
+    const refusal = this.loadToml(toml, floor);
     if (refusal) return refusal;
     await this.restartBoard(true);
     this.storeChanges();
@@ -187,10 +190,7 @@ export class Session {
     if (original !== this.original) return false;
     this.setServos(servos);
     this.setSupply(volts);
-    if (this.loadToml(toml, floor)) return false;
-    await this.restartBoard(true);
-    this.storeChanges();
-    return true;
+    return (await this.change(toml, floor)) === null;
   }
 
   private storeChanges(): void {
@@ -199,7 +199,7 @@ export class Session {
     if (file !== '') browserStorage.putChanges({ file, original, toml, floor, servos, volts });
   }
 
-  private loadToml(toml: string, floorSetting = this.state.floor.value, originalFile: [string, Predictions | null] = [this.original, this.predictions]): Refusal | null {
+  private loadToml(toml: string, floorSetting: Floor | null, originalFile: [string, Predictions | null] = [this.original, this.predictions]): Refusal | null {
     const description = this.robot.read(toml);
     if (isRefused(description)) return description;
     this.toml = toml;
@@ -261,7 +261,9 @@ export class Session {
     const pins = this.description.servos.map(({ pin }) => pin);
     const board = new SimulatedBoard(this.image, this.bootLoader, this.description.rail, eeprom);
     for (const [name, pin] of this.description.inputs) board.setContact(pin, this.closedInputs.has(name));
-    await this.attach(new UnoLink(board, pins, { onFrame: (widths) => this.handleWidths(widths), onPulse: (...pulse) => this.listener.onPulse(...pulse) }));
+    const onFrame = (widths: Four<number>) =>
+      this.handleFrame(this.robot.followPulses(widths), widths, FRAME_SECONDS);
+    await this.attach(new UnoLink(board, pins, { onFrame, onPulse: (...pulse) => this.listener.onPulse(...pulse) }));
     this.simulatedLink?.board.setSupply(this.volts);
   }
 
@@ -285,14 +287,15 @@ export class Session {
     }
     if (this.link !== link) return false;
     if (this.banner) await this.watch();
-    else if (isRadio) this.reportSilentModule(link);
+    else if (isRadio) this.reportUnknownBoard(`The module is connected, but no robot answers from the ${link.name}. Check that the module's TXD is on D0, and that the robot is switched on.`);
     else await this.identify(link);
     return this.link === link;
   }
 
-  private reportSilentModule(link: Link): void {
+  /** Reports a board on which this firmware does not answer. */
+  private reportUnknownBoard(message: string): void {
     this.state.banner.value = null;
-    this.listener.onProblem('board', `The module is connected, but no robot answers from the ${link.name}. Check that the module's TXD is on D0, and that the robot is switched on.`);
+    this.listener.onProblem('board', message);
   }
 
   /**
@@ -337,9 +340,7 @@ export class Session {
     } catch (error) {
       message = `The board does not answer like this firmware: ${getMessage(error)}.`;
     }
-    if (this.link !== link) return;
-    this.state.banner.value = null;
-    this.listener.onProblem('board', message);
+    if (this.link === link) this.reportUnknownBoard(message);
   }
 
   /** Requests reports of the board's poses. */
@@ -433,10 +434,7 @@ export class Session {
 
   private handleLine(line: string): void {
     const angles = parsePoseReport(line);
-    if (angles && this.isReal) {
-      this.handlePose(angles);
-      return;
-    }
+    if (angles && this.isReal) return this.handlePose(angles);
     this.listener.onReceived(line);
     const word = /^ok (.+)$/.exec(line)?.[1] ?? '';
     const { stop, rest, center, pose, speed } = WORDS;
@@ -599,8 +597,7 @@ export class Session {
     const hasSentBanner = await this.waitForBanner();
     if (this.link !== link) return null;
     if (!hasSentBanner) {
-      this.state.banner.value = null;
-      this.listener.onProblem('board', `The ${link.name} sends no banner: the written program is not this firmware.`);
+      this.reportUnknownBoard(`The ${link.name} sends no banner: the written program is not this firmware.`);
       return 'the board sends no banner of this firmware';
     }
     const boardHash = isBanner(this.banner) ? this.banner.robot?.hash : null;
@@ -628,19 +625,15 @@ export class Session {
     }
   }
 
-  private handleWidths(widths: Four<number>): void {
-    const frame = this.robot.followPulses(widths);
-    if (frame) this.handleFrame(frame, widths, FRAME_SECONDS);
-  }
-
   private handlePose(angles: Four<number>): void {
     const frameCount = FRAMES_PER_REPORT[this.link.kind];
     const frame = this.robot.followPose(angles, frameCount);
     this.clock += FRAME_SECONDS * frameCount;
-    if (frame) this.handleFrame(frame, null, FRAME_SECONDS * frameCount);
+    this.handleFrame(frame, null, FRAME_SECONDS * frameCount);
   }
 
-  private handleFrame(frame: Frame, widths: Four<number> | null, seconds: number): void {
+  private handleFrame(frame: Frame | null, widths: Four<number> | null, seconds: number): void {
+    if (!frame) return;
     this.last = frame;
     this.walkedPath.add(frame, seconds);
     this.listener.onFrame(frame, widths, seconds);

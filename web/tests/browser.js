@@ -68,7 +68,7 @@ function addTimeouts(object, name, methods) {
   }
 }
 
-/** Errors and warnings of all pages so far. */
+/** Errors and warnings of the current test's pages. */
 export const browserErrors = [];
 
 let browser;
@@ -79,13 +79,14 @@ const testServers = [];
 
 export const openDevTools = () => browser.newBrowserCDPSession();
 
-/** Closes the pages of a test; otherwise their robots would continue to walk. */
+/**
+ * Closes the pages of a test; otherwise their robots would continue to walk. Asserts that the browser has reported no
+ * error or warning.
+ */
 export async function closePages() {
   await withTimeout('the pages to close', Promise.all(pages.splice(0).map((page) => page.close())));
-  for (const testServer of testServers.splice(0)) {
-    testServer.closeAllConnections();
-    testServer.close();
-  }
+  await Promise.all(testServers.splice(0).map(stopServer));
+  assert.deepEqual(browserErrors.splice(0), []);
 }
 
 /**
@@ -330,6 +331,26 @@ export async function openStanding(options) {
   const page = await openPage(options);
   await advance(page, 2500);
   return page;
+}
+
+/** Opens the page, waits until its robot stands, and unfolds a panel. */
+export async function openUnfolded(panel, options) {
+  const page = await openStanding(options);
+  await unfold(page, panel);
+  return page;
+}
+
+/** Waits until the robot has a new gait, whose table in robot.toml is given, and walks with it. */
+export async function waitForNewGait(page, name, table) {
+  await page.waitForFunction((table) => window.lizard.toml.includes(table), table);
+  await advance(page, 3000);
+  await page.waitForFunction((name) => window.lizard.gait === name, name);
+}
+
+/** Loads the page again, and waits until it has started. */
+export async function reload(page) {
+  await page.reload();
+  await page.waitForFunction(() => window.lizard);
 }
 
 /** Presses Esc, and asserts that the robot then does not move by more than 0.05 mm. */

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { openWithBoard, runUntil, connect, readFlash, waitForText } from './board.js';
-import { browserErrors, readText, unfold, useBrowser } from './browser.js';
+import { readText, unfold, useBrowser } from './browser.js';
 import { makeImage, SECTION_START } from './flash-image.js';
 
 useBrowser();
@@ -90,5 +90,3 @@ test('after any cut, the page reports a calibration as saved only if the board s
   }
   for (const [outcome, count] of Object.entries(counts)) assert.ok(count > 0, `no trial had the outcome ${outcome}`);
 });
-
-test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

@@ -28,6 +28,10 @@ export function installFakeSerial() {
     flash.set(section, start);
     return flash;
   };
+  const stopTimers = () => {
+    clearInterval(port.timer);
+    clearInterval(port.garbageTimer);
+  };
   const port = {
     readable: null,
     writable: null,
@@ -45,8 +49,7 @@ export function installFakeSerial() {
       let output;
       port.readable = new ReadableStream({ start: (controller) => (output = controller) });
       window.unplug = () => {
-        clearInterval(port.timer);
-        clearInterval(port.garbageTimer);
+        stopTimers();
         port.readable = null;
         output.error(new Error('The device has been lost.'));
       };
@@ -72,10 +75,7 @@ export function installFakeSerial() {
     async setSignals({ dataTerminalReady }) {
       if (dataTerminalReady && !window.boardKeepsRunning) board.reset('external');
     },
-    async close() {
-      clearInterval(port.timer);
-      clearInterval(port.garbageTimer);
-    },
+    close: async () => stopTimers(),
   };
   const requestPort = async (options) => {
     window.portRequest = options;

@@ -101,5 +101,3 @@ test('a refusal is on the screen beside the buttons, also on a phone', async () 
   await advance(page, 300);
   await message.waitFor({ state: 'hidden' });
 });
-
-test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

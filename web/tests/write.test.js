@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { openWithBoard, openWithErasedBoard, readFlash, runUntil, reconnect, waitForText } from './board.js';
-import { browserErrors, openStanding, openPage, readText, unfold, useBrowser } from './browser.js';
+import { openUnfolded, openPage, readText, unfold, useBrowser } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 import { makeImage, SECTION_START } from './flash-image.js';
 
@@ -12,7 +12,12 @@ useBrowser();
 const makeSection = async (name) => Buffer.from((await makeImage(name)).subarray(SECTION_START));
 /** Waits until a message is shown below a panel's buttons. */
 const waitForMessage = (page, pattern, selector = '#flash-message', stepMs = 100) => waitForText(page, selector, pattern, stepMs);
-const writeRobotAlone = (page) => page.locator('#flash-robot').click();
+
+/** Presses a button of the panel, and waits until a message is shown. */
+async function pressAndWait(page, button, pattern) {
+  await page.locator(button).click();
+  await waitForMessage(page, pattern);
+}
 
 /** Returns the servo pins that had a pulse; the LED's pin does not count. */
 const listPulsedPins = (page) => page.evaluate(() => window.lizard.description.servos.map(({ pin }) => pin).filter((pin) => pin in window.pulseWidthsUs));
@@ -39,8 +44,7 @@ test('a robot is written within 2.5 s, and firmware and saved settings stay unch
   const codeBytes = await readFlash(page, 0, SECTION_START);
   const savedEeprom = await page.evaluate(() => Array.from(window.attachedBoard.eeprom));
   assert.ok(savedEeprom.some((byte) => byte !== 0xff), 'settings are saved');
-  await writeRobotAlone(page);
-  await waitForMessage(page, /^written and verified in [\d.]+ s$/);
+  await pressAndWait(page, '#flash-robot', /^written and verified in [\d.]+ s$/);
   const seconds = Number(/in ([\d.]+) s/.exec(await readText(page, '#flash-message'))[1]);
   assert.ok(seconds > 0.5 && seconds < 2.5, `${seconds} s`);
   await waitForText(page, '#where', /^on a board on USB, robot paper [0-9a-f]{8}$/);
@@ -78,8 +82,7 @@ test('one button writes an edited text to the board', async () => {
 });
 
 test('without a board, Write it to the board asks for a connection', async () => {
-  const page = await openStanding();
-  await unfold(page, '#robot-editor');
+  const page = await openUnfolded('#robot-editor');
   await page.locator('#robot-write').click();
   await page.locator('#robot-message', { hasText: 'No board is connected: press Connect a board…' }).waitFor();
 });
@@ -89,8 +92,7 @@ test('a robot whose format the firmware does not read is refused, and the firmwa
   // Changes the format in the mark after the 26 interrupt vectors.
   await page.evaluate(() => (window.attachedBoard.flash[26 * 4 + 4] ^= 0x40));
   const previousFlash = await readFlash(page, 0, 0x7e00);
-  await writeRobotAlone(page);
-  await waitForMessage(page, /^not written: the board has lizard [\d.]+ robot large [0-9a-f]{8}, which reads robots of format \d+; this robot has format \d+: write the firmware, too\. Nothing was written$/);
+  await pressAndWait(page, '#flash-robot', /^not written: the board has lizard [\d.]+ robot large [0-9a-f]{8}, which reads robots of format \d+; this robot has format \d+: write the firmware, too\. Nothing was written$/);
   assert.deepEqual(await readFlash(page, 0, 0x7e00), previousFlash);
   await waitForText(page, '#where', /^on a board on USB with another robot/);
 });
@@ -100,14 +102,13 @@ test('the robot alone is written to a board that has not restarted', async () =>
   assert.match(await readText(page, '#where'), /that has not restarted/);
   await page.evaluate(() => (window.boardKeepsRunning = false));
   await unfoldFlashPanel(page);
-  await writeRobotAlone(page);
-  await waitForMessage(page, /^written and verified in [\d.]+ s$/);
+  await pressAndWait(page, '#flash-robot', /^written and verified in [\d.]+ s$/);
   await assertFlash(page, SECTION_START, await makeSection('robot'));
 });
 
 test('a board unplugged during a write has no robot, reports that, moves nothing, and can be written again', async () => {
   const page = await unfoldFlashPanel(await openWithBoard('large', 8000));
-  await writeRobotAlone(page);
+  await page.locator('#flash-robot').click();
   await waitUntilPartIsWritten(page);
   await page.evaluate(() => window.unplug());
   await waitForMessage(page, /^not written: .*\. The board now has an incomplete robot: its firmware reports fault=robot and moves no servo\. Write the robot again$/);
@@ -117,8 +118,7 @@ test('a board unplugged during a write has no robot, reports that, moves nothing
   assert.deepEqual(await listPulsedPins(page), []);
   await page.locator('#log div', { hasText: '# fault: no robot in the flash; write one' }).first().waitFor();
   await page.locator('#setup').getByText('has this firmware but no robot; it moves nothing.').waitFor();
-  await writeRobotAlone(page);
-  await waitForMessage(page, /^written and verified in [\d.]+ s$/);
+  await pressAndWait(page, '#flash-robot', /^written and verified in [\d.]+ s$/);
   await runUntil(page, 'the robot stands', async () => (await listPulsedPins(page)).length === 4);
 });
 
@@ -150,23 +150,20 @@ test('a board unplugged while the firmware is written does nothing, and can be w
   assert.deepEqual(await readFlash(page, 0, 4), Buffer.from([0xff, 0xcf, 0xff, 0xff]));
   await reconnect(page);
   await waitForText(page, '#where', /without this firmware$/);
-  await page.locator('#flash-write').click();
-  await waitForMessage(page, /^written and verified in [\d.]+ s$/);
+  await pressAndWait(page, '#flash-write', /^written and verified in [\d.]+ s$/);
   await assertFlash(page, 0, Buffer.from(await makeImage('robot')));
 });
 
 test('a robot alone is refused for a board without this firmware', async () => {
   const page = await unfoldFlashPanel(await openWithErasedBoard());
-  await writeRobotAlone(page);
-  await waitForMessage(page, /^not written: the board has no program, and a robot alone moves nothing: write the firmware, too\. Nothing was written$/);
+  await pressAndWait(page, '#flash-robot', /^not written: the board has no program, and a robot alone moves nothing: write the firmware, too\. Nothing was written$/);
 });
 
 test('an older Nano, whose boot loader has another baud rate, is found, written and started', async () => {
   const page = await openWithBoard(null, 0, { loaderBaud: 57_600, usbVendor: 0x1a86 });
   await runUntil(page, 'the board is identified', async () => (await readText(page, '#problems')).startsWith('The board is an Arduino Nano, an ATmega328P according to its boot loader'));
   await unfoldFlashPanel(page);
-  await page.locator('#flash-write').click();
-  await waitForMessage(page, /^no answer; calling the board again/);
+  await pressAndWait(page, '#flash-write', /^no answer; calling the board again/);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
   await assertFlash(page, 0, Buffer.from(await makeImage('robot')));
   await waitForText(page, '#where', /^on a board on USB, robot paper [0-9a-f]{8}$/);
@@ -190,8 +187,7 @@ test('the page reports an older Nano that is unplugged while its baud rate is se
 test('flash pages that already have the right bytes are not written', async () => {
   const page = await unfoldFlashPanel(await openWithBoard('robot', 8000));
   const measureWrite = async () => {
-    await page.locator('#flash-write').click();
-    await waitForMessage(page, /^reading/);
+    await pressAndWait(page, '#flash-write', /^reading/);
     await waitForMessage(page, /^written and verified in [\d.]+ s$/);
     await page.clock.runFor(3000);
     return Number(/in ([\d.]+) s/.exec(await readText(page, '#flash-message'))[1]);
@@ -214,21 +210,16 @@ test('an image that would overwrite a Nano\'s boot loader is written only after 
     dialogMessages.push(dialog.message());
     void dialog[reply]();
   });
-  await writeRobotAlone(page);
-  await waitForMessage(page, /^not written: 3\d{4} bytes of flash are needed, but a Nano has only 30720 before its boot section\. Gaits can be left out/);
+  await pressAndWait(page, '#flash-robot', /^not written: 3\d{4} bytes of flash are needed, but a Nano has only 30720 before its boot section\. Gaits can be left out/);
   assert.match(dialogMessages[0], /^Is this board an Arduino UNO\? Its USB chip is also used on the Nano/);
   assert.deepEqual(await readFlash(page, 0, 0x7e00), previousFlash, 'nothing was written');
   reply = 'accept';
-  await writeRobotAlone(page);
-  await waitForMessage(page, /^written and verified in [\d.]+ s$/);
+  await pressAndWait(page, '#flash-robot', /^written and verified in [\d.]+ s$/);
   await assertFlash(page, SECTION_START, await makeSection('own-gaits'));
   assert.equal(dialogMessages.length, 2);
   // The section of a small robot ends below the Nano's boot loader, so no dialog opens.
   await page.locator('#robot').selectOption('robot');
   await page.clock.runFor(3000);
-  await writeRobotAlone(page);
-  await waitForMessage(page, /^written and verified in [\d.]+ s$/);
+  await pressAndWait(page, '#flash-robot', /^written and verified in [\d.]+ s$/);
   assert.equal(dialogMessages.length, 2);
 });
-
-test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

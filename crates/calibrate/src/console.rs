@@ -85,10 +85,7 @@ impl<E> ConsoleError<E> {
 ///
 /// # Errors
 /// Fails if the connection fails, if the robot refuses the line, or if its answer has an unknown format.
-pub async fn send_command<C: Console>(
-    console: &mut C,
-    line: &str,
-) -> Result<Reply, ConsoleError<C::Error>> {
+pub async fn send_command<C: Console>(console: &mut C, line: &str) -> crate::Result<Reply, C> {
     let reply = console.ask(line).await.map_err(ConsoleError::Link)?;
     let line = line.to_owned();
     if let Some(reason) = reply.answer.strip_prefix("err ") {

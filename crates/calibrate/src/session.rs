@@ -2,7 +2,8 @@
 
 use lizard_robot::{Calibration, ServoSettings, round_to_hundredths};
 
-use crate::console::{Console, ConsoleError, Reply, send_command};
+use crate::Result;
+use crate::console::{Console, Reply, send_command};
 use crate::settings::{SendError, read_settings, replace_settings, send_settings};
 use crate::still::wait_until_still;
 
@@ -31,9 +32,6 @@ pub struct Session<C> {
     /// The settings of an unanswered `save`.
     unanswered_save: Option<Calibration>,
 }
-
-/// The result of a line or a step.
-type Result<T, C> = std::result::Result<T, ConsoleError<<C as Console>::Error>>;
 
 impl<C: Console> Session<C> {
     /// Reads the robot's settings; nothing moves.
@@ -206,9 +204,8 @@ impl<C: Console> Session<C> {
     /// # Errors
     /// Fails if the robot cannot walk now.
     pub async fn start_walk(&mut self) -> Result<Option<String>, C> {
-        let help = self.send_line("help").await?;
-        let gait_lists = help
-            .notes
+        let notes = self.send_line("help").await?.notes;
+        let gait_lists = notes
             .iter()
             .filter_map(|line| line.strip_prefix("# gaits: "));
         let gaits = gait_lists.flat_map(|names| names.split('|'));

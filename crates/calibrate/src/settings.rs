@@ -8,9 +8,7 @@ use crate::console::{Console, ConsoleError, ReplyError, send_command};
 ///
 /// # Errors
 /// Fails if the robot does not answer, or if its answer has an unknown format.
-pub async fn read_settings<C: Console>(
-    console: &mut C,
-) -> Result<Calibration, ConsoleError<C::Error>> {
+pub async fn read_settings<C: Console>(console: &mut C) -> crate::Result<Calibration, C> {
     let reply = send_command(console, "cal").await?;
     Calibration::from_cal_answer(&reply.notes).ok_or_else(|| {
         let (line, answer) = ("cal".to_owned(), reply.notes.join(" / "));
@@ -26,7 +24,7 @@ pub async fn read_settings<C: Console>(
 pub async fn send_settings<C: Console>(
     console: &mut C,
     calibration: &Calibration,
-) -> Result<(), ConsoleError<C::Error>> {
+) -> crate::Result<(), C> {
     let mut transfer = Transfer::new(calibration);
     let mut refusal = None;
     while let Some(line) = transfer.next_line() {
@@ -75,9 +73,8 @@ pub async fn replace_settings<C: Console>(
         Ok(false) => SendError::Differs,
         Err(error) => SendError::Refused(error),
     };
-    send_settings(console, old)
-        .await
-        .map_err(SendError::Mixed)?;
+    let restored = send_settings(console, old).await;
+    restored.map_err(SendError::Mixed)?;
     Err(error)
 }
 
@@ -85,7 +82,7 @@ pub async fn replace_settings<C: Console>(
 async fn send_and_compare<C: Console>(
     console: &mut C,
     calibration: &Calibration,
-) -> Result<bool, ConsoleError<C::Error>> {
+) -> crate::Result<bool, C> {
     send_settings(console, calibration).await?;
     Ok(read_settings(console).await?.is_equivalent_to(calibration))
 }

@@ -15,9 +15,7 @@ const MAX_STATUS_COUNT: u32 = 100;
 ///
 /// # Errors
 /// Fails if the robot does not answer, or has no pose.
-pub(crate) async fn wait_until_still<C: Console>(
-    console: &mut C,
-) -> Result<[f64; 4], ConsoleError<C::Error>> {
+pub(crate) async fn wait_until_still<C: Console>(console: &mut C) -> crate::Result<[f64; 4], C> {
     // The first frame that reported the current pose, and this pose.
     let mut still_since: Option<(u64, [f64; 4])> = None;
     for _ in 1..MAX_STATUS_COUNT {
@@ -31,16 +29,14 @@ pub(crate) async fn wait_until_still<C: Console>(
             }
             _ => still_since = Some((frames, pose)),
         }
-        console
-            .pause(STATUS_INTERVAL)
-            .await
-            .map_err(ConsoleError::Link)?;
+        let pause = console.pause(STATUS_INTERVAL).await;
+        pause.map_err(ConsoleError::Link)?;
     }
     Ok(read_pose(console).await?.1)
 }
 
 /// Reads the number of frames since the reset, and the pose, degrees, from the robot's status.
-async fn read_pose<C: Console>(console: &mut C) -> Result<(u64, [f64; 4]), ConsoleError<C::Error>> {
+async fn read_pose<C: Console>(console: &mut C) -> crate::Result<(u64, [f64; 4]), C> {
     let reply = send_command(console, "status").await?;
     let status = Status::parse(&reply.answer);
     let state = status.and_then(|status| Some((status.frames, status.pose?)));
@@ -58,7 +54,7 @@ mod tests {
     use crate::console::Reply;
 
     /// A robot whose `status` answers have these frames and angles of A1; the last answer is repeated.
-    struct ScriptedStatus(Vec<(u64, f64)>);
+    struct ScriptedStatus(Vec<(u64, i32)>);
 
     impl Console for ScriptedStatus {
         type Error = Infallible;
@@ -68,7 +64,7 @@ mod tests {
             if self.0.len() > 1 {
                 self.0.remove(0);
             }
-            let answer = format!("ok gait=pose pose={a1:.2},0,0,0 margin=0.5 frames={frames}");
+            let answer = format!("ok gait=pose pose={a1}.00,0,0,0 margin=0.5 frames={frames}");
             let notes = Vec::new();
             Ok(Reply { notes, answer })
         }
@@ -81,24 +77,14 @@ mod tests {
     #[test]
     fn a_robot_stands_still_once_its_pose_is_constant_for_long_enough_even_after_a_reset() {
         for (states, expected) in [
-            (vec![(100, 1.0), (112, 1.0), (200, 2.0)], 1.0),
+            (vec![(100, 1), (112, 1), (200, 2)], 1.0),
+            (vec![(100, 1), (111, 1), (114, 2), (127, 2), (300, 3)], 2.0),
             (
-                vec![(100, 1.0), (111, 1.0), (114, 2.0), (127, 2.0), (300, 3.0)],
-                2.0,
-            ),
-            (
-                vec![
-                    (900, 1.0),
-                    (3, 1.0),
-                    (14, 1.0),
-                    (14, 2.0),
-                    (26, 2.0),
-                    (90, 3.0),
-                ],
+                vec![(900, 1), (3, 1), (14, 1), (14, 2), (26, 2), (90, 3)],
                 2.0,
             ),
             // The frame count stops, so the wait ends at the time limit.
-            (vec![(100, 1.0), (105, 1.0)], 1.0),
+            (vec![(100, 1), (105, 1)], 1.0),
         ] {
             let pose = pollster::block_on(wait_until_still(&mut ScriptedStatus(states)));
             assert_eq!(pose.map(|[a1, ..]| a1), Ok(expected));

@@ -26,10 +26,9 @@ impl BodyPose {
     pub(crate) fn moved_by_twist(self, [forward, left, turn]: Twist) -> Self {
         // The ratio of the chord's length to the arc's. The chord's direction is the heading at half the turn.
         let half_turn = turn / 2.0;
-        let chord_over_arc = if half_turn == 0.0 {
-            1.0
-        } else {
-            half_turn.sin() / half_turn
+        let chord_over_arc = match half_turn {
+            0.0 => 1.0,
+            _ => half_turn.sin() / half_turn,
         };
         let (sin, cos) = (self.heading + half_turn).sin_cos();
         Self {

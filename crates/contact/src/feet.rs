@@ -51,9 +51,8 @@ impl Feet {
 
     /// Sine and cosine of a leg's angle, measured from straight sideways, forward positive.
     fn leg_sin_cos(&self, leg: usize, sweep: f64) -> (f64, f64) {
-        (sweep + FRONT_SIGN[leg] * self.mount_angle)
-            .to_radians()
-            .sin_cos()
+        let angle_deg = sweep + FRONT_SIGN[leg] * self.mount_angle;
+        angle_deg.to_radians().sin_cos()
     }
 }
 

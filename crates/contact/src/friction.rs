@@ -11,7 +11,6 @@
 
 use crate::lag_energy::LagEnergy;
 use crate::linear::solve_symmetric;
-use crate::motor_step::Expansion;
 
 /// A position or a slide of a pad: (forward, left), mm.
 pub type Point = [f64; 2];
@@ -146,13 +145,9 @@ impl Pads {
             }),
         };
         // The scaled unknowns: x is the twist, z are the changes of the lags.
-        let (mut x, mut z, first_stage) = match guess {
-            Some(displacement) => (
-                units.scaled_twist(displacement),
-                units.scaled_lag_changes(displacement),
-                FIRST_STAGE_WITH_GUESS,
-            ),
-            None => ([0.0; 3], [0.0; 4], 0),
+        let ((mut x, mut z), first_stage) = match guess {
+            Some(displacement) => (units.scaled_unknowns(displacement), FIRST_STAGE_WITH_GUESS),
+            None => (([0.0; 3], [0.0; 4]), 0),
         };
         let mut last_solutions = [None, guess.map(|_| (slide_size * MIN_SMOOTHING, x, z))];
         for stage in first_stage..=LAST_STAGE {
@@ -163,10 +158,8 @@ impl Pads {
             // to the next stage. A guess counts as a solution with the smallest eps.
             if let [Some((older_eps, older_x, older_z)), Some((newer_eps, ..))] = last_solutions {
                 let step_ratio = (newer_eps - eps) / (older_eps - newer_eps);
-                let next_x: [f64; 3] =
-                    std::array::from_fn(|i| x[i] + step_ratio * (x[i] - older_x[i]));
-                let next_z: [f64; 4] =
-                    std::array::from_fn(|i| z[i] + step_ratio * (z[i] - older_z[i]));
+                let next_x = std::array::from_fn(|i| x[i] + step_ratio * (x[i] - older_x[i]));
+                let next_z = std::array::from_fn(|i| z[i] + step_ratio * (z[i] - older_z[i]));
                 let candidate = expand_at(next_x, next_z);
                 if candidate.cost < current.cost {
                     (x, z, current) = (next_x, next_z, candidate);
@@ -184,21 +177,15 @@ impl Pads {
                 if predicted_reduction < MIN_REDUCTION * slide_size {
                     break;
                 }
-                let unknowns_at = |fraction: f64| {
-                    let x: [f64; 3] = std::array::from_fn(|i| x[i] - fraction * dx[i]);
-                    let z: [f64; 4] = std::array::from_fn(|i| z[i] - fraction * dz[i]);
-                    (x, z)
-                };
                 // Backtracking line search: halves the step until the cost falls, allowing for rounding errors.
                 let cost_limit = current.cost * (1.0 + 1e-14);
                 let fractions = std::iter::successors(Some(1.0), |fraction| Some(fraction / 2.0));
-                let mut candidates =
-                    fractions
-                        .take_while(|&fraction| fraction > 1e-9)
-                        .map(|fraction| {
-                            let (x, z) = unknowns_at(fraction);
-                            (fraction, x, z, expand_at(x, z))
-                        });
+                let fractions = fractions.take_while(|&fraction| fraction > 1e-9);
+                let mut candidates = fractions.map(|fraction: f64| {
+                    let next_x = std::array::from_fn(|i| x[i] - fraction * dx[i]);
+                    let next_z = std::array::from_fn(|i| z[i] - fraction * dz[i]);
+                    (fraction, next_x, next_z, expand_at(next_x, next_z))
+                });
                 let accepted = candidates.find(|(fraction, _, _, candidate)| {
                     candidate.cost <= cost_limit - 1e-4 * fraction * predicted_reduction
                 });
@@ -231,11 +218,10 @@ impl Pads {
             return 0.0;
         };
         let compute_unswept_distance = |i: usize| {
+            let ([x, y], lag) = (compliance.sweep_derivatives[i], compliance.previous_lags[i]);
             if let Some(motor) = &compliance.lag_energies[i].motor {
-                let [x, y] = compliance.sweep_derivatives[i];
                 return x.hypot(y) * motor.unloaded_lag().abs();
             }
-            let ([x, y], lag) = (compliance.sweep_derivatives[i], compliance.previous_lags[i]);
             let holding_torque = self.loads[i] * self.friction_ratio.max(1.0) * x.hypot(y);
             match compliance.lag_energies[i].spring_torque(lag) > holding_torque * (1.0 + 1e-6) {
                 true => x.hypot(y) * lag.abs(),
@@ -271,17 +257,12 @@ impl Pads {
     fn expand(&self, displacement: &Displacement, eps: f64, units: &Units) -> CostExpansion {
         let (mut cost, mut gradient, mut hessian) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
         let mut lag_derivatives = [LagDerivatives::default(); 4];
-        if let Some(Inertia {
-            stiffness,
-            previous_twist,
-            ..
-        }) = self.inertia
-        {
-            for i in 0..3 {
-                let deviation = displacement.twist[i] - previous_twist[i];
-                cost += stiffness[i] * deviation * deviation / 2.0;
-                gradient[i] += stiffness[i] * deviation * units.twist[i];
-                hessian[i][i] += stiffness[i] * units.twist[i] * units.twist[i];
+        if let Some(inertia) = &self.inertia {
+            for (i, stiffness) in inertia.stiffness.into_iter().enumerate() {
+                let deviation = displacement.twist[i] - inertia.previous_twist[i];
+                cost += stiffness * deviation * deviation / 2.0;
+                gradient[i] += stiffness * deviation * units.twist[i];
+                hessian[i][i] += stiffness * units.twist[i] * units.twist[i];
             }
         }
         for (i, slide) in self.slides(displacement).into_iter().enumerate() {
@@ -296,11 +277,8 @@ impl Pads {
                 [-y * units.twist[2], x * units.twist[2]],
             ];
             let (leg_stiffness, slide_change) = self.inertia.map_or((0.0, [0.0; 2]), |inertia| {
-                let previous_slide = inertia.previous_slides[i];
-                (
-                    inertia.leg_stiffness,
-                    [slide[0] - previous_slide[0], slide[1] - previous_slide[1]],
-                )
+                let [x, y] = inertia.previous_slides[i];
+                (inertia.leg_stiffness, [slide[0] - x, slide[1] - y])
             });
             let length_derivative = |[a, b]: Point| (wx * a * ux + wy * b * uy) / length;
             // Derivatives of the pad's friction cost plus its leg's inertia cost. Each argument is the derivative of
@@ -325,16 +303,13 @@ impl Pads {
             let lag_unit = units.lags[i];
             let [bx, by] = compliance.sweep_derivatives[i];
             let lag_row = [-bx * lag_unit, -by * lag_unit];
-            let Expansion {
-                energy,
-                torque,
-                stiffness,
-            } = compliance.lag_energies[i]
-                .expand(displacement.lags[i], eps / units.slide_size * lag_unit);
-            cost += energy;
+            let (lag_energy, lag) = (&compliance.lag_energies[i], displacement.lags[i]);
+            let expansion = lag_energy.expand(lag, eps / units.slide_size * lag_unit);
+            cost += expansion.energy;
+            let lag_curvature = expansion.stiffness * lag_unit * lag_unit;
             let leg = LagDerivatives {
-                slope: first_derivative(lag_row) + torque * lag_unit,
-                curvature: second_derivative(lag_row, lag_row) + stiffness * lag_unit * lag_unit,
+                slope: first_derivative(lag_row) + expansion.torque * lag_unit,
+                curvature: second_derivative(lag_row, lag_row) + lag_curvature,
                 mixed: derivatives.map(|twist_row| second_derivative(twist_row, lag_row)),
             };
             for (i, mixed) in leg.mixed.into_iter().enumerate() {
@@ -363,17 +338,14 @@ impl Units {
         )
     }
 
-    /// Converts the twist of a displacement to scaled unknowns.
-    fn scaled_twist(&self, displacement: &Displacement) -> [f64; 3] {
-        std::array::from_fn(|i| displacement.twist[i] / self.twist[i])
-    }
-
-    /// Converts a displacement's changes of the lags to scaled unknowns.
-    fn scaled_lag_changes(&self, displacement: &Displacement) -> [f64; 4] {
-        std::array::from_fn(|i| match self.lags[i] {
+    /// Converts a displacement to scaled unknowns: the twist, and the changes of the lags.
+    fn scaled_unknowns(&self, displacement: &Displacement) -> ([f64; 3], [f64; 4]) {
+        let twist = std::array::from_fn(|i| displacement.twist[i] / self.twist[i]);
+        let lag_changes = std::array::from_fn(|i| match self.lags[i] {
             0.0 => 0.0,
             unit => displacement.lag_changes[i] / unit,
-        })
+        });
+        (twist, lag_changes)
     }
 }
 

@@ -28,6 +28,17 @@ pub struct GroundContact {
     pub drive: Drive,
 }
 
+/// The paper's robot on feet of equal length, with rigid struts.
+#[cfg(test)]
+pub(crate) const PAPER_GROUND: GroundContact = GroundContact {
+    feet: crate::feet::PAPER_FEET,
+    body: Body::DEFAULT,
+    stance: Stance::LEVEL,
+    friction_coefficient: DEFAULT_FRICTION,
+    friction_ratio: 1.0,
+    drive: Drive::RIGID,
+};
+
 /// Default friction coefficient: rubber on a smooth floor.
 pub const DEFAULT_FRICTION: f64 = 0.7;
 

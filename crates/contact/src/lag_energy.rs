@@ -28,16 +28,20 @@ pub(crate) enum Resistance {
     /// A rigid stop.
     Stop,
     /// A spring in a strut, and a stop at the end of the strut's slot.
-    Strut {
-        /// Geometry of the strut.
-        triangle: StrutTriangle,
-        /// Tension of the spring if the leg does not lag.
-        preload: f64,
-        /// Rate of the spring, per mm.
-        rate: f64,
-        /// Lag beyond the play at which the screw reaches the slot's end, rad.
-        end_lag: f64,
-    },
+    Strut(SlottedStrut),
+}
+
+/// A slotted strut with its spring.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct SlottedStrut {
+    /// Geometry of the strut.
+    triangle: StrutTriangle,
+    /// Tension of the spring if the leg does not lag.
+    preload: f64,
+    /// Rate of the spring, per mm.
+    rate: f64,
+    /// Lag beyond the play at which the screw reaches the slot's end, rad.
+    end_lag: f64,
 }
 
 /// The triangle that determines a strut's length at a lag of its leg. Its sides are the strut, the leg's arm, and the
@@ -135,10 +139,13 @@ impl StrutTriangle {
             lever_arm_slope,
         )
     }
+}
 
+impl SlottedStrut {
     /// Energy of the spring minus `kink_torque * lag`, at a lag that lengthens the strut.
-    fn spring_energy(&self, lag: f64, preload: f64, rate: f64, kink_torque: f64) -> Expansion {
-        let (extension, lever_arm, lever_arm_slope) = self.extension_and_derivatives(lag);
+    fn spring_energy(&self, lag: f64, kink_torque: f64) -> Expansion {
+        let (preload, rate) = (self.preload, self.rate);
+        let (extension, lever_arm, lever_arm_slope) = self.triangle.extension_and_derivatives(lag);
         let tension = preload + rate * extension;
         Expansion {
             energy: preload * extension - kink_torque * lag + rate * extension * extension / 2.0,
@@ -153,34 +160,29 @@ impl StrutTriangle {
 impl Resistance {
     /// Creates the resistance of a strut with a spring and a slot; `slot_length` in mm.
     pub fn strut(triangle: StrutTriangle, preload: f64, rate: f64, slot_length: f64) -> Self {
-        Self::Strut {
+        Self::Strut(SlottedStrut {
             triangle,
             preload,
             rate,
             end_lag: triangle.lag_at_extension(slot_length),
-        }
+        })
     }
 
     /// Energy, torque and stiffness at a lag that exceeds the play by `excess_lag`, rad.
     fn expand(&self, excess_lag: f64, eps: f64, stop_torque: f64) -> Expansion {
         let ramp = smoothed_ramp(excess_lag, eps);
-        match *self {
+        match self {
             Self::Stop => Expansion::default().plus_scaled(stop_torque, ramp),
-            Self::Strut {
-                triangle,
-                preload,
-                rate,
-                end_lag,
-            } => {
+            Self::Strut(strut) => {
                 // The preload causes the torque at the kink; the spring's further torque grows from zero.
-                let kink_torque = preload * triangle.lever_arm().abs();
+                let kink_torque = strut.preload * strut.triangle.lever_arm().abs();
                 let mut energy = Expansion::default();
                 if excess_lag > 0.0 {
-                    energy = triangle.spring_energy(excess_lag, preload, rate, kink_torque);
+                    energy = strut.spring_energy(excess_lag, kink_torque);
                 }
                 energy = energy.plus_scaled(kink_torque, ramp);
-                if end_lag.is_finite() {
-                    let end_ramp = smoothed_ramp(excess_lag - end_lag, eps);
+                if strut.end_lag.is_finite() {
+                    let end_ramp = smoothed_ramp(excess_lag - strut.end_lag, eps);
                     energy = energy.plus_scaled(stop_torque, end_ramp);
                 }
                 energy
@@ -190,17 +192,8 @@ impl Resistance {
 
     /// Torque of the spring at a lag that exceeds the play by `excess_lag`, rad.
     fn spring_torque(&self, excess_lag: f64) -> f64 {
-        match *self {
-            Self::Strut {
-                triangle,
-                preload,
-                rate,
-                ..
-            } if excess_lag > 0.0 => {
-                triangle
-                    .spring_energy(excess_lag, preload, rate, 0.0)
-                    .torque
-            }
+        match self {
+            Self::Strut(strut) if excess_lag > 0.0 => strut.spring_energy(excess_lag, 0.0).torque,
             _ => 0.0,
         }
     }
@@ -209,7 +202,7 @@ impl Resistance {
     fn max_excess_lag(&self) -> f64 {
         match self {
             Self::Stop => 0.0,
-            Self::Strut { end_lag, .. } => *end_lag,
+            Self::Strut(strut) => strut.end_lag,
         }
     }
 }
@@ -258,12 +251,9 @@ impl LagEnergy {
 
     /// Energy, torque and stiffness at a lag (rad) of the leg behind its servo.
     fn expand_leg(&self, lag: f64, eps: f64) -> Expansion {
-        let upper = self
-            .upper_resistance
-            .expand(lag - self.play, eps, self.stop_torque);
-        let lower = self
-            .lower_resistance
-            .expand(-lag - self.play, eps, self.stop_torque);
+        let (play, stop_torque) = (self.play, self.stop_torque);
+        let upper = self.upper_resistance.expand(lag - play, eps, stop_torque);
+        let lower = self.lower_resistance.expand(-lag - play, eps, stop_torque);
         Expansion {
             energy: upper.energy + lower.energy,
             torque: upper.torque - lower.torque,
@@ -289,16 +279,15 @@ impl LagEnergy {
     /// energy; infinite if the torque exceeds a stop's torque.
     #[cfg(test)]
     pub fn conjugate(&self, torque: f64) -> f64 {
-        let resistance = if torque > 0.0 {
-            self.upper_resistance
-        } else {
-            self.lower_resistance
+        let resistance = match torque > 0.0 {
+            true => self.upper_resistance,
+            false => self.lower_resistance,
         };
         let torque = torque.abs();
         let gain_beyond_play = match resistance {
             Resistance::Stop if torque <= self.stop_torque => 0.0,
             // Ternary search: torque times lag minus energy has a single maximum.
-            Resistance::Strut { .. } if torque <= self.stop_torque => {
+            Resistance::Strut(_) if torque <= self.stop_torque => {
                 let gain_at =
                     |x: f64| torque * x - resistance.expand(x, 0.0, self.stop_torque).energy;
                 let (mut low, mut high) =
@@ -333,15 +322,26 @@ mod tests {
         StrutTriangle::new(f64::hypot(base[0], base[1]), 22.0, enclosed_angle)
     }
 
+    /// The energy of a leg without a motor.
+    fn lag_energy_with(play: f64, resistances: [Resistance; 2]) -> LagEnergy {
+        let [lower_resistance, upper_resistance] = resistances;
+        LagEnergy {
+            play,
+            stop_torque: STOP_TORQUE,
+            lower_resistance,
+            upper_resistance,
+            motor: None,
+        }
+    }
+
     /// Asserts that torque and stiffness match the difference quotients of the energy.
-    fn assert_derivatives_match(lag_energy: LagEnergy, lags: impl IntoIterator<Item = f64>) {
-        for lag in lags {
-            let Expansion {
-                torque, stiffness, ..
-            } = lag_energy.expand(lag, 1e-3);
+    fn assert_derivatives_match(lag_energy: LagEnergy) {
+        for i in -40..40 {
+            let lag = f64::from(i) / 200.0 + 1e-4;
             let expand_at = |lag| lag_energy.expand(lag, 1e-3);
             let step = 1e-6;
             let (lower, upper) = (expand_at(lag - step), expand_at(lag + step));
+            let (torque, stiffness) = (expand_at(lag).torque, expand_at(lag).stiffness);
             let energy_slope = (upper.energy - lower.energy) / (2.0 * step);
             assert_near(energy_slope, torque, 1e-4 * (1.0 + torque.abs()));
             let torque_slope = (upper.torque - lower.torque) / (2.0 * step);
@@ -351,22 +351,11 @@ mod tests {
 
     #[test]
     fn torque_and_stiffness_match_the_derivatives_of_the_energy() {
-        let lags = (-40..40).map(|i| f64::from(i) / 200.0 + 1e-4);
+        let strut = Resistance::strut(triangle_at(70.0), 8.0, 0.7, 5.0);
+        let stop = Resistance::Stop;
         for play in [0.0, 0.02] {
-            let strut_resistance = Resistance::strut(triangle_at(70.0), 8.0, 0.7, 5.0);
-            for [lower_resistance, upper_resistance] in [
-                [Resistance::Stop; 2],
-                [Resistance::Stop, strut_resistance],
-                [strut_resistance; 2],
-            ] {
-                let lag_energy = LagEnergy {
-                    play,
-                    stop_torque: STOP_TORQUE,
-                    lower_resistance,
-                    upper_resistance,
-                    motor: None,
-                };
-                assert_derivatives_match(lag_energy, lags.clone());
+            for resistances in [[stop; 2], [stop, strut], [strut; 2]] {
+                assert_derivatives_match(lag_energy_with(play, resistances));
             }
         }
     }
@@ -374,13 +363,8 @@ mod tests {
     #[test]
     fn a_leg_is_free_within_its_play_and_held_beyond_it() {
         let triangle = triangle_at(70.0);
-        let lag_energy = LagEnergy {
-            play: 0.1,
-            stop_torque: STOP_TORQUE,
-            lower_resistance: Resistance::Stop,
-            upper_resistance: Resistance::strut(triangle, 8.0, 0.7, 5.0),
-            motor: None,
-        };
+        let strut = Resistance::strut(triangle, 8.0, 0.7, 5.0);
+        let lag_energy = lag_energy_with(0.1, [Resistance::Stop, strut]);
         for lag in [-0.1, -0.05, 0.0, 0.1] {
             assert_eq!(lag_energy.expand(lag, 0.0).energy, 0.0, "lag {lag}");
         }

@@ -90,23 +90,24 @@ impl Motors {
     }
 }
 
+/// The motor of an SG-90.
+#[cfg(test)]
+pub(crate) const SG90: Motor = Motor {
+    stall_torque: 176.5,
+    no_load_speed: 500.0,
+    rotor_time_constant: 0.02,
+    full_torque_error: 3.0,
+    half_dead_band: 0.0,
+};
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::assert_near;
     use crate::drive::{Drive, DriveKind};
-    use crate::feet::{Body, PAPER_FEET};
-    use crate::ground_contact::GroundContact;
-    use crate::stance::Stance;
+    use crate::feet::Body;
+    use crate::ground_contact::{GroundContact, PAPER_GROUND};
     use crate::walker::Walker;
-
-    const SG90: Motor = Motor {
-        stall_torque: 176.5,
-        no_load_speed: 500.0,
-        rotor_time_constant: 0.02,
-        full_torque_error: 3.0,
-        half_dead_band: 0.0,
-    };
 
     const JOINTS: JointFriction = JointFriction {
         pin_torque: 0.0,
@@ -118,15 +119,12 @@ mod tests {
     /// Creates the contact of a robot of `mass` (g). The feet of a light robot hardly load its servos.
     fn ground_with(mass: f64, friction_coefficient: f64) -> GroundContact {
         GroundContact {
-            feet: PAPER_FEET,
             body: Body {
                 mass,
                 ..Body::DEFAULT
             },
-            stance: Stance::LEVEL,
             friction_coefficient,
-            friction_ratio: 1.0,
-            drive: Drive::RIGID,
+            ..PAPER_GROUND
         }
     }
 

@@ -145,24 +145,20 @@ impl MotorStep {
         let max_deviation =
             (self.stall_torque + self.pin_torque + self.slider_torque.abs() + max_load)
                 / self.inertial_stiffness;
-        let (mut low, mut high) = (
-            self.coasting_lag - max_deviation,
-            self.coasting_lag + max_deviation,
-        );
+        let mut low = self.coasting_lag - max_deviation;
+        let mut high = self.coasting_lag + max_deviation;
         let guess = self.unloaded_lag().max(kinks[0]).min(kinks[1]);
         let mut lag = guess.max(low).min(high);
         let mut last_step_length = max_deviation;
         for _ in 0..MAX_ITERATIONS {
-            let Expansion {
-                torque, stiffness, ..
-            } = self.expand(lag, eps);
+            let motor = self.expand(lag, eps);
             let (load, load_stiffness) = load_at(lag);
-            let torque_error = torque - load;
+            let torque_error = motor.torque - load;
             match torque_error > 0.0 {
                 true => high = lag,
                 false => low = lag,
             }
-            let newton_lag = lag - torque_error / (stiffness + load_stiffness);
+            let newton_lag = lag - torque_error / (motor.stiffness + load_stiffness);
             let step_length = (newton_lag - lag).abs();
             if step_length <= f64::EPSILON * (max_deviation + lag.abs()) {
                 return newton_lag;
@@ -190,29 +186,21 @@ const MAX_ITERATIONS: usize = 60;
 mod tests {
     use super::*;
     use crate::assert_near;
+    use crate::motor::SG90;
 
     #[test]
     fn torque_and_stiffness_match_the_derivatives_of_the_energy() {
-        let motor = Motor {
-            stall_torque: 176.5,
-            no_load_speed: 500.0,
-            rotor_time_constant: 0.02,
-            full_torque_error: 3.0,
-            half_dead_band: 0.0,
-        };
         let state = ServoState {
             target_angle: 0.2,
             angle: 0.05,
             rate: 3.0,
         };
-        let motor_step = MotorStep::new(&motor, state, 0.0025, [12.0, -4.0], 0.7);
+        let motor_step = MotorStep::new(&SG90, state, 0.0025, [12.0, -4.0], 0.7);
         for step in -40..40 {
             let lag = f64::from(step) / 200.0 + 1e-4;
             let expand_at = |lag: f64| motor_step.expand(lag, 1e-3);
             let (lower, upper) = (expand_at(lag - 1e-6), expand_at(lag + 1e-6));
-            let Expansion {
-                torque, stiffness, ..
-            } = expand_at(lag);
+            let (torque, stiffness) = (expand_at(lag).torque, expand_at(lag).stiffness);
             let energy_slope = (upper.energy - lower.energy) / 2e-6;
             assert_near(energy_slope, torque, 1e-3 * torque.abs().max(1.0));
             let torque_slope = (upper.torque - lower.torque) / 2e-6;

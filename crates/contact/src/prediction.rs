@@ -137,20 +137,8 @@ impl GroundContact {
 mod tests {
     use super::*;
     use crate::assert_near;
-    use crate::drive::Drive;
-    use crate::feet::{Body, PAPER_FEET};
-    use crate::ground_contact::DEFAULT_FRICTION;
-    use crate::stance::Stance;
+    use crate::ground_contact::PAPER_GROUND as GROUND;
     use std::f64::consts::PI;
-
-    const GROUND: GroundContact = GroundContact {
-        feet: PAPER_FEET,
-        friction_ratio: 1.0,
-        body: Body::DEFAULT,
-        friction_coefficient: DEFAULT_FRICTION,
-        drive: Drive::RIGID,
-        stance: Stance::LEVEL,
-    };
 
     /// Builds a cycle in which all legs follow the same wave, each from its own starting phase.
     fn build_cycle(starts: [f64; 4], wave: impl Fn(f64) -> f64) -> Vec<[f64; 4]> {

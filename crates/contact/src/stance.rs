@@ -54,20 +54,14 @@ impl Stance {
     /// part due to its own length and a part that is linear in its position. The three equations of balance determine
     /// the linear part.
     pub fn relative_loads(&self, body: &Body, feet: [Point; 4]) -> [f64; 4] {
-        let length_loads = [
-            self.stiffness * self.twist / body.mean_load(),
-            0.0,
-            0.0,
-            0.0,
-        ];
+        let twist_load = self.stiffness * self.twist / body.mean_load();
+        let length_loads = [twist_load, 0.0, 0.0, 0.0];
         // All feet stand, or all but one. In exactly one of these five cases, no standing foot pulls and no lifted foot
         // is below the floor.
         let solve_case = |lifted_foot: Option<usize>| {
             let is_standing = std::array::from_fn(|i| lifted_foot != Some(i));
-            (
-                is_standing,
-                compute_loads(feet, length_loads, body.centre_of_mass, is_standing),
-            )
+            let loads = compute_loads(feet, length_loads, body.centre_of_mass, is_standing);
+            (is_standing, loads)
         };
         let cases = [None, Some(0), Some(1), Some(2), Some(3)].map(solve_case);
         let is_consistent = |(is_standing, loads): &&([bool; 4], [f64; 4])| {

@@ -37,14 +37,12 @@ impl Strut {
         let arm_deg = self.arm_angles[leg] + FORWARD_TURN_SIGN[leg] * sweep;
         let (sin, cos) = arm_deg.to_radians().sin_cos();
         // Vector from the leg's pivot to the servo's end of the strut.
-        let servo_end = [
-            self.arm_length * cos - self.screw_distance,
-            self.arm_length * sin,
-        ];
-        let enclosed_deg = wrap(arm_deg - servo_end[1].atan2(servo_end[0]).to_degrees());
+        let x = self.arm_length * cos - self.screw_distance;
+        let y = self.arm_length * sin;
+        let enclosed_deg = wrap(arm_deg - y.atan2(x).to_degrees());
         // A positive lag turns the leg's arm backward.
         let angle = -FORWARD_TURN_SIGN[leg] * enclosed_deg.to_radians();
-        StrutTriangle::new(servo_end[0].hypot(servo_end[1]), self.arm_length, angle)
+        StrutTriangle::new(x.hypot(y), self.arm_length, angle)
     }
 
     /// Lever arm of the strut's pull about the leg's pivot without a lag, mm, with the servo at `sweep` (deg).
@@ -65,12 +63,8 @@ impl Strut {
     /// `sweep` (deg).
     pub(crate) fn resistances(&self, leg: usize, sweep: f64, force_unit: f64) -> [Resistance; 2] {
         let triangle = self.compute_triangle(leg, sweep);
-        let strut_resistance = Resistance::strut(
-            triangle,
-            self.preload / force_unit,
-            self.spring_rate / force_unit,
-            self.slot_length,
-        );
+        let [preload, rate] = [self.preload, self.spring_rate].map(|value| value / force_unit);
+        let strut_resistance = Resistance::strut(triangle, preload, rate, self.slot_length);
         match triangle.lever_arm() > 0.0 {
             true => [Resistance::Stop, strut_resistance],
             false => [strut_resistance, Resistance::Stop],

@@ -4,7 +4,6 @@
 //! A [`Walker`] therefore keeps the state of a walk: the servos' sweeps, the lags and the pose on the floor.
 
 use crate::body_pose::BodyPose;
-use crate::feet::{Body, Feet};
 use crate::friction::{Compliance, Displacement, Inertia, Pads, Point, Twist};
 use crate::ground_contact::GroundContact;
 use crate::lag_energy::LagEnergy;
@@ -139,9 +138,8 @@ impl Walker {
     /// held by the friction of its gears.
     pub fn drive(&mut self, targets: [Option<f64>; 4], seconds: f64, motors: &Motors) -> Contacts {
         let mut contacts = Contacts::NONE;
-        let step_count = (seconds / motors.compute_time_step() - STEP_COUNT_TOLERANCE)
-            .ceil()
-            .max(1.0);
+        let min_step_count = seconds / motors.compute_time_step() - STEP_COUNT_TOLERANCE;
+        let step_count = min_step_count.ceil().max(1.0);
         for _ in 0..step_count as usize {
             let (pads, displacement) = self.advance_step(targets, seconds / step_count, motors);
             self.body_pose = self.body_pose.moved_by_twist(displacement.twist);
@@ -184,10 +182,8 @@ impl Walker {
         });
         let start_points = self.ground.feet.positions(self.leg_sweeps());
         // In a short step a loaded motor turns nearly as far as an unloaded motor, so this is a good estimate.
-        let lag_estimates = std::array::from_fn(|i| {
-            self.lags[i].to_radians()
-                + motor_steps[i].map_or(0.0, |motor_step| motor_step.unloaded_lag())
-        });
+        let unloaded_lags = motor_steps.map(|step| step.map_or(0.0, |step| step.unloaded_lag()));
+        let lag_estimates = std::array::from_fn(|i| self.lags[i].to_radians() + unloaded_lags[i]);
         let pads = Pads {
             inertia: Some(self.compute_inertia(seconds)),
             ..self.build_pads(start_points, reference_sweeps, lag_estimates, motor_steps)
@@ -212,25 +208,20 @@ impl Walker {
     fn compute_inertia(&self, seconds: f64) -> Inertia {
         const KG_PER_G: f64 = 1e-3;
         const M_PER_MM: f64 = 1e-3;
-        let Feet {
-            hip_forward,
-            hip_side: [front, hind],
-            ..
-        } = self.ground.feet;
-        let Body { mass, .. } = self.ground.body;
-        let leg_mass = self.ground.body.leg_mass();
+        let GroundContact { feet, body, .. } = self.ground;
+        let ([front, hind], leg_mass) = (feet.hip_side, body.leg_mass());
         let to_stiffness = |mass: f64| {
             mass * KG_PER_G * M_PER_MM / (seconds * seconds * self.ground.mean_pad_friction())
         };
-        let stiffness = to_stiffness(mass - 4.0 * leg_mass);
-        let squared_hip_distance = hip_forward * hip_forward + (front * front + hind * hind) / 2.0;
+        let stiffness = to_stiffness(body.mass - 4.0 * leg_mass);
+        let squared_hip_distance =
+            feet.hip_forward * feet.hip_forward + (front * front + hind * hind) / 2.0;
+        let per_step = |velocity: f64| velocity * seconds;
         Inertia {
             stiffness: [stiffness, stiffness, stiffness * squared_hip_distance],
-            previous_twist: self.body_velocity.map(|component| component * seconds),
+            previous_twist: self.body_velocity.map(per_step),
             leg_stiffness: to_stiffness(leg_mass),
-            previous_slides: self
-                .pad_velocities
-                .map(|velocity| velocity.map(|component| component * seconds)),
+            previous_slides: self.pad_velocities.map(|velocity| velocity.map(per_step)),
         }
     }
 
@@ -293,8 +284,7 @@ impl Walker {
         motor_steps: [Option<MotorStep>; 4],
     ) -> Pads {
         let feet = &self.ground.feet;
-        let end_sweeps: [f64; 4] =
-            std::array::from_fn(|i| servo_sweeps[i] - lag_estimates[i].to_degrees());
+        let end_sweeps = std::array::from_fn(|i| servo_sweeps[i] - lag_estimates[i].to_degrees());
         let end_points = feet.positions(end_sweeps);
         let derivatives = feet.sweep_derivatives(end_sweeps);
         // With the positions in the middle of the step, the reverse step is its exact inverse.
@@ -306,6 +296,7 @@ impl Walker {
         // No pad carries more than the whole robot.
         let max_pad_torque = 4.0 * feet.reach * friction_ratio.max(1.0);
         let force_unit = self.ground.mean_pad_friction();
+        let is_compliant = drive.can_lag() || motor_steps.iter().any(Option::is_some);
         Pads {
             positions,
             swings: build_points(&|i, j| {
@@ -315,15 +306,13 @@ impl Walker {
             friction_ratio,
             loads: std::array::from_fn(|i| loads[i] * self.load_factors[i]),
             inertia: None,
-            compliance: (drive.can_lag() || motor_steps.iter().any(Option::is_some)).then(|| {
-                Compliance {
-                    sweep_derivatives: derivatives,
-                    previous_lags,
-                    lag_energies: std::array::from_fn(|i| LagEnergy {
-                        motor: motor_steps[i],
-                        ..drive.lag_energy(i, servo_sweeps[i], force_unit, max_pad_torque)
-                    }),
-                }
+            compliance: is_compliant.then(|| Compliance {
+                sweep_derivatives: derivatives,
+                previous_lags,
+                lag_energies: std::array::from_fn(|i| LagEnergy {
+                    motor: motor_steps[i],
+                    ..drive.lag_energy(i, servo_sweeps[i], force_unit, max_pad_torque)
+                }),
             }),
         }
     }

@@ -23,23 +23,17 @@ impl CardPose {
     /// Standard deviations of the mounting errors of hand-glued cards: turn (deg), forward (mm) and left (mm).
     pub(crate) const PRIOR_ERRORS: [f64; PARAMETER_COUNT] = [2.0, 2.0, 2.0];
 
-    /// Converts the robot's movement to the card's movement, in the card's frame at the start.
-    pub(crate) fn convert_travel(&self, robot_travel: Travel) -> Travel {
-        let to_card_pose = |body: BodyPose| {
-            let [forward, left] = body.to_floor([self.forward, self.left]);
-            let heading = body.heading + self.turn.to_radians();
-            BodyPose {
-                forward,
-                left,
-                heading,
-            }
+    /// Converts the robot's movement to the card's movement, in the card's frame at the start: forward, left, turn.
+    pub(crate) fn convert_travel(&self, robot_travel: Travel) -> [f64; 3] {
+        let to_card = Travel {
+            forward: self.forward,
+            left: self.left,
+            turn: self.turn,
         };
-        let end = BodyPose {
-            forward: robot_travel.forward,
-            left: robot_travel.left,
-            heading: robot_travel.turn.to_radians(),
-        };
-        to_card_pose(end).travel_from(to_card_pose(BodyPose::START))
+        let end = BodyPose::START.moved_by_travel(robot_travel);
+        let start_of_card = BodyPose::START.moved_by_travel(to_card);
+        let card_travel = end.moved_by_travel(to_card).travel_from(start_of_card);
+        [card_travel.forward, card_travel.left, card_travel.turn]
     }
 }
 
@@ -68,7 +62,6 @@ mod tests {
             left,
             turn,
         });
-        let travel = [travel.forward, travel.left, travel.turn];
         for (actual, expected) in travel.into_iter().zip(expected_travel) {
             assert!(
                 (actual - expected).abs() < 1e-9,
@@ -85,11 +78,8 @@ mod tests {
     #[test]
     fn a_card_rotated_to_the_left_measures_a_drift_to_the_right() {
         let (sin, cos) = 30f64.to_radians().sin_cos();
-        assert_card_travel(
-            [30.0, 4.0, 5.0],
-            [10.0, 0.0, 0.0],
-            [10.0 * cos, -10.0 * sin, 0.0],
-        );
+        let expected_travel = [10.0 * cos, -10.0 * sin, 0.0];
+        assert_card_travel([30.0, 4.0, 5.0], [10.0, 0.0, 0.0], expected_travel);
     }
 
     #[test]

@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 
 use crate::chi_square::compute_percentile_99;
 use crate::error::IdentifyError;
-use crate::key::{FRICTION_RATIO_INDEX, KEY_COUNT, KEYS, PLAY_INDEX, TWIST_INDEX};
+use crate::key::{FRICTION_RATIO_INDEX, KEY_COUNT, KEYS, Key, PLAY_INDEX, TWIST_INDEX};
 use crate::movement::MeasuredMovement;
 use crate::outcome::{GoodnessOfFit, Identification, KeyResult, MovementResult, Verdict};
 use crate::problem::{Problem, Solution, UNKNOWN_COUNT, Values, split_unknowns};
@@ -108,15 +108,10 @@ pub(crate) fn solve(
     let (last_fit, verdicts) = choose_keys(&problem, &full_fit, &errors)?;
     let card_only_solution = problem.fit(&card_unknowns, &problem.start_unknowns());
     let card_only_fit = card_only_solution.ok_or(IdentifyError::NoFit)?;
-    let residuals = problem
-        .compute_residuals(&last_fit.unknowns)
-        .into_iter()
-        .enumerate();
-    let indexed_residuals = residuals.flat_map(|(movement, components)| {
-        let components = components.into_iter().enumerate();
-        components.map(move |(component, residual)| (movement, component, residual))
-    });
-    let largest_residual = indexed_residuals.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
+    let residuals = problem.compute_residuals(&last_fit.unknowns);
+    let indexed_residuals = residuals.as_flattened().iter().enumerate();
+    let largest_residual = indexed_residuals.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    let (index, residual) = largest_residual.ok_or(IdentifyError::NothingDetermined)?;
     let (new_values, card) = split_unknowns(&last_fit.unknowns);
     let key_results = KEYS.iter().enumerate().map(|(i, key)| KeyResult {
         key,
@@ -125,19 +120,14 @@ pub(crate) fn solve(
         error: errors[i],
         verdict: verdicts[i],
     });
-    let predictions = problem
-        .predict_card_movements(&card_only_fit.unknowns)
-        .into_iter()
-        .zip(problem.predict_card_movements(&last_fit.unknowns));
-    let measured_and_predicted = movements.iter().zip(predictions);
-    let movement_results =
-        measured_and_predicted.map(|(movement, (predicted_before, predicted_after))| {
-            MovementResult {
-                measured: movement.clone(),
-                predicted_before,
-                predicted_after,
-            }
-        });
+    let movements_before = problem.predict_card_movements(&card_only_fit.unknowns);
+    let movements_after = problem.predict_card_movements(&last_fit.unknowns);
+    let indexed_movements = movements.iter().enumerate();
+    let movement_results = indexed_movements.map(|(i, movement)| MovementResult {
+        measured: movement.clone(),
+        predicted_before: movements_before[i],
+        predicted_after: movements_after[i],
+    });
     Ok(Identification {
         keys: key_results.collect(),
         card,
@@ -145,16 +135,12 @@ pub(crate) fn solve(
         correlated_pairs: find_correlated_pairs(&full_fit.covariance),
         goodness: GoodnessOfFit {
             value_count: problem.value_count(),
-            chi_squares: [
-                card_only_fit.chi_square,
-                last_fit.chi_square,
-                full_fit.chi_square,
-            ],
+            chi_squares: [&card_only_fit, &last_fit, &full_fit].map(|fit| fit.chi_square),
             degrees_of_freedom,
             chi_square_limit,
             is_explained,
             error_factor,
-            largest_residual: largest_residual.ok_or(IdentifyError::NothingDetermined)?,
+            largest_residual: (index / 3, index % 3, *residual),
         },
         movements: movement_results.collect(),
     })
@@ -193,10 +179,9 @@ fn fit_all(problem: &Problem) -> Result<Fit, IdentifyError> {
             continue;
         };
         let degrees_of_freedom = compute_degrees_of_freedom(problem, &full_fit);
-        let chi_square_limit = if degrees_of_freedom < 1.0 {
-            0.0
-        } else {
-            compute_percentile_99(degrees_of_freedom)
+        let chi_square_limit = match degrees_of_freedom < 1.0 {
+            true => 0.0,
+            false => compute_percentile_99(degrees_of_freedom),
         };
         let is_explained = degrees_of_freedom < 1.0 || full_fit.chi_square <= chi_square_limit;
         let is_typical = degrees_of_freedom < 1.0 || full_fit.chi_square <= degrees_of_freedom;
@@ -272,15 +257,10 @@ fn choose_keys(
             verdicts[key] = verdict;
             hold_key(key, &start, &mut guess, &mut covariance);
         }
-        let is_free = |i: &usize| {
-            verdicts
-                .get(*i)
-                .is_none_or(|verdict| *verdict == Verdict::Changed)
-        };
+        let is_free = |i: &usize| *i >= KEY_COUNT || verdicts[*i] == Verdict::Changed;
         let free_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).filter(is_free).collect();
-        let last_fit = problem
-            .fit(&free_unknowns, &guess)
-            .ok_or(IdentifyError::NoFit)?;
+        let last_fit = problem.fit(&free_unknowns, &guess);
+        let last_fit = last_fit.ok_or(IdentifyError::NoFit)?;
         guess = last_fit.unknowns;
         if find_key_to_hold(&verdicts, &guess, &start, errors).is_none() {
             return Ok((last_fit, verdicts));
@@ -302,10 +282,8 @@ fn find_key_to_hold(
         return Some((nearest_key, Verdict::Unchanged));
     }
     let infeasible_key = free_keys().find(|&i| unknowns[i] < KEYS[i].min_value)?;
-    Some((
-        infeasible_key,
-        Verdict::Impossible(unknowns[infeasible_key]),
-    ))
+    let verdict = Verdict::Impossible(unknowns[infeasible_key]);
+    Some((infeasible_key, verdict))
 }
 
 /// Holds a key at its file value, and shifts the other unknowns and the covariance according to the correlations.
@@ -328,9 +306,7 @@ fn hold_key(
 }
 
 /// Finds the pairs of keys with strongly correlated errors; returns the keys and their correlation.
-fn find_correlated_pairs(
-    covariance: &DMatrix<f64>,
-) -> Vec<(&'static crate::Key, &'static crate::Key, f64)> {
+fn find_correlated_pairs(covariance: &DMatrix<f64>) -> Vec<(&'static Key, &'static Key, f64)> {
     let pairs = (0..KEY_COUNT).flat_map(|i| (0..i).map(move |j| (j, i)));
     let correlated = pairs.map(|(i, j)| {
         let scale = (covariance[(i, i)] * covariance[(j, j)]).sqrt();

@@ -142,21 +142,16 @@ mod tests {
     #[test]
     fn the_plausible_range_of_every_key_is_much_wider_than_its_derivative_step() {
         for key in KEYS {
-            assert!(
-                key.prior_error() >= 5.0 * key.derivative_step,
-                "{}: prior error {}",
-                key.name,
-                key.prior_error()
-            );
+            let (name, prior_error) = (key.name, key.prior_error());
+            let is_wide = prior_error >= 5.0 * key.derivative_step;
+            assert!(is_wide, "{name}: prior error {prior_error}");
         }
-        let names = [PLAY_INDEX, TWIST_INDEX, FRICTION_RATIO_INDEX].map(|index| KEYS[index].name);
-        assert_eq!(
-            names,
-            [
-                "leg.drive.play",
-                "feet.twist",
-                "ground.friction_back_over_forward"
-            ]
-        );
+        for (index, name) in [
+            (PLAY_INDEX, "leg.drive.play"),
+            (TWIST_INDEX, "feet.twist"),
+            (FRICTION_RATIO_INDEX, "ground.friction_back_over_forward"),
+        ] {
+            assert_eq!(KEYS[index].name, name);
+        }
     }
 }

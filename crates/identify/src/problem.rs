@@ -97,31 +97,33 @@ impl<'a> Problem<'a> {
     pub fn predict_card_movements(&self, unknowns: &[f64; UNKNOWN_COUNT]) -> Vec<[f64; 3]> {
         let (values, card) = split_unknowns(unknowns);
         let travels = self.predict_robot_travels(&values).into_iter();
-        travels
-            .map(|travel| card.convert_travel(travel))
-            .map(|travel| [travel.forward, travel.left, travel.turn])
-            .collect()
+        travels.map(|travel| card.convert_travel(travel)).collect()
     }
 
     /// Computes the residuals of the movements, measured minus predicted, in standard errors.
     pub fn compute_residuals(&self, unknowns: &[f64; UNKNOWN_COUNT]) -> Vec<[f64; 3]> {
-        self.divide_by_errors(&self.predict_card_movements(unknowns), |predicted, mean| {
-            mean - predicted
-        })
+        let predicted = self.predict_card_movements(unknowns);
+        self.divide_by_errors(&predicted, |predicted, mean| mean - predicted)
+    }
+
+    /// Computes the residuals of the movements, followed by the deviations of some unknowns from their prior values.
+    fn compute_all_residuals(
+        &self,
+        included_unknowns: impl IntoIterator<Item = usize>,
+        unknowns: &[f64; UNKNOWN_COUNT],
+    ) -> Vec<f64> {
+        let start = self.start_unknowns();
+        let prior_deviation = |i: usize| (unknowns[i] - start[i]) / self.prior_errors[i];
+        let mut residuals = self.compute_residuals(unknowns).into_flattened();
+        residuals.extend(included_unknowns.into_iter().map(prior_deviation));
+        residuals
     }
 
     /// Computes the sum of squares that a fit of all unknowns minimises: residuals of the movements, and deviations
     /// from the prior values.
     pub fn compute_cost(&self, unknowns: &[f64; UNKNOWN_COUNT]) -> f64 {
-        let residuals = self.compute_residuals(unknowns).into_flattened();
-        let start = self.start_unknowns();
-        let prior_deviations =
-            (0..UNKNOWN_COUNT).map(|i| (unknowns[i] - start[i]) / self.prior_errors[i]);
-        residuals
-            .into_iter()
-            .chain(prior_deviations)
-            .map(|residual| residual * residual)
-            .sum()
+        let residuals = self.compute_all_residuals(0..UNKNOWN_COUNT, unknowns);
+        residuals.iter().map(|residual| residual * residual).sum()
     }
 
     /// Combines each predicted component with the measured mean, and divides the result by the standard error, which
@@ -150,17 +152,14 @@ impl<'a> Problem<'a> {
                 values[PLAY_INDEX] = play;
                 self.predict_robot_travels(&values)
             };
-            let travel_pairs = predict_with_play(0.0)
-                .into_iter()
-                .zip(predict_with_play(-values[PLAY_INDEX]));
-            let extrapolate = |at_zero: f64, mirrored: f64| 2.0 * at_zero - mirrored;
-            return travel_pairs
-                .map(|(at_zero, mirrored)| Travel {
-                    forward: extrapolate(at_zero.forward, mirrored.forward),
-                    left: extrapolate(at_zero.left, mirrored.left),
-                    turn: extrapolate(at_zero.turn, mirrored.turn),
-                })
-                .collect();
+            let travels_at_zero = predict_with_play(0.0).into_iter();
+            let travel_pairs = travels_at_zero.zip(predict_with_play(-values[PLAY_INDEX]));
+            let extrapolated_travels = travel_pairs.map(|(at_zero, mirrored)| Travel {
+                forward: 2.0 * at_zero.forward - mirrored.forward,
+                left: 2.0 * at_zero.left - mirrored.left,
+                turn: 2.0 * at_zero.turn - mirrored.turn,
+            });
+            return extrapolated_travels.collect();
         }
         let values = raise_to_min_values(*values);
         let has_these_values =
@@ -169,9 +168,8 @@ impl<'a> Problem<'a> {
             return travels.clone();
         }
         let travels = (self.predict)(&values);
-        self.cached_results
-            .borrow_mut()
-            .push((values, travels.clone()));
+        let result = (values, travels.clone());
+        self.cached_results.borrow_mut().push(result);
         travels
     }
 
@@ -180,23 +178,13 @@ impl<'a> Problem<'a> {
     /// Uses the Gauss-Newton method, and halves a step that does not reduce the sum of squares. A finer search would be
     /// useless, since the model is rough: servos have a dead band and pads stick.
     pub fn fit(&self, free_unknowns: &[usize], guess: &[f64; UNKNOWN_COUNT]) -> Option<Solution> {
-        let start = self.start_unknowns();
-        let mut unknowns = start;
+        let mut unknowns = self.start_unknowns();
         for &unknown in free_unknowns {
             unknowns[unknown] = guess[unknown];
         }
         let compute_all_residuals = |unknowns: &[f64; UNKNOWN_COUNT]| {
-            let movement_residuals = self
-                .compute_residuals(unknowns)
-                .into_flattened()
-                .into_iter();
-            let prior_deviations = free_unknowns
-                .iter()
-                .map(|&i| (unknowns[i] - start[i]) / self.prior_errors[i]);
-            DVector::from_iterator(
-                3 * self.movements.len() + free_unknowns.len(),
-                movement_residuals.chain(prior_deviations),
-            )
+            let free_unknowns = free_unknowns.iter().copied();
+            DVector::from_vec(self.compute_all_residuals(free_unknowns, unknowns))
         };
         let mut current_residuals = compute_all_residuals(&unknowns);
         let mut covariance = DMatrix::zeros(0, 0);
@@ -219,10 +207,8 @@ impl<'a> Problem<'a> {
                 for (unknown, step) in free_unknowns.iter().zip(step.iter()) {
                     shortened_unknowns[*unknown] -= step / f64::from(1 << halvings);
                 }
-                (
-                    shortened_unknowns,
-                    compute_all_residuals(&shortened_unknowns),
-                )
+                let residuals = compute_all_residuals(&shortened_unknowns);
+                (shortened_unknowns, residuals)
             });
             let mut better_steps = shortened_steps.filter(|(_, residuals)| {
                 residuals.norm_squared() < current_residuals.norm_squared()
@@ -268,23 +254,19 @@ impl<'a> Problem<'a> {
         let near_values = self.choose_jacobian_point(split_unknowns(unknowns).0);
         let base = std::array::from_fn(|i| near_values.get(i).copied().unwrap_or(unknowns[i]));
         let base_movements = self.predict_card_movements(&base);
-        let mut jacobian = DMatrix::zeros(
-            3 * self.movements.len() + free_unknowns.len(),
-            free_unknowns.len(),
-        );
+        let row_count = 3 * self.movements.len() + free_unknowns.len();
+        let mut jacobian = DMatrix::zeros(row_count, free_unknowns.len());
         for (column, &unknown) in free_unknowns.iter().enumerate() {
             let step = KEYS.get(unknown).map_or(0.1, |key| key.derivative_step);
             let mut shifted_unknowns = base;
             shifted_unknowns[unknown] += step;
             let shifted_movements = self.predict_card_movements(&shifted_unknowns);
-            let slopes: Vec<[f64; 3]> = base_movements
-                .iter()
-                .zip(&shifted_movements)
+            let movement_pairs = base_movements.iter().zip(&shifted_movements);
+            let slopes: Vec<[f64; 3]> = movement_pairs
                 .map(|(base, shifted)| std::array::from_fn(|i| (base[i] - shifted[i]) / step))
                 .collect();
-            let scaled_slopes = self
-                .divide_by_errors(&slopes, |slope, _| slope)
-                .into_flattened();
+            let scaled_slopes = self.divide_by_errors(&slopes, |slope, _| slope);
+            let scaled_slopes = scaled_slopes.into_flattened();
             for (row, slope) in scaled_slopes.iter().enumerate() {
                 jacobian[(row, column)] = *slope;
             }

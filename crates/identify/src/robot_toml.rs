@@ -27,18 +27,15 @@ impl Identification {
 /// Writes a key's value, a number or a list, with a comment about the changed numbers.
 fn write_key(text: &str, results: &[&KeyResult]) -> Result<String, edit::KeyError> {
     let name = results[0].key.name;
-    let values: Vec<f64> = results
-        .iter()
-        .map(|result| result.rounded_value())
-        .collect();
+    let values = results.iter().map(|result| result.rounded_value());
+    let values: Vec<f64> = values.collect();
     let new_text = match results[0].key.list_index {
         Some(_) => edit::with_numbers(text, name, &values)?,
         None => edit::with_number(text, name, values[0])?,
     };
     let changed_results = results.iter().filter(|result| result.is_changed());
-    let comments: Vec<String> = changed_results
-        .map(|result| result.format_comment())
-        .collect();
+    let comments = changed_results.map(|result| result.format_comment());
+    let comments: Vec<String> = comments.collect();
     edit::with_comment(&new_text, name, "measured:", &comments.join("; "))
 }
 
@@ -58,10 +55,8 @@ impl KeyResult {
 
     fn format_comment(&self) -> String {
         let decimals = self.decimal_count();
-        let index_text = match self.key.list_index {
-            Some(index) => format!("[{index}] "),
-            None => String::new(),
-        };
+        let index = self.key.list_index;
+        let index_text = index.map_or(String::new(), |index| format!("[{index}] "));
         format!(
             "{index_text}{:.decimals$} +- {:.decimals$}, was {:?}",
             self.new_value, self.error, self.file_value

@@ -46,25 +46,18 @@ fn record_movements(robot: &Robot, ground: &GroundContact, rng: &mut Rng) -> Vec
         // A rough measure that weighs mm and deg equally.
         (forward + turn) / gait.period()
     };
-    let mut gaits: Vec<&CheckedGait> = robot
-        .gaits()
-        .iter()
-        .filter(|gait| gait.has_movement())
-        .collect();
+    let gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
+    let mut gaits: Vec<&CheckedGait> = gaits.collect();
     gaits.sort_by(|a, b| compute_speed(b).total_cmp(&compute_speed(a)));
     gaits.truncate(GAIT_COUNT);
     let motors = robot.motors();
     let movements = gaits.iter().map(|gait| {
-        let Travel {
-            forward,
-            left,
-            turn,
-        } = gait.simulate_driven_cycle(ground, &motors, 1.0);
+        let travel = gait.simulate_driven_cycle(ground, &motors, 1.0);
+        let components = [travel.forward, travel.left, travel.turn];
         MeasuredMovement {
             gait: gait.name().to_owned(),
             pace: 1.0,
-            mean: [forward, left, turn]
-                .map(|component| component + MEAN_ERROR * random_deviate(rng)),
+            mean: components.map(|component| component + MEAN_ERROR * random_deviate(rng)),
             error: [MEAN_ERROR; 3],
         }
     });

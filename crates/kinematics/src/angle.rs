@@ -198,9 +198,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        #![proptest_config(ProptestConfig {
-            cases: 100_000, ..ProptestConfig::default()
-        })]
+        #![proptest_config(ProptestConfig::with_cases(100_000))]
 
         #[test]
         fn sines_and_cosines_agree_with_libm(degrees in -45.0..45.0f64) {

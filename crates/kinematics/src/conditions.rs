@@ -1,5 +1,7 @@
 //! The values of a safe pose's conditions, which [`crate::Limits`] compares with the robot's limits.
 
+use core::iter::zip;
+
 use crate::end::End;
 use crate::five_bar::FiveBarPose;
 use crate::leg;
@@ -11,13 +13,9 @@ impl Solution {
     /// The values of all conditions for a safe pose: margins, slider travels, and the distances of
     /// the crank tips from crossing.
     pub fn conditions(&self) -> impl Iterator<Item = (Check, f64)> + use<> {
-        self.margins
-            .iter()
-            .chain(core::iter::zip(Check::STROKE, [self.left.s, self.right.s]))
-            .chain(core::iter::zip(
-                Check::UNCROSSED,
-                [self.head.gap.x, self.tail.gap.x],
-            ))
+        let travels = zip(Check::STROKE, [self.left.s, self.right.s]);
+        let gaps = zip(Check::UNCROSSED, [self.head.gap.x, self.tail.gap.x]);
+        self.margins.iter().chain(travels).chain(gaps)
     }
 }
 

@@ -93,18 +93,10 @@ impl Solution {
         let mut k = [[0.0; 8]; 8];
         for (row, end) in LOOP_ROWS.into_iter().zip(End::ALL) {
             let ([left, right], five_bar) = (self.coupler_directions(end), &self.end(end).five_bar);
-            put_derivative(
-                &mut k,
-                row,
-                row,
-                (left * five_bar.left_coupler_length).rotated_left(),
-            );
-            put_derivative(
-                &mut k,
-                row,
-                row + 1,
-                -(right * five_bar.right_coupler_length).rotated_left(),
-            );
+            let coupler = left * five_bar.left_coupler_length;
+            put_derivative(&mut k, row, row, coupler.rotated_left());
+            let coupler = right * five_bar.right_coupler_length;
+            put_derivative(&mut k, row, row + 1, -coupler.rotated_left());
         }
         for (row, side) in LOOP_ROWS.into_iter().skip(2).zip(Side::ALL) {
             let slider = self.side(side);
@@ -250,9 +242,8 @@ mod tests {
     fn compute_determinant(mut m: [[f64; 8]; 8]) -> f64 {
         let mut product = 1.0;
         for i in 0..8 {
-            let pivot = (i..8)
-                .max_by(|&a, &b| m[a][i].abs().total_cmp(&m[b][i].abs()))
-                .unwrap();
+            let pivot = (i..8).max_by(|&a, &b| m[a][i].abs().total_cmp(&m[b][i].abs()));
+            let pivot = pivot.unwrap();
             if pivot != i {
                 m.swap(pivot, i);
                 product = -product;

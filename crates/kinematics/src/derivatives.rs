@@ -68,15 +68,11 @@ impl Solution {
         let derivatives_of_end = |end: End| {
             let apply_sign = |w: f64| end.sign() * w;
             let [left, right] = end.pick(spins).map(|spin| spin.map(apply_sign));
-            let LoopDerivatives {
-                left_coupler: left,
-                right_coupler: right,
-                point,
-            } = solve_loop_derivatives(self.end(end), left, right);
+            let own = solve_loop_derivatives(self.end(end), left, right);
             LoopDerivatives {
-                left_coupler: left.map(apply_sign).map(f64::to_degrees),
-                right_coupler: right.map(apply_sign).map(f64::to_degrees),
-                point: point.map(|v| end.mirror(v)),
+                left_coupler: own.left_coupler.map(apply_sign).map(f64::to_degrees),
+                right_coupler: own.right_coupler.map(apply_sign).map(f64::to_degrees),
+                point: own.point.map(|v| end.mirror(v)),
             }
         };
         let (head, tail) = (derivatives_of_end(End::Head), derivatives_of_end(End::Tail));
@@ -174,15 +170,11 @@ fn compute_slider_derivatives(
     let v = front.rotated_left() * front_spin.rate - rear.rotated_left() * rear_spin.rate;
     let a = tip_acceleration(front, front_spin) - tip_acceleration(rear, rear_spin);
     let (travel_rate, turn_rate) = (v.dot(slider_direction), slider_direction.cross(v) / pose.d);
+    let turn_acceleration = (slider_direction.cross(a) - 2.0 * travel_rate * turn_rate) / pose.d;
+    let travel_acceleration = a.dot(slider_direction) + pose.d * turn_rate * turn_rate;
     (
-        Spin::new(
-            turn_rate,
-            (slider_direction.cross(a) - 2.0 * travel_rate * turn_rate) / pose.d,
-        ),
-        Derivative::new(
-            travel_rate,
-            a.dot(slider_direction) + pose.d * turn_rate * turn_rate,
-        ),
+        Spin::new(turn_rate, turn_acceleration),
+        Derivative::new(travel_rate, travel_acceleration),
     )
 }
 
@@ -223,29 +215,23 @@ mod tests {
     /// The rates and the accelerations of all passive quantities, in the order of [`passive_values`].
     fn passive_derivatives(solution: &Solution, motion: &ServoMotion) -> ([f64; 12], [f64; 12]) {
         let derivatives = solution.derivatives(motion);
-        let angles = [
+        let all_derivatives = [
             derivatives.theta2,
             derivatives.theta3,
             derivatives.theta6,
             derivatives.theta7,
             derivatives.phi_left,
             derivatives.phi_right,
+            derivatives.head.map(|v| v.x),
+            derivatives.head.map(|v| v.y),
+            derivatives.tail.map(|v| v.x),
+            derivatives.tail.map(|v| v.y),
+            derivatives.s_left,
+            derivatives.s_right,
         ];
-        let points = [derivatives.head, derivatives.tail]
-            .map(|point_derivative| [point_derivative.map(|v| v.x), point_derivative.map(|v| v.y)]);
-        let all_derivatives = [
-            &angles[..],
-            points.as_flattened(),
-            &[derivatives.s_left, derivatives.s_right],
-        ]
-        .concat();
-        let (rates, accelerations) = (
-            |i: usize| all_derivatives[i].rate,
-            |i: usize| all_derivatives[i].acceleration,
-        );
         (
-            std::array::from_fn(rates),
-            std::array::from_fn(accelerations),
+            all_derivatives.map(|derivative| derivative.rate),
+            all_derivatives.map(|derivative| derivative.acceleration),
         )
     }
 

@@ -118,19 +118,12 @@ impl<T: Real> FiveBarPose<T> {
 impl FiveBar {
     /// Creates a five-bar from its lengths in mm: base, left crank, left coupler, right coupler, right crank.
     pub const fn new(lengths: [f64; 5]) -> Self {
-        let [
-            base,
-            left_crank_length,
-            left_coupler_length,
-            right_coupler_length,
-            right_crank_length,
-        ] = lengths;
         Self {
-            base,
-            left_crank_length,
-            left_coupler_length,
-            right_coupler_length,
-            right_crank_length,
+            base: lengths[0],
+            left_crank_length: lengths[1],
+            left_coupler_length: lengths[2],
+            right_coupler_length: lengths[3],
+            right_crank_length: lengths[4],
         }
     }
 

@@ -1,6 +1,7 @@
 //! The names of a safe pose's conditions, and the margins among these conditions.
 
 use core::fmt;
+use core::iter::zip;
 
 /// A condition of a safe pose, to which a limit applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,10 +91,9 @@ pub struct Margins {
 impl Margins {
     /// Iterates over all margins with their conditions.
     pub fn iter(&self) -> impl Iterator<Item = (Check, f64)> + use<> {
-        let zip_checks = |checks, values| core::iter::zip(checks, values);
-        core::iter::zip(Check::TYPE2, self.type2)
-            .chain(zip_checks(Check::TYPE1, self.type1))
-            .chain(zip_checks(Check::LEG, self.leg))
+        zip(Check::TYPE2, self.type2)
+            .chain(zip(Check::TYPE1, self.type1))
+            .chain(zip(Check::LEG, self.leg))
     }
 
     /// The smallest margin with its condition; the first one if several are equal.

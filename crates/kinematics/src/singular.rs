@@ -161,10 +161,8 @@ mod tests {
                 for kind in [Singularity::LeftArm, Singularity::RightArm] {
                     for step in 0..3600 {
                         let (a, b) = (f64::from(step) / 10.0 + 0.03, f64::from(step) / 10.0 + 0.13);
-                        let (Some(value_a), Some(value_b)) = (
-                            margin_at(&five_bar, kind, left, a),
-                            margin_at(&five_bar, kind, left, b),
-                        ) else {
+                        let margin_at = |right| margin_at(&five_bar, kind, left, right);
+                        let (Some(value_a), Some(value_b)) = (margin_at(a), margin_at(b)) else {
                             continue;
                         };
                         // If the crank tips nearly coincide, the end point moves fast and signs change abruptly.
@@ -198,22 +196,19 @@ mod tests {
             for left in -180..180 {
                 for pose in five_bar.find_singular_poses(f64::from(left)) {
                     kind_counts[pose.kind as usize] += 1;
-                    if let Some(value) =
-                        margin_at(&five_bar, pose.kind, pose.theta_left, pose.theta_right)
-                    {
+                    let (left, right) = (pose.theta_left, pose.theta_right);
+                    if let Some(value) = margin_at(&five_bar, pose.kind, left, right) {
                         assert!(value.abs() < 1e-6, "{pose:?} has the margin {value}");
                     }
                 }
             }
         }
+        let are_frequent = kind_counts.iter().all(|count| *count > 100);
+        assert!(are_frequent, "counts by kind: {kind_counts:?}");
+        let lefts = (0..360).map(f64::from);
+        let mut poses = lefts.flat_map(|left| PAPER_HEAD.find_singular_poses(left));
         assert!(
-            kind_counts.iter().all(|count| *count > 100),
-            "counts by kind: {kind_counts:?}"
-        );
-        assert!(
-            (0..360).all(|left| PAPER_HEAD
-                .find_singular_poses(f64::from(left))
-                .all(|pose| pose.kind != Singularity::Couplers)),
+            poses.all(|pose| pose.kind != Singularity::Couplers),
             "the paper's couplers never line up: the crank tips are at most 80 mm apart, less than 100 mm"
         );
     }
@@ -234,18 +229,19 @@ mod tests {
         // at least 0.3, into connected regions. No region contains both crossed and uncrossed cranks. The grid covers
         // the cranks' range between the legs' change points at 0 and 180 degrees.
         const CELLS_PER_SIDE: usize = 360;
+        const CELL_COUNT: usize = CELLS_PER_SIDE * CELLS_PER_SIDE;
         let is_uncrossed_at = |left: usize, right: usize| {
             let (left, right) = (left as f64 / 2.0 + 0.25, right as f64 / 2.0 + 0.25);
             let pose = PAPER_HEAD.forward(left, right).ok()?;
             let leg_margin = pose.left_crank.y.abs().min(pose.right_crank.y.abs());
             (pose.margin().min(leg_margin) >= 0.3).then_some(pose.gap.x > 0.0)
         };
-        let grid: Vec<Option<bool>> = (0..CELLS_PER_SIDE * CELLS_PER_SIDE)
+        let grid: Vec<Option<bool>> = (0..CELL_COUNT)
             .map(|i| is_uncrossed_at(i / CELLS_PER_SIDE, i % CELLS_PER_SIDE))
             .collect();
-        let mut is_visited = vec![false; CELLS_PER_SIDE * CELLS_PER_SIDE];
+        let mut is_visited = vec![false; CELL_COUNT];
         let (mut crossed_count, mut uncrossed_count) = (0, 0);
-        for start in 0..CELLS_PER_SIDE * CELLS_PER_SIDE {
+        for start in 0..CELL_COUNT {
             if grid[start].is_none() || is_visited[start] {
                 continue;
             }
@@ -261,12 +257,8 @@ mod tests {
                     Some(true) => uncrossed_count += 1,
                     _ => crossed_count += 1,
                 }
-                for (dl, dr) in [
-                    (1, 0),
-                    (CELLS_PER_SIDE - 1, 0),
-                    (0, 1),
-                    (0, CELLS_PER_SIDE - 1),
-                ] {
+                let back = CELLS_PER_SIDE - 1;
+                for (dl, dr) in [(1, 0), (back, 0), (0, 1), (0, back)] {
                     let next_cell = (left + dl) % CELLS_PER_SIDE * CELLS_PER_SIDE
                         + (right + dr) % CELLS_PER_SIDE;
                     if grid[next_cell].is_some() && !is_visited[next_cell] {

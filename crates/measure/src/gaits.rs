@@ -97,10 +97,8 @@ impl<'a> Gaits<'a> {
         videos: &'f [NamedVideo],
     ) -> Result<Vec<MeasuredWalk<'f>>, String> {
         let min_rest = min_rest_duration(&predicted_gaits(self.candidates()));
-        let walks: Vec<Walk> = videos
-            .iter()
-            .flat_map(|video| video.find_walks(min_rest))
-            .collect();
+        let walks = videos.iter().flat_map(|video| video.find_walks(min_rest));
+        let walks: Vec<Walk> = walks.collect();
         let name_count = self.named_candidates.len();
         if name_count > 1 && name_count != walks.len() {
             return Err(self.format_count_mismatch(&walks, min_rest));
@@ -112,10 +110,8 @@ impl<'a> Gaits<'a> {
                 _ => i,
             };
             let candidate = &self.candidates()[candidate_index];
-            let measured_gait = walk
-                .video
-                .analysis
-                .measure(&candidate.predicted_gait, Some(walk.interval));
+            let analysis = &walk.video.analysis;
+            let measured_gait = analysis.measure(&candidate.predicted_gait, Some(walk.interval));
             let measured_gait = measured_gait.map_err(|error| {
                 let message = self.format_mismatch(walk, candidate, error);
                 format!("{}, {}: {message}", walk.format_label(), candidate.name())
@@ -176,9 +172,8 @@ impl<'a> Gaits<'a> {
 
     /// Finds the gait in robot.toml that a walk shows.
     fn match_gait(&self, walk: Walk) -> GaitMatch {
-        walk.video
-            .analysis
-            .match_gait(&predicted_gaits(self.all_candidates()), walk.interval)
+        let gaits = predicted_gaits(self.all_candidates());
+        walk.video.analysis.match_gait(&gaits, walk.interval)
     }
 
     /// Finds the name of the gait that a walk clearly matches; `None` if it matches no gait, or two.
@@ -191,16 +186,13 @@ impl<'a> Gaits<'a> {
 
     /// Formats the message for a walk that does not match its gait, with the gait that it resembles instead.
     fn format_mismatch(&self, walk: Walk, candidate: &Candidate, error: VideoError) -> String {
-        let matching_name = match error {
-            VideoError::GaitMismatch { .. } | VideoError::WrongPace { .. } => {
-                self.find_matching_gait(walk)
-            }
-            _ => None,
-        };
-        let matching_name = matching_name.filter(|name| *name != candidate.name());
-        let match_text =
-            matching_name.map_or(String::new(), |name| format!("; it resembles {name}"));
-        format!("{error}{match_text}")
+        if let VideoError::GaitMismatch { .. } | VideoError::WrongPace { .. } = error
+            && let Some(name) = self.find_matching_gait(walk)
+            && name != candidate.name()
+        {
+            return format!("{error}; it resembles {name}");
+        }
+        error.to_string()
     }
 
     /// Formats the message for videos whose number of walks differs from the number of named gaits.
@@ -224,11 +216,8 @@ impl<'a> Gaits<'a> {
                 to - from,
                 matching_name.unwrap_or("no gait clearly")
             );
-            match matching_name.and_then(|matching_name| {
-                unmatched_names
-                    .iter()
-                    .position(|name| *name == matching_name)
-            }) {
+            let mut names = unmatched_names.iter();
+            match names.position(|name| Some(*name) == matching_name) {
                 Some(index) => {
                     unmatched_names.remove(index);
                 }
@@ -243,8 +232,6 @@ impl<'a> Gaits<'a> {
 }
 
 fn predicted_gaits(candidates: &[Candidate]) -> Vec<Gait> {
-    let gaits = candidates
-        .iter()
-        .map(|candidate| candidate.predicted_gait.clone());
-    gaits.collect()
+    let to_gait = |candidate: &Candidate| candidate.predicted_gait.clone();
+    candidates.iter().map(to_gait).collect()
 }

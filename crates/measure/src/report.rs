@@ -200,26 +200,17 @@ impl<'a> GaitReport<'a> {
         candidate: &'a Candidate,
         walks: &[&MeasuredWalk<'a>],
     ) -> Self {
-        let measured_gaits: Vec<MeasuredGait> = walks
-            .iter()
-            .map(|walk| walk.measured_gait.clone())
-            .collect();
-        let measured_gait = MeasuredGait::combine(&measured_gaits, &candidate.predicted_gait);
-        let travel = candidate
-            .predicted_gait
-            .path
-            .last()
-            .map(|pose| pose.travel());
+        let predicted_gait = &candidate.predicted_gait;
+        let measured_gaits = walks.iter().map(|walk| walk.measured_gait.clone());
+        let measured_gaits: Vec<MeasuredGait> = measured_gaits.collect();
+        let measured_gait = MeasuredGait::combine(&measured_gaits, predicted_gait);
+        let travel = predicted_gait.path.last().map(|pose| pose.travel());
         let prediction = robot.predict(candidate.gait);
         let prediction = travel.map_or(prediction, |travel| prediction.keep_determined(travel));
         let predicted_values = [prediction.forward, prediction.left, prediction.turn];
-        let means = [
-            measured_gait.forward,
-            measured_gait.left,
-            measured_gait.turn,
-        ];
-        let [forward, left, turn] =
-            [0, 1, 2].map(|i| Component::new(means[i], predicted_values[i]));
+        let forward = Component::new(measured_gait.forward, prediction.forward);
+        let left = Component::new(measured_gait.left, prediction.left);
+        let turn = Component::new(measured_gait.turn, prediction.turn);
         let differs_from_prediction = [&forward, &left, &turn]
             .iter()
             .any(|component| component.agrees == Some(false));
@@ -262,7 +253,7 @@ impl<'a> GaitReport<'a> {
             cycle_count: measured_gait.cycles.len(),
             period: measured_gait.period.value,
             period_error: measured_gait.period.standard_error,
-            expected_period: candidate.predicted_gait.period,
+            expected_period: predicted_gait.period,
             forward,
             left,
             turn,
@@ -271,7 +262,7 @@ impl<'a> GaitReport<'a> {
             largest_deviation: LargestDeviation::find(cycle_path, predicted_values),
             mujoco: None,
             prediction_range: None,
-            predicted_path: &candidate.predicted_gait.path,
+            predicted_path: &predicted_gait.path,
         }
     }
 
@@ -285,16 +276,13 @@ impl<'a> GaitReport<'a> {
             "\n{} at {} %: {} complete cycles of {:.3} s (robot.toml: {:.3} s)\n",
             self.name, self.pace_percent, self.cycle_count, self.period, self.expected_period,
         );
-        for WalkReport {
-            video,
-            start_s,
-            end_s,
-            matching_gait,
-        } in &self.walks
-        {
-            let match_text =
-                matching_gait.map_or(String::new(), |name| format!(", resembles {name} more"));
-            let _ = writeln!(text, "{video}, {start_s:.1} to {end_s:.1} s{match_text}");
+        for walk in &self.walks {
+            let (video, start_s, end_s) = (walk.video, walk.start_s, walk.end_s);
+            let _ = write!(text, "{video}, {start_s:.1} to {end_s:.1} s");
+            if let Some(name) = walk.matching_gait {
+                let _ = write!(text, ", resembles {name} more");
+            }
+            text.push('\n');
         }
         text += "per cycle    measured      sd   error  predicted\n";
         for (label, component) in COMPONENT_LABELS.iter().zip(self.components()) {
@@ -330,10 +318,8 @@ impl<'a> Report<'a> {
         let mut walks_by_gait: Vec<(&Candidate, Vec<&MeasuredWalk>)> = Vec::new();
         for walk in walks {
             let candidate = &gaits.candidates()[walk.candidate_index];
-            match walks_by_gait
-                .iter_mut()
-                .find(|(listed, _)| listed.name() == candidate.name())
-            {
+            let mut groups = walks_by_gait.iter_mut();
+            match groups.find(|(listed, _)| listed.name() == candidate.name()) {
                 Some((_, walks)) => walks.push(walk),
                 None => walks_by_gait.push((candidate, vec![walk])),
             }
@@ -365,11 +351,8 @@ impl<'a> Report<'a> {
 
     /// Adds the movements according to MuJoCo, which are known at full pace for the project's own robots.
     pub fn with_mujoco(mut self, robot_toml: &str) -> Self {
-        for gait in self
-            .gaits
-            .iter_mut()
-            .filter(|gait| gait.pace_percent == 100)
-        {
+        let gaits = self.gaits.iter_mut();
+        for gait in gaits.filter(|gait| gait.pace_percent == 100) {
             gait.mujoco = find_mujoco_movement(robot_toml, gait.name);
         }
         self

@@ -97,11 +97,8 @@ fn draw_page(paper_size: PaperSize) -> Content {
     draw_card(&mut content, [left, top - CARD_SIZE[1]]);
     let text_corner = [left + CARD_SIZE[0] + 8.0, top - 8.0];
     for (i, line) in INSTRUCTIONS.iter().enumerate() {
-        write_text(
-            &mut content,
-            line,
-            [text_corner[0], text_corner[1] - i as f64 * LINE_SPACING_MM],
-        );
+        let y = text_corner[1] - i as f64 * LINE_SPACING_MM;
+        write_text(&mut content, line, [text_corner[0], y]);
     }
     content
 }
@@ -115,20 +112,14 @@ fn draw_strip(content: &mut Content, strip: usize, [x, y]: Point) {
         draw_tag(content, id, [centre[0] + u, centre[1] + v]);
     }
     let ruler_start = centre[0] - RULER_LENGTH / 2.0;
-    fill_rectangle(
-        content,
-        [ruler_start, centre[1] - RULER_THICKNESS_MM / 2.0],
-        [RULER_LENGTH, RULER_THICKNESS_MM],
-    );
+    let ruler_corner = [ruler_start, centre[1] - RULER_THICKNESS_MM / 2.0];
+    fill_rectangle(content, ruler_corner, [RULER_LENGTH, RULER_THICKNESS_MM]);
     for i in 0..=10 {
         // The ruler ends at the outer edges of the first and the last mark.
         let mark_x = ruler_start + f64::from(i) * (RULER_LENGTH - RULER_THICKNESS_MM) / 10.0;
         let mark_length = if i % 10 == 0 { 8.0 } else { 3.0 };
-        fill_rectangle(
-            content,
-            [mark_x, centre[1] - mark_length / 2.0],
-            [RULER_THICKNESS_MM, mark_length],
-        );
+        let mark_corner = [mark_x, centre[1] - mark_length / 2.0];
+        fill_rectangle(content, mark_corner, [RULER_THICKNESS_MM, mark_length]);
     }
     let text = format!(
         "strip {} of {STRIP_COUNT}: flat on the floor, beside the robot's path",
@@ -143,11 +134,8 @@ fn draw_strip(content: &mut Content, strip: usize, [x, y]: Point) {
 fn draw_card(content: &mut Content, [x, y]: Point) {
     draw_cut_rectangle(content, [x, y], CARD_SIZE);
     let centre_x = x + CARD_SIZE[0] / 2.0;
-    draw_tag(
-        content,
-        DECK_TAG_ID,
-        [centre_x, y + CARD_MARGIN + DECK_TAG_EDGE / 2.0],
-    );
+    let centre_y = y + CARD_MARGIN + DECK_TAG_EDGE / 2.0;
+    draw_tag(content, DECK_TAG_ID, [centre_x, centre_y]);
     // The arrow starts above the tag's white margin.
     let arrow_base = y + CARD_MARGIN + DECK_TAG_EDGE + CARD_MARGIN;
     let arrow_tip = y + CARD_SIZE[1] - 1.0;
@@ -201,9 +189,8 @@ fn draw_cut_rectangle(content: &mut Content, [x, y]: Point, [width, height]: Poi
 
 /// Writes a line of text that starts at a point, mm.
 fn write_text(content: &mut Content, text: &str, [x, y]: Point) {
-    content
-        .begin_text()
-        .set_font(FONT_NAME, to_points(FONT_SIZE_MM));
+    content.begin_text();
+    content.set_font(FONT_NAME, to_points(FONT_SIZE_MM));
     content.next_line(to_points(x), to_points(y));
     content.show(Str(text.as_bytes())).end_text();
 }

@@ -13,6 +13,7 @@
 //! # Units
 //! mm and degrees, in the chassis frame: +x to the right, +y to the head, angles counter-clockwise from +x.
 
+mod bisection;
 pub mod design;
 pub mod errata;
 pub mod mobility;

@@ -103,9 +103,8 @@ fn build_body(lizard: &Lizard, solution: &Solution) -> Mechanism {
         links: [first, second],
         kind: JointKind::Revolute(point),
     };
-    let mut joints: Vec<Joint> = (0..4)
-        .map(|i| pin_joint(0, CRANK_LINKS[i], shafts[i]))
-        .collect();
+    let shaft_joints = (0..4).map(|i| pin_joint(0, CRANK_LINKS[i], shafts[i]));
+    let mut joints: Vec<Joint> = shaft_joints.collect();
     // Head couplers 5, 6; tail couplers 7 (left), 8 (right).
     joints.push(pin_joint(CRANK_LINKS[0], 5, tips[0]));
     joints.push(pin_joint(CRANK_LINKS[1], 6, tips[1]));
@@ -116,13 +115,10 @@ fn build_body(lizard: &Lizard, solution: &Solution) -> Mechanism {
     // Slider halves: left rear 9, front 10; right rear 11, front 12.
     for (side, halves) in Side::ALL.into_iter().zip([[9, 10], [11, 12]]) {
         let ([front, rear], slider) = (side.servos(), solution.side(side));
-        let rear_tip = shafts[rear] + slider.rear_tip;
+        let [rear_tip, front_tip] =
+            [slider.rear_tip, slider.front_tip].map(|tip| shafts[rear] + tip);
         joints.push(pin_joint(CRANK_LINKS[rear], halves[0], rear_tip));
-        joints.push(pin_joint(
-            CRANK_LINKS[front],
-            halves[1],
-            shafts[rear] + slider.front_tip,
-        ));
+        joints.push(pin_joint(CRANK_LINKS[front], halves[1], front_tip));
         joints.push(Joint {
             links: halves,
             kind: JointKind::Prismatic(rear_tip, slider.span * (1.0 / slider.d)),
@@ -192,11 +188,8 @@ impl Mobility {
         let free_jacobian = build_constraint_jacobian(mechanism, &[]);
         let (constraint_count, velocity_count) = free_jacobian.shape();
         let rank = compute_rank(&free_jacobian.singular_values());
-        let locked_svd = SVD::new(
-            build_constraint_jacobian(mechanism, &mechanism.driven_links),
-            false,
-            true,
-        );
+        let locked_jacobian = build_constraint_jacobian(mechanism, &mechanism.driven_links);
+        let locked_svd = SVD::new(locked_jacobian, false, true);
         let singular_values = &locked_svd.singular_values;
         let zero_threshold = RANK_TOLERANCE * singular_values.max();
         let mut loose_messages = Vec::new();
@@ -237,10 +230,8 @@ impl Mobility {
 /// Computes a matrix's rank: the number of singular values that are not zero.
 fn compute_rank(singular_values: &DVector<f64>) -> usize {
     let zero_threshold = RANK_TOLERANCE * singular_values.max();
-    singular_values
-        .iter()
-        .filter(|value| **value > zero_threshold)
-        .count()
+    let values = singular_values.iter();
+    values.filter(|value| **value > zero_threshold).count()
 }
 
 /// Builds the constraints on the velocities of the moving links: two rows for each joint, and one row for each link
@@ -257,30 +248,21 @@ fn build_constraint_jacobian(mechanism: &Mechanism, locked_links: &[usize]) -> D
         }
     };
     for (i, joint) in mechanism.joints.iter().enumerate() {
+        let [first_row, second_row] = [2 * i, 2 * i + 1];
         for (link, sign) in [(joint.links[0], 1.0), (joint.links[1], -1.0)] {
             match joint.kind {
                 // Both links give the common point the same velocity, v + omega x p.
                 JointKind::Revolute(point) => {
-                    add_entries(2 * i, link, [sign, 0.0, -sign * point.y / LENGTH_UNIT_MM]);
-                    add_entries(
-                        2 * i + 1,
-                        link,
-                        [0.0, sign, sign * point.x / LENGTH_UNIT_MM],
-                    );
+                    let [x, y] = [sign * point.x, -sign * point.y].map(|mm| mm / LENGTH_UNIT_MM);
+                    add_entries(first_row, link, [sign, 0.0, y]);
+                    add_entries(second_row, link, [0.0, sign, x]);
                 }
                 // Both links have the same omega, and the same velocity across the slide.
                 JointKind::Prismatic(point, direction) => {
                     let normal = direction.rotated_left();
-                    add_entries(2 * i, link, [0.0, 0.0, sign]);
-                    add_entries(
-                        2 * i + 1,
-                        link,
-                        [
-                            sign * normal.x,
-                            sign * normal.y,
-                            sign * point.cross(normal) / LENGTH_UNIT_MM,
-                        ],
-                    );
+                    let moment = sign * point.cross(normal) / LENGTH_UNIT_MM;
+                    add_entries(first_row, link, [0.0, 0.0, sign]);
+                    add_entries(second_row, link, [sign * normal.x, sign * normal.y, moment]);
                 }
             }
         }

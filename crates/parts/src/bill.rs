@@ -150,24 +150,20 @@ fn row_text_and_grams(
 ) -> (String, f64) {
     let parts = assembly.robot().parts();
     let diameter = parts.screw.diameter;
+    let volume = || compute_volume(&body.prisms);
+    let screw_row = |length: f64, head: &str| {
+        let text = format!("screw M{diameter} x {length}, {head}");
+        (text, SCREW_HEAD_GRAMS + SCREW_GRAMS_PER_MM * length)
+    };
     match body.kind {
-        Kind::Printed => (
-            String::new(),
-            PRINTED_DENSITY * compute_volume(&body.prisms),
-        ),
+        Kind::Printed => (String::new(), PRINTED_DENSITY * volume()),
         Kind::Servo => (
             "servo SG-90 with its horn and screws".to_owned(),
             SERVO_GRAMS,
         ),
         Kind::Horn => (String::new(), HORN_GRAMS),
-        Kind::Screw(length) | Kind::HexScrew(length) => {
-            let head = match body.kind {
-                Kind::Screw(_) => "button head (ISO 7380)",
-                _ => "hexagon head (ISO 4017)",
-            };
-            let text = format!("screw M{diameter} x {length}, {head}");
-            (text, SCREW_HEAD_GRAMS + SCREW_GRAMS_PER_MM * length)
-        }
+        Kind::Screw(length) => screw_row(length, "button head (ISO 7380)"),
+        Kind::HexScrew(length) => screw_row(length, "hexagon head (ISO 4017)"),
         Kind::ServoScrew => (String::new(), SERVO_SCREW_GRAMS),
         Kind::HornScrew(length) => {
             let size = format!("1.7 to 2 mm thick, exactly {length} mm long");
@@ -176,7 +172,7 @@ fn row_text_and_grams(
         }
         Kind::Lead => (String::new(), 0.0),
         Kind::Fitting(fitting) => (fitting.format_bill_row(), fitting.spec().grams),
-        Kind::Pad => (String::new(), PAD_DENSITY * compute_volume(&body.prisms)),
+        Kind::Pad => (String::new(), PAD_DENSITY * volume()),
         Kind::Nut => (format!("lock nut M{diameter} (DIN 985)"), NUT_GRAMS),
         Kind::Standoff(length) => {
             let text = format!("standoff M{diameter}, {length} mm, thread in both ends");
@@ -189,15 +185,11 @@ fn row_text_and_grams(
             let coil_text =
                 format!("wire {wire} mm, coil {outer} mm, {length} mm inside its hooks");
             let pull_text = spring_effect.map_or(String::new(), |effect| {
-                format!(
-                    ", {:.1} N at {:.1} mm",
-                    effect.preload_force, effect.installed_length
-                )
+                let (force, length) = (effect.preload_force, effect.installed_length);
+                format!(", {force:.1} N at {length:.1} mm")
             });
-            (
-                format!("tension spring, {coil_text}{pull_text}"),
-                spring_grams(spring),
-            )
+            let text = format!("tension spring, {coil_text}{pull_text}");
+            (text, spring_grams(spring))
         }
         Kind::Board => ("Arduino UNO".to_owned(), BOARD_GRAMS),
         Kind::Battery => {
@@ -220,24 +212,15 @@ fn price_class(kind: Kind) -> PriceClass {
 
 /// Mass of a strut's spring, g.
 pub(crate) fn spring_grams(coil: &Coil) -> f64 {
-    STEEL_DENSITY * wire_volume(coil)
+    use std::f64::consts::PI;
+    // The active coils, and three more for the hooks.
+    let (coil_count, wire) = (coil.active_coil_count() + 3.0, coil.wire_diameter);
+    STEEL_DENSITY * (coil_count * PI * coil.mean_diameter() * PI * wire * wire / 4.0)
 }
 
 /// Mass of a body, g.
 pub(crate) fn body_grams(body: &Body, assembly: &Assembly) -> f64 {
     row_text_and_grams(body, assembly, None).1
-}
-
-/// Volume of a spring's wire, mm^3: the active coils, and three more for the hooks.
-fn wire_volume(coil: &Coil) -> f64 {
-    use std::f64::consts::PI;
-    (coil.active_coil_count() + 3.0)
-        * PI
-        * coil.mean_diameter()
-        * PI
-        * coil.wire_diameter
-        * coil.wire_diameter
-        / 4.0
 }
 
 /// Makes the row for the pads' strips with a grain; `None` if the pads are plain.
@@ -270,10 +253,8 @@ impl Bill {
         for body in assembly.bodies() {
             let (text, body_mass) = row_text_and_grams(body, assembly, spring_effect.as_ref());
             if !text.is_empty() {
-                bought_rows
-                    .entry(text)
-                    .or_insert((0, body_mass, price_class(body.kind)))
-                    .0 += 1;
+                let row = bought_rows.entry(text);
+                row.or_insert((0, body_mass, price_class(body.kind))).0 += 1;
             }
             let [x, y, z] = compute_centroid(&body.prisms);
             let position = assembly.placement(body.mount, pose).map(Vector::new(x, y));
@@ -287,9 +268,8 @@ impl Bill {
             let listed_parts = parts.filter(|part| part.replaces.is_some() == is_alternative);
             listed_parts.map(Item::printed).collect()
         };
-        let bought = bought_rows.into_iter();
-        let bought =
-            bought.map(|(text, (count, grams, price))| Item::bought(count, text, grams, price));
+        let to_item = |(text, (count, grams, price))| Item::bought(count, text, grams, price);
+        let bought = bought_rows.into_iter().map(to_item);
         let unplaced_items = UNPLACED_ITEMS.map(Item::unmodelled);
         grams += unplaced_items.iter().map(Item::total_grams).sum::<f64>();
         let bought: Vec<_> = bought.chain(unplaced_items).collect();
@@ -316,10 +296,8 @@ impl Bill {
 
     /// Hours to print all parts.
     pub fn printing_hours(&self) -> f64 {
-        let items = self.printed.iter();
-        items
-            .map(|item| item.count as f64 * item.hours.unwrap_or_default())
-            .sum()
+        let item_hours = |item: &Item| item.count as f64 * item.hours.unwrap_or_default();
+        self.printed.iter().map(item_hours).sum()
     }
 
     /// Counts the bought pieces whose name begins with `prefix`.
@@ -374,11 +352,8 @@ impl fmt::Display for Bill {
         }
         writeln!(f, "\nTo buy:\n\n{}", format_buying_table(&self.bought))?;
         writeln!(f, "{}\n\n{SERVOS_TEXT}", self.format_prices())?;
-        writeln!(
-            f,
-            "\nOptional, to drive the robot by radio:\n\n{}",
-            format_buying_table(&self.radio)
-        )?;
+        let rows = format_buying_table(&self.radio);
+        writeln!(f, "\nOptional, to drive the robot by radio:\n\n{rows}")?;
         if !self.inputs.is_empty() {
             let rows = format_buying_table(&self.inputs);
             writeln!(

@@ -81,6 +81,11 @@ impl Part {
         }
     }
 
+    /// True if a body is printed as this part.
+    pub fn has_body(&self, body: &Body) -> bool {
+        self.body_names.contains(&body.name)
+    }
+
     /// Computes the part's volume, mm^3.
     pub fn volume(&self) -> f64 {
         compute_volume(&self.prisms)
@@ -188,17 +193,13 @@ fn to_print_layers(body: &Body) -> (Vec<Prism>, bool) {
         };
         if is_flipped { shape.mirrored() } else { shape }
     };
+    let to_print_order = |[a, b]: [f64; 2]| if is_flipped { [b, a] } else { [a, b] };
+    let to_print_height = |z: f64| if is_flipped { high - z } else { z - low };
     let to_print_prism = |prism: &Prism| Prism {
         filled_shapes: prism.filled_shapes.iter().map(to_print_frame).collect(),
         cut_shapes: prism.cut_shapes.iter().map(to_print_frame).collect(),
-        z: match is_flipped {
-            true => [high - prism.z[1], high - prism.z[0]],
-            false => prism.z.map(|z| z - low),
-        },
-        insets: match is_flipped {
-            true => [prism.insets[1], prism.insets[0]],
-            false => prism.insets,
-        },
+        z: to_print_order(prism.z).map(to_print_height),
+        insets: to_print_order(prism.insets),
     };
     let mut prisms: Vec<Prism> = body.prisms.iter().map(to_print_prism).collect();
     prisms.sort_by(|a, b| a.z[0].total_cmp(&b.z[0]));
@@ -215,12 +216,11 @@ fn compute_print_frame(body: &Body) -> Placement {
     let origin = first_shape.map_or(Vector::default(), |shape| shape.points[0]);
     // A pad has no bar, so its notch gives the direction.
     let cuts = body.prisms.iter().flat_map(|prism| &prism.cut_shapes);
-    let bar_vector = shapes()
-        .chain(cuts)
-        .find_map(|shape| match shape.points[..] {
-            [from, to, ..] => Some(to - from),
-            _ => None,
-        });
+    let mut all_shapes = shapes().chain(cuts);
+    let bar_vector = all_shapes.find_map(|shape| match shape.points[..] {
+        [from, to, ..] => Some(to - from),
+        _ => None,
+    });
     Placement {
         origin,
         x_axis: bar_vector.map_or(Placement::CHASSIS.x_axis, |vector| {
@@ -232,6 +232,7 @@ fn compute_print_frame(body: &Body) -> Placement {
 /// True if two parts' layers are equal except for rounding.
 fn are_equal_layers(a: &[Prism], b: &[Prism]) -> bool {
     let are_near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+    let are_near_pairs = |a: [f64; 2], b: [f64; 2]| are_near(a[0], b[0]) && are_near(a[1], b[1]);
     let have_equal_points = |a: &Shape, b: &Shape| {
         a.points.len() == b.points.len()
             && zip(&a.points, &b.points).all(|(a, b)| are_near(a.x, b.x) && are_near(a.y, b.y))
@@ -242,11 +243,8 @@ fn are_equal_layers(a: &[Prism], b: &[Prism]) -> bool {
     };
     a.len() == b.len()
         && zip(a, b).all(|(a, b)| {
-            let have_equal_heights = are_near(a.z[0], b.z[0]) && are_near(a.z[1], b.z[1]);
-            let have_equal_insets =
-                are_near(a.insets[0], b.insets[0]) && are_near(a.insets[1], b.insets[1]);
-            have_equal_heights
-                && have_equal_insets
+            are_near_pairs(a.z, b.z)
+                && are_near_pairs(a.insets, b.insets)
                 && are_equal_shapes(&a.filled_shapes, &b.filled_shapes)
                 && are_equal_shapes(&a.cut_shapes, &b.cut_shapes)
         })

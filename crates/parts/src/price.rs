@@ -3,13 +3,13 @@
 
 use std::fmt;
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 /// The month in which the classes were estimated.
 pub const ESTIMATE_MONTH: &str = "November 2026";
 
 /// The price class of a row of the bill of materials: of all its pieces, or of the smallest pack sold.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub enum PriceClass {
     /// Up to 1 euro.
     A,
@@ -66,11 +66,5 @@ impl PriceClass {
 impl fmt::Display for PriceClass {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         fmt::Debug::fmt(self, f)
-    }
-}
-
-impl Serialize for PriceClass {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
     }
 }

@@ -7,9 +7,7 @@ use lizard_kinematics::{AssemblyMode, End, FiveBar, Lanes, Vector};
 use lizard_robot::{CellMaps, CoreRobot, Robot};
 
 use crate::positions::Positions;
-use crate::rows::{
-    PairSample, for_each_group, gather_lanes, q15_to_sine, select_columns, tally_rows,
-};
+use crate::rows::{Group, gather_lanes, q15_to_sine};
 use crate::tally::{LENGTH_BAND_STEPS, Tally, margin_band};
 
 /// The comparison of the guard with floating point over all pairs of an end.
@@ -51,64 +49,50 @@ impl<'a> EndComparison<'a> {
         }
     }
 
-    /// Compares the selected pairs in one piece of the rows.
-    pub fn compare_piece(
+    /// Compares the pairs of a row and a group of columns.
+    pub fn compare_group(
         &self,
         [left, right]: [&Positions; 2],
-        sample: PairSample,
-        piece_index: usize,
-        report_progress: &(dyn Fn(u64) + Sync),
-    ) -> Tally {
-        tally_rows(left, piece_index, report_progress, |row| {
-            let mut tally = Tally::default();
-            let crank_left = Vector::constant(left.exact[row]);
-            for_each_group(
-                select_columns(sample, row, right.fixed.len()),
-                |group, count| {
-                    let crank_right = gather_lanes(&right.exact, group);
-                    let pose =
-                        self.exact
-                            .pose_unchecked(AssemblyMode::Ahead, crank_left, crank_right);
-                    let are_closed = self.exact.closes(&pose);
-                    let Lanes(type2) = pose.type2;
-                    let Lanes(type1_left) = pose.type1_left();
-                    let Lanes(type1_right) = pose.type1_right();
-                    let Lanes(gap_across_mm) = pose.gap.x;
-                    for lane in 0..count {
-                        let column = group[lane];
-                        let exact = ExactEndValues {
-                            is_closed: are_closed[lane],
-                            type2: type2[lane],
-                            type1: [type1_left[lane], type1_right[lane]],
-                            crank_tip_distance_mm: gap_across_mm[lane],
-                        };
-                        let margins = self.fixed.margins(&left.fixed[row], &right.fixed[column]);
-                        let describe_pair = || {
-                            format!(
-                                "{} at {:.4} and {:.4} deg",
-                                self.end.name(),
-                                left.degrees[row],
-                                right.degrees[column]
-                            )
-                        };
-                        self.compare_pair(&mut tally, margins, &exact, describe_pair);
-                        let [left_sweep, right_sweep] = [left.sweep(row), right.sweep(column)];
-                        // The maps' rows are the sweeps of A1 and A3, their columns the sweeps of A2 and A4.
-                        let is_in_cell = match self.end {
-                            End::Head => self.cells.contains(left_sweep, right_sweep),
-                            End::Tail => self.cells.contains(right_sweep, left_sweep),
-                        };
-                        if is_in_cell {
-                            let legs = [left.fixed[row], right.fixed[column]];
-                            let is_accepted = self.accepts(margins)
-                                && legs.iter().all(|leg| leg.sin >= self.fixed_leg_limit);
-                            tally.count_certified(is_accepted, describe_pair);
-                        }
-                    }
-                },
-            );
-            tally
-        })
+        tally: &mut Tally,
+        row: usize,
+        (columns, valid_count): Group,
+    ) {
+        let crank_left = Vector::constant(left.exact[row]);
+        let crank_right = gather_lanes(&right.exact, columns);
+        let mode = AssemblyMode::Ahead;
+        let pose = self.exact.pose_unchecked(mode, crank_left, crank_right);
+        let are_closed = self.exact.closes(&pose);
+        let Lanes(type2) = pose.type2;
+        let Lanes(type1_left) = pose.type1_left();
+        let Lanes(type1_right) = pose.type1_right();
+        let Lanes(gap_across_mm) = pose.gap.x;
+        for (lane, column) in columns.into_iter().take(valid_count).enumerate() {
+            let exact = ExactEndValues {
+                is_closed: are_closed[lane],
+                type2: type2[lane],
+                type1: [type1_left[lane], type1_right[lane]],
+                crank_tip_distance_mm: gap_across_mm[lane],
+            };
+            let legs = [left.fixed[row], right.fixed[column]];
+            let margins = self.fixed.margins(&legs[0], &legs[1]);
+            let describe_pair = || {
+                let name = self.end.name();
+                let [left_deg, right_deg] = [left.degrees[row], right.degrees[column]];
+                format!("{name} at {left_deg:.4} and {right_deg:.4} deg")
+            };
+            self.compare_pair(tally, margins, &exact, describe_pair);
+            let [left_sweep, right_sweep] = [left.sweep(row), right.sweep(column)];
+            // The maps' rows are the sweeps of A1 and A3, their columns the sweeps of A2 and A4.
+            let is_in_cell = match self.end {
+                End::Head => self.cells.contains(left_sweep, right_sweep),
+                End::Tail => self.cells.contains(right_sweep, left_sweep),
+            };
+            if is_in_cell {
+                let are_legs_accepted = legs.iter().all(|leg| leg.sin >= self.fixed_leg_limit);
+                let is_accepted = self.accepts(margins) && are_legs_accepted;
+                tally.count_certified(is_accepted, describe_pair);
+            }
+        }
     }
 
     /// True if the guard accepts an end with these margins.
@@ -129,25 +113,18 @@ impl<'a> EndComparison<'a> {
     ) {
         tally.pair_count += 1;
         let is_fixed_safe = self.accepts(margins);
-        let EndMargins {
-            type2,
-            type1_left,
-            type1_right,
-        } = margins;
+        let type2 = q15_to_sine(margins.type2.0);
+        let type1 = [margins.type1_left, margins.type1_right].map(|margin| q15_to_sine(margin.0));
         // A pose whose couplers nearly fold is rejected, regardless of its other margins.
         if exact.is_closed && exact.type2 > self.limits[0] - self.margin_band {
-            Tally::raise(
-                &mut tally.max_type2_error,
-                (q15_to_sine(type2.0).abs() - exact.type2).abs(),
-            );
-            for (fixed, exact) in [type1_left, type1_right].into_iter().zip(exact.type1) {
-                Tally::raise(
-                    &mut tally.max_type1_error,
-                    (q15_to_sine(fixed.0) - exact).abs(),
-                );
+            let type2_error = (type2.abs() - exact.type2).abs();
+            Tally::raise(&mut tally.max_type2_error, type2_error);
+            for (fixed, exact) in type1.into_iter().zip(exact.type1) {
+                Tally::raise(&mut tally.max_type1_error, (fixed - exact).abs());
             }
         }
-        let (margin_distance, crossing_distance_mm) = exact.distances_from_limits(self.limits);
+        let margin_distance = exact.distance_from_limits(self.limits);
+        let crossing_distance_mm = exact.crank_tip_distance_mm;
         let is_exact_safe = margin_distance >= 0.0 && crossing_distance_mm > 0.0;
         if is_fixed_safe != is_exact_safe {
             // The difference is attributed to the limit that is nearer relative to its band.
@@ -164,13 +141,13 @@ impl<'a> EndComparison<'a> {
                     describe_pair(),
                     if is_fixed_safe { "safe" } else { "unsafe" },
                     if is_exact_safe { "safe" } else { "unsafe" },
-                    q15_to_sine(type2.0),
-                    q15_to_sine(type1_left.0),
-                    q15_to_sine(type1_right.0),
+                    type2,
+                    type1[0],
+                    type1[1],
                     exact.type2,
                     exact.type1[0],
                     exact.type1[1],
-                    exact.crank_tip_distance_mm,
+                    crossing_distance_mm,
                 )
             });
         }
@@ -185,23 +162,19 @@ struct ExactEndValues {
     type2: f64,
     /// The left and right type-1 margins, sines.
     type1: [f64; 2],
-    /// The distance from the left crank tip to the right one across the end, mm.
+    /// The distance from the left crank tip to the right one across the end, mm; negative if the tips have crossed.
     crank_tip_distance_mm: f64,
 }
 
 impl ExactEndValues {
-    /// The distance of the smallest margin from its limit, a sine, and the distance of the crank tips from crossing,
-    /// mm. Both are negative beyond the limit.
+    /// The distance of the smallest margin from its limit, a sine; negative beyond the limit.
     #[inline(always)]
-    fn distances_from_limits(&self, [min_type2, min_type1]: [f64; 2]) -> (f64, f64) {
+    fn distance_from_limits(&self, [min_type2, min_type1]: [f64; 2]) -> f64 {
         if !self.is_closed {
-            return (-min_type2, self.crank_tip_distance_mm);
+            return -min_type2;
         }
         let type1 = self.type1[0].min(self.type1[1]) - min_type1;
-        (
-            (self.type2 - min_type2).min(type1),
-            self.crank_tip_distance_mm,
-        )
+        (self.type2 - min_type2).min(type1)
     }
 }
 

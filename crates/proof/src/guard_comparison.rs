@@ -8,7 +8,7 @@ use lizard_robot::{CellMaps, CoreRobot, Robot, servo};
 
 use crate::end_comparison::{EndComparison, compute_bands};
 use crate::positions::Positions;
-use crate::rows::{PIECES_PER_PART, PairSample};
+use crate::rows::{CompareGroup, PIECES_PER_PART, PairSample, tally_rows};
 use crate::side_comparison::{SideComparison, compare_leg};
 use crate::tally::{Finding, MARGIN_BAND, Tally};
 
@@ -46,16 +46,26 @@ impl<'a> GuardComparison<'a> {
     /// Compares the pairs of one piece, whose index is below [`PIECE_COUNT`].
     pub fn compare_piece(&self, index: usize, report_progress: &(dyn Fn(u64) + Sync)) -> Tally {
         let (part_index, piece_index) = (index / PIECES_PER_PART, index % PIECES_PER_PART);
-        let servo_positions = |servos: [usize; 2]| servos.map(|servo| self.positions(servo));
+        let tally_servos = |servos: [usize; 2], compare_group: &CompareGroup<'_>| {
+            tally_rows(
+                servos.map(|servo| self.positions(servo)),
+                self.sample,
+                piece_index,
+                report_progress,
+                compare_group,
+            )
+        };
         if let Some(end) = End::ALL.get(part_index) {
             let comparison = EndComparison::new(self.robot, self.guard, &self.maps, *end);
-            let positions = servo_positions(end.servos());
-            comparison.compare_piece(positions, self.sample, piece_index, report_progress)
+            tally_servos(end.servos(), &|positions, tally, row, group| {
+                comparison.compare_group(positions, tally, row, group);
+            })
         } else {
             let side = Side::ALL[part_index - End::ALL.len()];
             let comparison = SideComparison::new(self.robot, self.guard, &self.maps, side);
-            let positions = servo_positions(side.servos());
-            comparison.compare_piece(positions, self.sample, piece_index, report_progress)
+            tally_servos(side.servos(), &|positions, tally, row, group| {
+                comparison.compare_group(positions, tally, row, group);
+            })
         }
     }
 }
@@ -91,10 +101,8 @@ pub fn compute_findings(robot: &Robot, guard: &CoreRobot, tallies: Vec<Tally>) -
 /// The larger margin band of the two ends, and at least [`MARGIN_BAND`]: the distance from a margin's limit, a sine,
 /// within which the guard may decide differently from floating point.
 pub fn widest_margin_band(robot: &Robot) -> f64 {
-    End::ALL
-        .map(|end| compute_bands(robot, end)[0])
-        .into_iter()
-        .fold(MARGIN_BAND, f64::max)
+    let bands = End::ALL.map(|end| compute_bands(robot, end)[0]);
+    bands.into_iter().fold(MARGIN_BAND, f64::max)
 }
 
 /// The number of rows to check: one for each position of the first servo of each end and side.

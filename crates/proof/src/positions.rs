@@ -38,9 +38,8 @@ impl Positions {
                 End::Head => fixed,
                 End::Tail => fixed.in_tail_frame(),
             });
-            positions
-                .exact
-                .push(end.mirror(Vector::from_angle(degrees)));
+            let exact = Vector::from_angle(degrees);
+            positions.exact.push(end.mirror(exact));
         }
         positions
     }

@@ -49,18 +49,14 @@ impl Proof {
 
     /// The number of pairs in cells of the robot's maps; the firmware accepts their poses without computing them.
     pub fn certified_count(&self) -> u64 {
-        self.findings
-            .iter()
-            .map(|finding| finding.tally.certified_count)
-            .sum()
+        let tallies = self.findings.iter().map(|finding| &finding.tally);
+        tallies.map(|tally| tally.certified_count).sum()
     }
 
     /// The number of wrong decisions outside the bands, plus the number of poses in a cell that the guard rejects. A
     /// count of 0 over all pairs proves that the guard and the cells are correct.
     pub fn wrong_count(&self) -> u64 {
-        self.findings
-            .iter()
-            .map(|finding| finding.tally.wrong_count)
-            .sum()
+        let tallies = self.findings.iter().map(|finding| &finding.tally);
+        tallies.map(|tally| tally.wrong_count).sum()
     }
 }

@@ -1,6 +1,8 @@
 //! The rows and columns of pairs of positions. Rows are distributed over all cores, and a row's columns are computed
 //! eight at a time.
 
+use std::array::from_fn;
+
 use lizard_core::numbers::units::ONE_Q15;
 use lizard_kinematics::{Lanes, Vector};
 use rayon::prelude::*;
@@ -24,60 +26,38 @@ pub struct PairSample {
     pub offset: u32,
 }
 
-impl PairSample {
-    /// The sample that contains all pairs.
-    pub const ALL: Self = Self {
-        one_in: 1,
-        offset: 0,
-    };
-}
+/// A group of columns of one row: [`LANE_COUNT`] columns, and the number of those at the start that belong to the
+/// sample. The others fill the group.
+pub type Group = ([usize; LANE_COUNT], usize);
 
-/// Returns the columns of a row that belong to a sample.
-pub fn select_columns(
-    sample: PairSample,
-    row: usize,
-    column_count: usize,
-) -> impl Iterator<Item = usize> {
-    let first = (row + sample.offset as usize) % sample.one_in as usize;
-    (first..column_count).step_by(sample.one_in as usize)
-}
+/// Compares the pairs of a row and a group of columns, and adds them to a tally.
+pub type CompareGroup<'a> = dyn Fn([&Positions; 2], &mut Tally, usize, Group) + Sync + 'a;
 
-/// Computes the rows of a piece on all cores, and adds their tallies.
+/// Compares the pairs of a piece that belong to a sample: calls `compare_group` with each row of the piece, on all
+/// cores, and with each group of its columns. Returns the sum of the rows' tallies.
 pub fn tally_rows(
-    row_positions: &Positions,
+    positions: [&Positions; 2],
+    sample: PairSample,
     piece_index: usize,
     report_progress: &(dyn Fn(u64) + Sync),
-    tally_row: impl Fn(usize) -> Tally + Sync,
+    compare_group: &CompareGroup<'_>,
 ) -> Tally {
-    let row_count = row_positions.fixed.len();
+    let [row_count, column_count] = positions.map(|positions| positions.fixed.len());
+    let (one_in, offset) = (sample.one_in as usize, sample.offset as usize);
     (row_count * piece_index / PIECES_PER_PART..row_count * (piece_index + 1) / PIECES_PER_PART)
         .into_par_iter()
         .map(|row| {
-            let tally = tally_row(row);
+            let mut tally = Tally::default();
+            let first_column = (row + offset) % one_in;
+            for start in (first_column..column_count).step_by(LANE_COUNT * one_in) {
+                let columns = from_fn(|lane| (start + lane * one_in).min(column_count - 1));
+                let valid_count = (column_count - start).div_ceil(one_in).min(LANE_COUNT);
+                compare_group(positions, &mut tally, row, (columns, valid_count));
+            }
             report_progress(1);
             tally
         })
         .reduce(Tally::default, Tally::merge)
-}
-
-/// Calls `visit` with the columns of a row, [`LANE_COUNT`] at a time, and with the number of valid columns. The last
-/// column is repeated to fill the group.
-pub fn for_each_group(
-    mut columns: impl Iterator<Item = usize>,
-    mut visit: impl FnMut([usize; LANE_COUNT], usize),
-) {
-    loop {
-        let mut group = [0; LANE_COUNT];
-        let mut valid_count = 0;
-        for column in columns.by_ref().take(LANE_COUNT) {
-            group[valid_count..].fill(column);
-            valid_count += 1;
-        }
-        if valid_count == 0 {
-            return;
-        }
-        visit(group, valid_count);
-    }
 }
 
 /// Gathers the vectors of a group of columns, one for each lane.

@@ -8,9 +8,7 @@ use lizard_kinematics::{End, Lanes, Side, Slider, Vector};
 use lizard_robot::{CellMaps, CoreRobot, Robot};
 
 use crate::positions::Positions;
-use crate::rows::{
-    PairSample, for_each_group, gather_lanes, q15_to_sine, select_columns, tally_rows,
-};
+use crate::rows::{Group, gather_lanes, q15_to_sine};
 use crate::tally::{LENGTH_BAND_STEPS, MARGIN_BAND, Tally};
 
 /// The comparison of the guard with floating point over all pairs of a side.
@@ -40,64 +38,54 @@ impl<'a> SideComparison<'a> {
         }
     }
 
-    /// Compares the selected pairs in one piece of the rows.
-    pub fn compare_piece(
+    /// Compares the pairs of a row and a group of columns.
+    pub fn compare_group(
         &self,
         [front, rear]: [&Positions; 2],
-        sample: PairSample,
-        piece_index: usize,
-        report_progress: &(dyn Fn(u64) + Sync),
-    ) -> Tally {
+        tally: &mut Tally,
+        row: usize,
+        (columns, valid_count): Group,
+    ) {
         let to_side_frame = |direction: Direction| match self.side {
             Side::Left => direction,
             Side::Right => direction.mirrored(),
         };
-        let band_mm = LENGTH_BAND_STEPS / self.steps_per_mm;
-        tally_rows(front, piece_index, report_progress, |row| {
-            let mut tally = Tally::default();
-            let crank = to_side_frame(front.fixed[row]);
-            let front_arm = Vector::constant(self.side.front_arm(front.exact[row]));
-            for_each_group(
-                select_columns(sample, row, rear.fixed.len()),
-                |group, count| {
-                    // Positions are in the frame of their end, arms in the frame of the chassis.
-                    let crank_rear = End::Tail.mirror(gather_lanes(&rear.exact, group));
-                    let pose = self
-                        .exact
-                        .pose_unchecked(self.side.rear_arm(crank_rear), front_arm);
-                    let (Lanes(d), Lanes(s)) = (pose.d, pose.s);
-                    for lane in 0..count {
-                        let column = group[lane];
-                        tally.pair_count += 1;
-                        let length_sq = self
-                            .fixed
-                            .length_sq(&crank, &to_side_frame(rear.fixed[column]));
-                        let length_mm = f64::from(length_sq).sqrt() / self.steps_per_mm;
-                        Tally::raise(&mut tally.max_slider_error, (length_mm - d[lane]).abs());
-                        let is_allowed = self.fixed.allows(length_sq);
-                        if self.cells.contains(front.sweep(row), rear.sweep(column)) {
-                            tally.count_certified(is_allowed, || {
-                                format!(
-                                    "{} side at {:.4} and {:.4} deg",
-                                    self.side, front.degrees[row], rear.degrees[column]
-                                )
-                            });
-                        }
-                        let [min, max] = self.stroke_limits;
-                        let limit_distance = (s[lane] - min).min(max - s[lane]);
-                        if is_allowed != (limit_distance >= 0.0) {
-                            tally.record_difference(true, limit_distance.abs(), band_mm, || {
-                            format!(
-                                "at {:.4} and {:.4} deg the slider's length is {length_mm:.5} mm according to the guard, {:.5} mm in floating point",
-                                front.degrees[row], rear.degrees[column], d[lane]
-                            )
-                        });
-                        }
-                    }
-                },
-            );
-            tally
-        })
+        let crank = to_side_frame(front.fixed[row]);
+        let front_arm = Vector::constant(self.side.front_arm(front.exact[row]));
+        // Positions are in the frame of their end, arms in the frame of the chassis.
+        let rear_crank = End::Tail.mirror(gather_lanes(&rear.exact, columns));
+        let rear_arm = self.side.rear_arm(rear_crank);
+        let pose = self.exact.pose_unchecked(rear_arm, front_arm);
+        let (Lanes(d), Lanes(s)) = (pose.d, pose.s);
+        for (lane, column) in columns.into_iter().take(valid_count).enumerate() {
+            tally.pair_count += 1;
+            let fixed_rear_crank = to_side_frame(rear.fixed[column]);
+            let length_sq = self.fixed.length_sq(&crank, &fixed_rear_crank);
+            let length_mm = f64::from(length_sq).sqrt() / self.steps_per_mm;
+            Tally::raise(&mut tally.max_slider_error, (length_mm - d[lane]).abs());
+            let is_allowed = self.fixed.allows(length_sq);
+            let describe_angles = || {
+                let [front_deg, rear_deg] = [front.degrees[row], rear.degrees[column]];
+                format!("at {front_deg:.4} and {rear_deg:.4} deg")
+            };
+            if self.cells.contains(front.sweep(row), rear.sweep(column)) {
+                tally.count_certified(is_allowed, || {
+                    format!("{} side {}", self.side, describe_angles())
+                });
+            }
+            let [min, max] = self.stroke_limits;
+            let limit_distance = (s[lane] - min).min(max - s[lane]);
+            if is_allowed != (limit_distance >= 0.0) {
+                let band_mm = LENGTH_BAND_STEPS / self.steps_per_mm;
+                tally.record_difference(true, limit_distance.abs(), band_mm, || {
+                    format!(
+                        "{} the slider's length is {length_mm:.5} mm according to the guard, {:.5} mm in floating point",
+                        describe_angles(),
+                        d[lane]
+                    )
+                });
+            }
+        }
     }
 }
 
@@ -107,10 +95,8 @@ pub fn compare_leg(robot: &Robot, guard: &CoreRobot, positions: &Positions) -> T
     let min_margin = guard.limits().leg.0;
     for (position, (fixed, exact)) in positions.fixed.iter().zip(&positions.exact).enumerate() {
         tally.pair_count += 1;
-        Tally::raise(
-            &mut tally.max_leg_error,
-            (q15_to_sine(fixed.sin) - exact.y).abs(),
-        );
+        let error = (q15_to_sine(fixed.sin) - exact.y).abs();
+        Tally::raise(&mut tally.max_leg_error, error);
         let limit_distance = exact.y - robot.limits().leg;
         if (fixed.sin >= min_margin) != (limit_distance >= 0.0) {
             tally.record_difference(false, limit_distance.abs(), MARGIN_BAND, || {

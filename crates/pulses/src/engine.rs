@@ -213,11 +213,8 @@ mod tests {
         let mut plans = [(0, 0, 0); 9];
         for plan in &mut plans[..=SERVO_COUNT] {
             engine.plan_next_slot();
-            *plan = (
-                engine.slot.get(),
-                engine.mask.get(),
-                engine.fall_count.get(),
-            );
+            let fall_count = engine.fall_count.get();
+            *plan = (engine.slot.get(), engine.mask.get(), fall_count);
         }
         plans
     }
@@ -229,10 +226,8 @@ mod tests {
         for (servo, width) in widths.iter_mut().enumerate() {
             *width = 24_000 + servo as u16;
         }
-        assert!(
-            engine.is_taken(),
-            "no frame waits before the first submission"
-        );
+        let is_taken = engine.is_taken();
+        assert!(is_taken, "no frame waits before the first submission");
         engine.submit(widths);
         assert!(!engine.is_taken(), "the first frame waits");
         for frame in 0..3 {
@@ -283,19 +278,14 @@ mod tests {
         engine.plan_next_slot();
         engine.submit([30_000u16; 4]);
         engine.plan_next_slot();
-        assert_eq!(
-            engine.fall_count.get(),
-            20_220,
-            "the played frame does not change"
-        );
+        let fall_count = engine.fall_count.get();
+        assert_eq!(fall_count, 20_220, "the played frame does not change");
         engine.plan_next_slot();
         engine.plan_next_slot();
         assert_eq!(engine.mask.get(), 0, "the tick's slot");
         engine.plan_next_slot();
-        assert_eq!(
-            engine.fall_count.get(),
-            30_220,
-            "the new frame begins with its first slot"
-        );
+        let fall_count = engine.fall_count.get();
+        let claim = "the new frame begins with its first slot";
+        assert_eq!(fall_count, 30_220, "{claim}");
     }
 }

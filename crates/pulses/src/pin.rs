@@ -80,11 +80,8 @@ mod tests {
                 'C' => 0x28,
                 _ => 0x2b,
             };
-            assert_eq!(
-                (pin.port(), pin.mask()),
-                (address, 1 << bit),
-                "pin {number}"
-            );
+            assert_eq!(pin.port(), address, "pin {number}");
+            assert_eq!(pin.mask(), 1 << bit, "pin {number}");
         }
     }
 

@@ -72,20 +72,16 @@ mod tests {
     fn a_frame_of_four_to_seven_servos_takes_20_ms_within_half_a_microsecond() {
         assert_eq!(frame_cycles(4), 320_000);
         for servo_count in 4..=7 {
-            assert!(
-                frame_cycles(servo_count).abs_diff(320_000) < 8,
-                "{servo_count} servos"
-            );
+            let error = frame_cycles(servo_count).abs_diff(320_000);
+            assert!(error < 8, "{servo_count} servos");
         }
     }
 
     #[test]
     fn any_servo_count_allows_pulses_of_2_4_ms_every_8_to_22_5_ms() {
         for servo_count in 1..=8 {
-            assert!(
-                max_width_cycles(servo_count) >= 2_400 * CYCLES_PER_US,
-                "{servo_count} servos"
-            );
+            let max_cycles = max_width_cycles(servo_count);
+            assert!(max_cycles >= 2_400 * CYCLES_PER_US, "{servo_count} servos");
             // Analogue servos accept a pulse every 8 to 22.5 ms.
             let ms = f64::from(frame_cycles(servo_count)) / 16_000.0;
             assert!((8.0..=22.5).contains(&ms), "{servo_count} servos: {ms} ms");

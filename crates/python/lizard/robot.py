@@ -272,26 +272,19 @@ class Robot:
         if not (line.isascii() and line.isprintable() and line):
             raise ValueError(f"a console line must be printable ASCII, got {line!r}")
         word = line.split(" ")[0]
-        expected = "ok gait=" if word == "status" else f"ok {word}"
+        starts = ("ok gait=" if word == "status" else f"ok {word}", "err ")
         with self._exchange_lock:
             self._check_open()
             with self._condition:
                 self._answers, self._notes = [], []
             self._write(line)
-            answer = ""
 
-            def has_answer() -> bool:
-                nonlocal answer
-                matches = (
-                    text
-                    for text in self._answers
-                    if text.startswith((expected, "err "))
-                )
-                answer = next(matches, "")
-                return answer != ""
+            def find_answers() -> list[str]:
+                return [text for text in self._answers if text.startswith(starts)]
 
-            if not self._wait(has_answer, timeout):
+            if not self._wait(lambda: find_answers() != [], timeout):
                 raise NoAnswer(f"the robot does not answer to `{line}`")
+            answer = find_answers()[0]
             if answer.startswith("err "):
                 code, reason = answer.split(" ", 2)[1:]
                 refusal = RobotError(f"the robot refuses `{line}`: {reason}")
@@ -365,11 +358,10 @@ class Robot:
                 except OSError:
                     return
                 if status.gait in ("pose", "stop", "rest"):
-                    self._mark_ended(
-                        ""
-                        if status.fault == "none"
-                        else f"the robot has stopped: {status.fault}"
-                    )
+                    self._mark_stopped(status.fault)
+
+    def _mark_stopped(self, fault: str) -> None:
+        self._mark_ended("" if fault == "none" else f"the robot has stopped: {fault}")
 
     def _mark_ended(self, reason: str) -> None:
         with self._condition:
@@ -411,9 +403,7 @@ class Robot:
             elif line == "# done":
                 self._mark_ended("")
             elif line.startswith("# fault: "):
-                self._mark_ended(
-                    f"the robot has stopped: {line.removeprefix('# fault: ')}"
-                )
+                self._mark_stopped(line.removeprefix("# fault: "))
             elif line.startswith("#"):
                 self._notes.append(line)
             elif line:

@@ -1,9 +1,9 @@
 //! A checked robot.toml, and computations on it for many poses at once.
 
 use lizard_host::flash::image_source;
-use lizard_kinematics::{Check, End, Solution, Vector};
+use lizard_kinematics::{Check, End, Vector};
 use lizard_parts::{Assembly, Scene, format_mjcf};
-use lizard_robot::{CheckedGait, Error, Prediction, violations};
+use lizard_robot::{CheckedGait, Error, violations};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
@@ -26,6 +26,15 @@ pub struct Robot(pub lizard_robot::Robot);
 
 /// A two-dimensional numpy array, or an error.
 type Rows<'py> = PyResult<Bound<'py, PyArray2<f64>>>;
+
+/// A gait's values for Python, as [`Robot::gait`] returns them.
+type GaitValues<'py> = (
+    f64,
+    f64,
+    (&'static str, f64),
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray2<f64>>,
+);
 
 #[pymethods]
 impl Robot {
@@ -97,19 +106,12 @@ impl Robot {
         let end = if head { End::Head } else { End::Tail };
         let lizard = self.0.lizard();
         compute_rows(py, &points, |[x, y]: [f64; 2]| {
-            let solutions = lizard
-                .end(end)
-                .inverse(lizard.to_end(end, Vector::new(x, y)));
-            let angles = solutions.map(|modes| {
-                modes.map(|mode| {
-                    [mode.theta_left, mode.theta_right].map(|angle| end.mirror_angle(angle))
-                })
-            });
-            let mut row = [f64::NAN; 8];
-            if let Ok(angles) = angles {
-                row.copy_from_slice(angles.as_flattened());
-            }
-            row
+            let point = lizard.to_end(end, Vector::new(x, y));
+            let Ok(modes) = lizard.end(end).inverse(point) else {
+                return [f64::NAN; 8];
+            };
+            let angles = modes.map(|mode| [mode.theta_left, mode.theta_right]);
+            core::array::from_fn(|i| end.mirror_angle(angles.as_flattened()[i]))
         })
     }
 
@@ -135,21 +137,7 @@ impl Robot {
 
     /// Returns a gait's period (s), its peak servo speed (deg/s), the name and value of its smallest margin, and the
     /// times (s) and servo angles (deg) of a cycle's frames.
-    #[expect(
-        clippy::type_complexity,
-        reason = "a tuple that Python unpacks at once"
-    )]
-    fn gait<'py>(
-        &self,
-        py: Python<'py>,
-        name: &str,
-    ) -> PyResult<(
-        f64,
-        f64,
-        (&'static str, f64),
-        Bound<'py, PyArray1<f64>>,
-        Bound<'py, PyArray2<f64>>,
-    )> {
+    fn gait<'py>(&self, py: Python<'py>, name: &str) -> PyResult<GaitValues<'py>> {
         let gait = self.find_gait(name)?;
         let (times, angles): (Vec<f64>, Vec<Vec<f64>>) = gait
             .frames()
@@ -172,22 +160,16 @@ impl Robot {
     /// NaN if two feet pull against the other two, so that it is undetermined.
     fn predict(&self, py: Python<'_>, name: &str, with_servos: bool) -> PyResult<[f64; 3]> {
         let gait = self.find_gait(name)?;
-        let Prediction {
-            forward,
-            left,
-            turn,
-        } = py.detach(|| {
+        let prediction = py.detach(|| {
             let prediction = self.0.predict(gait);
-            match with_servos {
-                true => prediction.keep_determined(gait.simulate_driven_cycle(
-                    self.0.ground(),
-                    &self.0.motors(),
-                    1.0,
-                )),
-                false => prediction,
+            if !with_servos {
+                return prediction;
             }
+            let (ground, motors) = (self.0.ground(), self.0.motors());
+            prediction.keep_determined(gait.simulate_driven_cycle(ground, &motors, 1.0))
         });
-        Ok([forward, left, turn].map(|component| component.unwrap_or(f64::NAN)))
+        let components = [prediction.forward, prediction.left, prediction.turn];
+        Ok(components.map(|component| component.unwrap_or(f64::NAN)))
     }
 
     /// Builds the robot's flash section.
@@ -209,11 +191,8 @@ impl Robot {
         py.detach(|| {
             let assembly = Assembly::new(&self.0);
             assembly.check_dimensions().map_err(to_value_error)?;
-            let neutral = self
-                .0
-                .lizard()
-                .solve(&self.0.neutral_pose())
-                .map_err(to_value_error)?;
+            let neutral = self.0.lizard().solve(&self.0.neutral_pose());
+            let neutral = neutral.map_err(to_value_error)?;
             let scene = Scene {
                 has_shapes: shapes,
                 ..Scene::for_assembly(&assembly)
@@ -238,40 +217,27 @@ impl Robot {
         let mut row = [f64::NAN; COLUMN_COUNT];
         row[COLUMN_COUNT - 1] = 0.0;
         if let Ok(solution) = self.0.lizard().solve(&angles.into()) {
-            fill_row(&mut row, &solution);
-            let is_safe = self.0.solve_if_allowed(angles).is_some();
-            row[COLUMN_COUNT - 1] = f64::from(u8::from(is_safe));
+            let points = [solution.head_point(), solution.tail_point()];
+            let points = points.map(|point| [point.x, point.y]);
+            let passive = solution.passive_joints();
+            let joints = [
+                passive.theta2,
+                passive.theta3,
+                passive.theta6,
+                passive.theta7,
+                passive.phi_left,
+                passive.phi_right,
+                passive.s_left,
+                passive.s_right,
+            ];
+            let margins = solution.margins.iter().map(|(_, value)| value);
+            let is_safe = f64::from(u8::from(self.0.solve_if_allowed(angles).is_some()));
+            let values = points.into_iter().flatten().chain(joints).chain(margins);
+            for (cell, value) in row.iter_mut().zip(values.chain([is_safe])) {
+                *cell = value;
+            }
         }
         row
-    }
-}
-
-/// Writes a solution into its row, except for the last column.
-fn fill_row(row: &mut [f64; COLUMN_COUNT], solution: &Solution) {
-    let (head, tail, passive) = (
-        solution.head_point(),
-        solution.tail_point(),
-        solution.passive_joints(),
-    );
-    let joints = [
-        head.x,
-        head.y,
-        tail.x,
-        tail.y,
-        passive.theta2,
-        passive.theta3,
-        passive.theta6,
-        passive.theta7,
-        passive.phi_left,
-        passive.phi_right,
-        passive.s_left,
-        passive.s_right,
-    ];
-    let values = joints
-        .into_iter()
-        .chain(solution.margins.iter().map(|(_, value)| value));
-    for (cell, value) in row.iter_mut().zip(values) {
-        *cell = value;
     }
 }
 

@@ -77,10 +77,8 @@ impl Robot {
         });
         robot.map_err(|mut error| {
             let added_lines = STAND.lines().count();
-            error.line = error
-                .line
-                .filter(|line| *line > added_lines)
-                .map(|line| line - added_lines);
+            let line = error.line.filter(|line| *line > added_lines);
+            error.line = line.map(|line| line - added_lines);
             error
         })
     }
@@ -177,14 +175,9 @@ impl Robot {
 
     /// Builds the section with the maps; `None` if it is longer than [`REGION_BYTES`].
     fn section_with_maps(&self) -> Option<Vec<u8>> {
-        let CellMaps {
-            head,
-            tail,
-            left,
-            right,
-        } = self.cell_maps();
+        let maps = self.cell_maps();
         let content = Content {
-            maps: [head, tail, left, right],
+            maps: [maps.head, maps.tail, maps.left, maps.right],
             ..self.content.clone()
         };
         Some(content.section_bytes()).filter(|section| section.len() <= usize::from(REGION_BYTES))
@@ -279,12 +272,8 @@ impl Robot {
 
     /// A slotted strut of this robot's size with this coil spring.
     pub fn strut_with_coil(&self, coil: &Coil) -> Strut {
-        config::strut_with_coil(
-            self.legs(),
-            self.config.neutral_angles(),
-            self.parts(),
-            coil,
-        )
+        let (legs, neutral_angles) = (self.legs(), self.config.neutral_angles());
+        config::strut_with_coil(legs, neutral_angles, self.parts(), coil)
     }
 
     /// The length of a spring mounted in a strut, measured inside its hooks, mm.
@@ -446,11 +435,8 @@ fn size_error(content: &Content, bytes: usize) -> UnlocatedError {
     let wave_bytes = std::mem::size_of_val(content.waves.as_slice());
     let gait_count = content.gaits.len();
     let gait_bytes = gait_count * size_of::<Gait>() + content.names.len();
-    let routine_count = content
-        .gaits
-        .iter()
-        .filter(|gait| gait.is_routine())
-        .count();
+    let routines = content.gaits.iter().filter(|gait| gait.is_routine());
+    let routine_count = routines.count();
     let step_bytes = std::mem::size_of_val(content.steps.as_slice());
     let routine_text = match routine_count {
         0 => String::new(),

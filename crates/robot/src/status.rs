@@ -124,10 +124,8 @@ pub fn parse_pose_report(line: &str) -> Option<(u64, [f64; 4])> {
 fn parse_angles(text: &str) -> Option<[f64; 4]> {
     let angles: Option<Vec<f64>> = text.split(',').map(|angle| angle.parse().ok()).collect();
     let angles: [f64; 4] = angles?.try_into().ok()?;
-    angles
-        .iter()
-        .all(|angle| angle.is_finite())
-        .then_some(angles)
+    let are_finite = angles.iter().all(|angle| angle.is_finite());
+    are_finite.then_some(angles)
 }
 
 #[cfg(test)]

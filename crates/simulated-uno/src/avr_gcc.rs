@@ -41,11 +41,8 @@ pub fn assemble(source: &str) -> Image {
 pub fn assemble_at(address: u16, source: &str) -> Image {
     let source = format!("#define __SFR_OFFSET 0\n#include <avr/io.h>\n{source}\n");
     let section_start = format!("-Wl,--section-start=.text={address:#x}");
-    build(
-        &source,
-        "S",
-        &["-nostartfiles", "-nostdlib", &section_start],
-    )
+    let flags = ["-nostartfiles", "-nostdlib", section_start.as_str()];
+    build(&source, "S", &flags)
 }
 
 /// Runs avr-gcc for the UNO's chip at 16 MHz with these flags and input files, and writes the result to `output`.
@@ -64,12 +61,10 @@ pub fn run(flags: &[&str], inputs: &[&OsStr], output: &Path) -> Result<(), Strin
         .args(inputs);
     let result = gcc.stdin(Stdio::null()).output();
     let result = result.expect("avr-gcc runs (Debian package gcc-avr)");
+    let message = String::from_utf8_lossy(&result.stderr);
     match result.status.success() {
         true => Ok(()),
-        false => Err(format!(
-            "avr-gcc rejects the program:\n{}",
-            String::from_utf8_lossy(&result.stderr)
-        )),
+        false => Err(format!("avr-gcc rejects the program:\n{message}")),
     }
 }
 

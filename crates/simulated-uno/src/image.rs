@@ -162,10 +162,8 @@ impl Image {
             if (DATA_SPACE..EEPROM_SPACE).contains(&run_address) {
                 let end = run_address + segment.size() - DATA_SPACE;
                 if end > u64::from(SRAM_END) {
-                    return Err(LoadError::TooLarge {
-                        address: run_address,
-                        size: segment.size(),
-                    });
+                    let (address, size) = (run_address, segment.size());
+                    return Err(LoadError::TooLarge { address, size });
                 }
                 data_end = data_end.max(end as u16);
             }
@@ -175,10 +173,8 @@ impl Image {
             }
             let size = data.len() as u64;
             if load_address + size > u64::from(FLASH_SIZE) {
-                return Err(LoadError::TooLarge {
-                    address: load_address,
-                    size,
-                });
+                let address = load_address;
+                return Err(LoadError::TooLarge { address, size });
             }
             segments.push((load_address as u32, data.to_vec()));
         }
@@ -217,10 +213,8 @@ impl Image {
     /// The number of flash bytes in use: code, tables and initial values.
     #[must_use]
     pub fn flash_used(&self) -> u32 {
-        self.segments
-            .iter()
-            .map(|(_, data)| data.len() as u32)
-            .sum()
+        let sizes = self.segments.iter().map(|(_, data)| data.len() as u32);
+        sizes.sum()
     }
 
     /// The number of SRAM bytes that static data use (.data, .bss and .noinit).
@@ -298,10 +292,8 @@ impl Image {
     pub fn replace(&mut self, range: Range<u32>, bytes: &[u8]) -> Result<(), LoadError> {
         let size = bytes.len() as u64;
         if range.end > FLASH_SIZE || u64::from(range.start) + size > u64::from(range.end) {
-            return Err(LoadError::TooLarge {
-                address: range.start.into(),
-                size,
-            });
+            let address = range.start.into();
+            return Err(LoadError::TooLarge { address, size });
         }
         let mut segments = Vec::new();
         for (start, bytes) in self.segments.drain(..) {
@@ -327,10 +319,7 @@ impl Image {
 
     /// The address after the last used byte in flash; 0 if the image is empty.
     pub(crate) fn code_end(&self) -> u32 {
-        let ends = self
-            .segments
-            .iter()
-            .map(|(address, data)| address + data.len() as u32);
-        ends.max().unwrap_or(0)
+        let end = |(address, data): &(u32, Vec<u8>)| address + data.len() as u32;
+        self.segments.iter().map(end).max().unwrap_or(0)
     }
 }

@@ -87,10 +87,8 @@ pub fn pulses(edges: &[Edge], pin: Pin) -> Vec<Pulse> {
         if edge.is_rising {
             rise_cycle = Some(edge.cycle);
         } else if let Some(start) = rise_cycle.take() {
-            pulses.push(Pulse {
-                start,
-                width: edge.cycle - start,
-            });
+            let width = edge.cycle - start;
+            pulses.push(Pulse { start, width });
         }
     }
     pulses

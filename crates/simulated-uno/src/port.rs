@@ -173,11 +173,9 @@ impl Port {
             Some(radio) => radio.exchange(uno),
             None => {
                 let ratio = uno.chip_baud() / baud;
-                let sent_bytes = uno.take_transmitted();
-                sent_bytes
-                    .iter()
-                    .map(|sample| sample_byte(sample.byte, ratio))
-                    .collect()
+                let sent_bytes = uno.take_transmitted().into_iter();
+                let read_bytes = sent_bytes.map(|sample| sample_byte(sample.byte, ratio));
+                read_bytes.collect()
             }
         };
         // The program may have closed the port meanwhile, so check again.

@@ -166,11 +166,8 @@ impl Radio {
     /// the bytes that have arrived at the phone. Must be called every millisecond of the chip's time.
     pub fn exchange(&mut self, uno: &mut Uno) -> Vec<u8> {
         uno.set_baud(self.link.baud);
-        let sent_bytes: Vec<u8> = uno
-            .take_transmitted()
-            .iter()
-            .map(|sample| sample.byte)
-            .collect();
+        let sent_bytes = uno.take_transmitted().into_iter();
+        let sent_bytes: Vec<u8> = sent_bytes.map(|sample| sample.byte).collect();
         let received = self.received_bytes(&sent_bytes, uno.chip_baud());
         let [to_uno, to_phone] = self.pass(&received, uno.cycle());
         uno.send(&to_uno);
@@ -181,10 +178,8 @@ impl Radio {
     #[must_use]
     pub fn received_bytes(&self, sent_bytes: &[u8], chip_baud: f64) -> Vec<u8> {
         let ratio = chip_baud / self.link.baud;
-        sent_bytes
-            .iter()
-            .map(|byte| sample_byte(*byte, ratio))
-            .collect()
+        let received_bytes = sent_bytes.iter().map(|byte| sample_byte(*byte, ratio));
+        received_bytes.collect()
     }
 
     /// Takes the bytes that the module has received from the chip, and returns the bytes that have arrived by now at
@@ -215,11 +210,8 @@ impl Radio {
         self.is_linked = !self.is_linked;
         let mut to_uno = self.to_uno.take_remainder(&mut self.random);
         if self.link.reports_link {
-            to_uno.extend(if self.is_linked {
-                b"OK+CONN"
-            } else {
-                b"OK+LOST"
-            });
+            let report = if self.is_linked { "OK+CONN" } else { "OK+LOST" };
+            to_uno.extend(report.bytes());
         }
         if self.is_linked {
             self.next_link_change = self.next_link_end(now);

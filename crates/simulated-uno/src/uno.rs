@@ -73,15 +73,12 @@ impl Uno {
     pub fn with_image(image: Image, fidelity: Fidelity) -> Self {
         static LOGGER: Once = Once::new();
         let recorded_pins = 0xf_fffc;
+        let follows_data_sheet = fidelity == Fidelity::DataSheet;
         // SAFETY: the shim's constructor aborts instead of returning null; each
         // segment is inside flash, checked by `Image` and again by the shim.
         let raw = unsafe {
             LOGGER.call_once(|| ffi::uno_set_logger());
-            let raw = ffi::uno_new(
-                fidelity == Fidelity::DataSheet,
-                recorded_pins,
-                Self::DEFAULT_BAUD,
-            );
+            let raw = ffi::uno_new(follows_data_sheet, recorded_pins, Self::DEFAULT_BAUD);
             for (address, bytes) in &image.segments {
                 let fits = ffi::uno_load(raw, bytes.as_ptr(), bytes.len() as u32, *address);
                 assert!(fits, "every segment of an image is inside flash");
@@ -147,15 +144,13 @@ impl Uno {
         mut predicate: impl FnMut(&Self) -> bool,
     ) -> bool {
         let end = self.cycle() + max_cycles;
-        loop {
-            if predicate(self) {
-                return true;
-            }
+        while !predicate(self) {
             if self.cycle() >= end || self.state != State::Alive {
                 return false;
             }
             self.run_until_cycle(end.min(self.cycle() + check_interval));
         }
+        true
     }
 
     /// Runs until the cycle `end_cycle` or, if `stop_at_line`, until the firmware has sent a complete line. Returns
@@ -299,17 +294,14 @@ impl Uno {
         // the instance, and nothing runs while they are borrowed.
         let vectors =
             unsafe { std::slice::from_raw_parts(ffi::uno_vectors(self.raw), ffi::VECTOR_COUNT) };
-        let served_vectors = vectors
-            .iter()
-            .enumerate()
-            .filter(|(_, raw_stats)| raw_stats.entry_count > 0);
-        served_vectors
-            .map(|(vector, raw_stats)| VectorStats {
-                vector: vector as u8,
-                entry_count: raw_stats.entry_count,
-                cycles: raw_stats.cycles,
-            })
-            .collect()
+        let numbered_vectors = vectors.iter().enumerate();
+        let served_vectors = numbered_vectors.filter(|(_, raw_stats)| raw_stats.entry_count > 0);
+        let stats = served_vectors.map(|(vector, raw_stats)| VectorStats {
+            vector: vector as u8,
+            entry_count: raw_stats.entry_count,
+            cycles: raw_stats.cycles,
+        });
+        stats.collect()
     }
 
     /// Copies the items of one of the shim's lists.

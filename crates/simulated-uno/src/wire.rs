@@ -104,10 +104,8 @@ impl Wire {
     fn next_falling_edge(&self) -> Option<f64> {
         let edges = self.pending_frames().flat_map(|frame| {
             (0..9).map(|index| {
-                (
-                    frame.start_cycle + f64::from(index) * frame.bit_cycles,
-                    frame.bit_cycles,
-                )
+                let cycle = frame.start_cycle + f64::from(index) * frame.bit_cycles;
+                (cycle, frame.bit_cycles)
             })
         });
         edges
@@ -157,10 +155,8 @@ mod tests {
     fn a_single_sender_is_read_correctly() {
         let all_bytes: Vec<u8> = (0..=255).collect();
         for sender in [0, 1] {
-            assert_eq!(
-                receive_all(&[(sender, &all_bytes, 70)]),
-                bytes_without_errors(&all_bytes)
-            );
+            let received_bytes = receive_all(&[(sender, &all_bytes, 70)]);
+            assert_eq!(received_bytes, bytes_without_errors(&all_bytes));
         }
     }
 
@@ -171,10 +167,8 @@ mod tests {
             (1, b"stop\n", 5 * BYTE_CYCLES),
             (0, b"?\n", 10 * BYTE_CYCLES + 40),
         ];
-        assert_eq!(
-            receive_all(&writes),
-            bytes_without_errors(b"walk\nstop\n?\n")
-        );
+        let sent_bytes = b"walk\nstop\n?\n";
+        assert_eq!(receive_all(&writes), bytes_without_errors(sent_bytes));
     }
 
     #[test]
@@ -197,16 +191,12 @@ mod tests {
         for (sender, rate) in rates.into_iter().enumerate() {
             let mut wire = Wire::new(rates);
             wire.write(sender, b"status\n", 500);
-            assert_eq!(
-                wire.receive(500 + 70 * (16_000_000 / rate as u64), rate),
-                bytes_without_errors(b"status\n")
-            );
+            let read_bytes = wire.receive(500 + 70 * (16_000_000 / rate as u64), rate);
+            assert_eq!(read_bytes, bytes_without_errors(b"status\n"));
             wire.write(sender, b"status\n", 1_000_000);
             let read_bytes = wire.receive(2_000_000, rates[1 - sender]);
-            assert!(
-                !read_bytes.is_empty() && !read_bytes.contains(&Some(b'\n')),
-                "{read_bytes:?}"
-            );
+            let is_misread = !read_bytes.is_empty() && !read_bytes.contains(&Some(b'\n'));
+            assert!(is_misread, "{read_bytes:?}");
         }
     }
 

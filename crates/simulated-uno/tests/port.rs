@@ -59,12 +59,12 @@ fn stop_board(board: BackgroundPort) -> Uno {
 }
 
 fn open(path: &Path) -> File {
-    let mut options = OpenOptions::new();
-    options
-        .read(true)
-        .write(true)
-        .open(path)
-        .expect("the port can be opened")
+    let port = OpenOptions::new().read(true).write(true).open(path);
+    port.expect("the port can be opened")
+}
+
+fn write(port: &mut File, bytes: &[u8]) {
+    port.write_all(bytes).expect("the port accepts bytes");
 }
 
 fn read_text(port: &File, count: usize) -> String {
@@ -101,8 +101,7 @@ fn bytes_pass_unchanged_in_both_directions() {
     let mut port = open(board.path());
     assert_eq!(read_text(&port, 2), "<r");
     // Bytes that a terminal would remove or change: CR, LF, interrupt, end of file, delete.
-    port.write_all(b"\r\n\x03\x04\x7f")
-        .expect("the port accepts bytes");
+    write(&mut port, b"\r\n\x03\x04\x7f");
     assert_eq!(read_text(&port, 5), "\x0e\x0b\x04\x05\u{fffd}");
     drop(port);
     stop_board(board);
@@ -114,11 +113,10 @@ fn a_wrong_baud_rate_changes_the_bytes_in_both_directions() {
     let mut port = open(board.path());
     assert_eq!(read_text(&port, 2), "<r");
     let mut settings = tcgetattr(&port).expect("the port has settings");
-    settings
-        .set_speed(57_600)
-        .expect("57 600 baud is a valid speed");
+    let result = settings.set_speed(57_600);
+    result.expect("57 600 baud is a valid speed");
     tcsetattr(&port, OptionalActions::Now, &settings).expect("the port accepts settings");
-    port.write_all(b"0").expect("the port accepts bytes");
+    write(&mut port, b"0");
     // The chip reads 0, as tests/data_sheet/serial.rs explains, and sends 1. The host samples that byte at half the
     // chip's baud rate: at 3.1, 5.1 and 7.1 of the chip's bits, which are 0, then in the stop bit and on the idle
     // line.
@@ -136,11 +134,8 @@ fn every_opening_resets_the_chip_even_after_a_short_pause() {
         drop(port);
     }
     let uno = stop_board(board);
-    assert_eq!(
-        mark_values(&uno),
-        [1, 2, 3, 4, 5, 6],
-        "power-on and five resets"
-    );
+    let marks = mark_values(&uno);
+    assert_eq!(marks, [1, 2, 3, 4, 5, 6], "power-on and five resets");
 }
 
 #[test]
@@ -151,7 +146,7 @@ fn opening_an_open_port_does_not_reset_the_chip() {
     let second_port = open(board.path());
     std::thread::sleep(Duration::from_millis(10));
     drop(second_port);
-    port.write_all(b"a").expect("the port accepts bytes");
+    write(&mut port, b"a");
     assert_eq!(read_text(&port, 1), "b");
     let uno = stop_board(board);
     assert_eq!(mark_values(&uno), [1, 2]);
@@ -165,20 +160,12 @@ fn output_while_the_port_is_closed_is_lost() {
     let mut program_port = open(port.path());
     serve(&mut port, &mut uno, 20);
     assert!(port.is_open());
-    assert_eq!(
-        read_text(&program_port, 2),
-        "<r",
-        "only the output after the reset is read"
-    );
-    program_port
-        .write_all(b"a")
-        .expect("the port accepts bytes");
+    let output = read_text(&program_port, 2);
+    assert_eq!(output, "<r", "only the output after the reset is read");
+    write(&mut program_port, b"a");
     serve(&mut port, &mut uno, 20);
-    assert_eq!(
-        read_text(&program_port, 1),
-        "b",
-        "no earlier output precedes the answer"
-    );
+    let answer = read_text(&program_port, 1);
+    assert_eq!(answer, "b", "no earlier output precedes the answer");
     drop(program_port);
     serve(&mut port, &mut uno, 20);
     assert!(!port.is_open());
@@ -192,19 +179,14 @@ fn unread_output_is_dropped_before_the_next_program_opens_the_port() {
     let mut first_port = open(port.path());
     serve(&mut port, &mut uno, 20);
     assert_eq!(read_text(&first_port, 2), "<r");
-    first_port
-        .write_all(b"abc")
-        .expect("the port accepts bytes");
+    write(&mut first_port, b"abc");
     serve(&mut port, &mut uno, 20);
     drop(first_port);
     serve(&mut port, &mut uno, 20);
     let second_port = open(port.path());
     serve(&mut port, &mut uno, 20);
-    assert_eq!(
-        read_text(&second_port, 2),
-        "<r",
-        "the echo bcd of abc is dropped"
-    );
+    let output = read_text(&second_port, 2);
+    assert_eq!(output, "<r", "the echo bcd of abc is dropped");
 }
 
 #[test]

@@ -44,9 +44,8 @@ fn every_opening_by_another_program_resets_the_chip_once() {
     let uno = Uno::with_image(avr_gcc::compile_c(HELLO_PROGRAM), Fidelity::DataSheet);
     let starters = [(); 3].map(|()| thread::spawn(start_programs));
     let port = Port::new().expect("a pseudo terminal is free");
-    let board = port
-        .in_background(uno, |_| {})
-        .expect("a thread can be started");
+    let board = port.in_background(uno, |_| {});
+    let board = board.expect("a thread can be started");
     let mut opening_count = 0;
     while opening_count < MIN_OPENINGS || STARTED_COUNT.load(Ordering::Relaxed) < MIN_OPENINGS {
         let are_all_running = starters.iter().all(|starter| !starter.is_finished());
@@ -54,9 +53,8 @@ fn every_opening_by_another_program_resets_the_chip_once() {
         opening_count += 1;
         let mut reader = Command::new("bash");
         reader.args(["-c", READER_SCRIPT]).arg(board.path());
-        let output = TIME_LIMIT
-            .run_command(&mut reader, b"")
-            .expect("the script ends");
+        let output = TIME_LIMIT.run_command(&mut reader, b"");
+        let output = output.expect("the script ends");
         let output_text = String::from_utf8_lossy(&output.stdout);
         assert_eq!(output_text, "<r", "opening {opening_count}");
     }
@@ -67,9 +65,6 @@ fn every_opening_by_another_program_resets_the_chip_once() {
     }
     let uno = TIME_LIMIT.run("the end of the port's thread", || board.stop());
     let reset_count = uno.expect("the port had no error").reset_events().len();
-    assert_eq!(
-        reset_count,
-        1 + opening_count,
-        "power-on and one for each opening"
-    );
+    let expected = 1 + opening_count;
+    assert_eq!(reset_count, expected, "power-on and one for each opening");
 }

@@ -39,9 +39,8 @@ const PULSES_PROGRAM: &str = "
 fn run_program(file: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_simulated-uno"));
     command.arg(file).args(arguments);
-    TIME_LIMIT
-        .run_command(&mut command, b"")
-        .expect("simulated-uno runs")
+    let output = TIME_LIMIT.run_command(&mut command, b"");
+    output.expect("simulated-uno runs")
 }
 
 /// Compiles a source and returns the paths of its ELF and Intel HEX files.
@@ -50,13 +49,10 @@ fn compile(folder: &Path, source: &str) -> [std::path::PathBuf; 2] {
     fs::write(&c, source).expect("the file can be written");
     avr_gcc::run(&["-O2", "-std=gnu11"], &[c.as_ref()], &elf).expect("the source compiles");
     let mut objcopy = Command::new("avr-objcopy");
-    objcopy
-        .args(["-O", "ihex", "-R", ".eeprom"])
-        .arg(&elf)
-        .arg(&hex);
-    let output = TIME_LIMIT
-        .run_command(&mut objcopy, b"")
-        .expect("avr-objcopy runs");
+    objcopy.args(["-O", "ihex", "-R", ".eeprom"]);
+    objcopy.args([&elf, &hex]);
+    let output = TIME_LIMIT.run_command(&mut objcopy, b"");
+    let output = output.expect("avr-objcopy runs");
     assert!(output.status.success(), "{output:?}");
     [elf, hex]
 }
@@ -81,29 +77,18 @@ fn hex_and_elf_files_of_a_program_give_the_same_pulses() {
         let output = run_program(&file, &["--ms", "100"]);
         assert!(output.status.success(), "{output:?}");
         let output_text = to_text(&output.stdout);
-        let row: Vec<&str> = output_text
-            .lines()
-            .find(|line| line.starts_with("D9"))
-            .unwrap_or_else(|| panic!("no D9 in {output_text}"))
-            .split_whitespace()
-            .collect();
-        assert_eq!(
-            row[..4],
-            ["D9", "25", "1000.0000", "1000.0000"],
-            "{output_text}"
-        );
-        assert_eq!(
-            output_text.contains("data 0 bytes, stack "),
-            reports_memory,
-            "{output_text}"
-        );
+        let row = output_text.lines().find(|line| line.starts_with("D9"));
+        let row = row.unwrap_or_else(|| panic!("no D9 in {output_text}"));
+        let row: Vec<&str> = row.split_whitespace().collect();
+        let expected_cells = ["D9", "25", "1000.0000", "1000.0000"];
+        assert_eq!(row[..4], expected_cells, "{output_text}");
+        let has_memory = output_text.contains("data 0 bytes, stack ");
+        assert_eq!(has_memory, reports_memory, "{output_text}");
         let period: f64 = row[4].parse().expect("the period is a number");
         assert!((4000.0..4001.0).contains(&period), "{output_text}");
-        assert!(
-            output_text.contains("awake 100.0 %")
-                && output_text.contains("The program is still running."),
-            "{output_text}"
-        );
+        for text in ["awake 100.0 %", "The program is still running."] {
+            assert!(output_text.contains(text), "no {text} in {output_text}");
+        }
     }
 }
 
@@ -112,9 +97,8 @@ fn the_option_pulses_lists_every_pulse() {
     let output = run_source(PULSES_PROGRAM, &["--ms", "10", "--pulses"]);
     let output_text = to_text(&output.stdout);
     let rows = output_text.lines().filter(|line| line.starts_with("D9"));
-    let widths: Vec<&str> = rows
-        .filter_map(|row| row.split_whitespace().nth(2))
-        .collect();
+    let widths = rows.filter_map(|row| row.split_whitespace().nth(2));
+    let widths: Vec<&str> = widths.collect();
     assert_eq!(widths, ["1000.0000"; 3], "{output_text}");
 }
 
@@ -131,18 +115,13 @@ fn sent_lines_and_answers_are_printed_with_their_times() {
             .map(|(ms, text)| (ms.trim().parse().expect("the time is a number"), text))
             .collect();
         let texts: Vec<&str> = lines.iter().map(|line| line.1).collect();
-        assert_eq!(
-            texts,
-            ["ready", "> walk", "got w", "> stop", "got s"],
-            "{output_text}"
-        );
+        let expected_texts = ["ready", "> walk", "got w", "> stop", "got s"];
+        assert_eq!(texts, expected_texts, "{output_text}");
         for (line, ms) in lines.iter().zip([0.0, 20.0, 20.0, 40.0, 40.0]) {
             assert!((ms..ms + 2.0).contains(&line.0), "{output_text}");
         }
-        assert!(
-            output_text.contains("No pin from D2 to A5 has changed."),
-            "{output_text}"
-        );
+        let pin_text = "No pin from D2 to A5 has changed.";
+        assert!(output_text.contains(pin_text), "{output_text}");
     }
 }
 
@@ -154,10 +133,8 @@ fn invalid_files_end_with_exit_code_1_and_invalid_arguments_with_2() {
     let incomplete_output = run_program(&file, &[]);
     assert_eq!(incomplete_output.status.code(), Some(1));
     let error = to_text(&incomplete_output.stderr);
-    assert!(
-        error.ends_with("no end record, so it is incomplete\n"),
-        "{error}"
-    );
+    let expected_end = "no end record, so it is incomplete\n";
+    assert!(error.ends_with(expected_end), "{error}");
     let missing_output = run_program(&folder.path().join("missing.hex"), &[]);
     assert_eq!(missing_output.status.code(), Some(1));
     assert!(to_text(&missing_output.stderr).contains("missing.hex"));
@@ -171,10 +148,8 @@ fn a_crash_is_reported_and_ends_with_exit_code_1() {
     let output = run_source("int main(void) { *(volatile char *)0x0fff = 1; }", &[]);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     let output_text = to_text(&output.stdout);
-    assert!(
-        output_text.contains("The program crashed at 0x"),
-        "{output_text}"
-    );
+    let is_reported = output_text.contains("The program crashed at 0x");
+    assert!(is_reported, "{output_text}");
 }
 
 #[test]

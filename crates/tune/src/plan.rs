@@ -32,6 +32,55 @@ impl GaitKind {
             Self::Held => vec![vec![0.0, 1.0, 0.5]],
         }
     }
+
+    /// Plans the gait for parameters from 0 to 1, with values rounded as in robot.toml and the period [`MAX_PERIOD_S`],
+    /// which the caller replaces. Parameters are clamped to their range; a missing parameter counts as 0.
+    pub(crate) fn plan_gait(
+        self,
+        goal: Goal,
+        max_amplitude: f64,
+        name: &str,
+        parameters: &[f64],
+    ) -> Bars {
+        let parameter = |i: usize| parameters.get(i).map_or(0.0, |value| value.clamp(0.0, 1.0));
+        let scale = |i: usize, (low, high): (f64, f64)| low + (high - low) * parameter(i);
+        let (duty, start, amplitude_index) = match self {
+            Self::Wave => {
+                let lag = round_to_decimals(parameter(1), 2) % 1.0;
+                // The two legs of a pair are half a cycle apart. In a straight gait, the pairs are the hind legs and
+                // the front legs.
+                let [lf, rf] = match goal {
+                    Goal::Straight(_) => [lag, (lag + 0.5) % 1.0],
+                    Goal::Turn(_) => [(lag + 0.5) % 1.0, lag],
+                };
+                // In a turn, the pairs are LH and RF, and LF and RH; therefore RH takes the value `rf`.
+                let starts = match goal {
+                    Goal::Straight(_) => [lf, rf, 0.5, 0.0],
+                    Goal::Turn(_) => [lf, 0.5, rf, 0.0],
+                };
+                let starts = starts.map(|start| round_to_decimals(start, 2));
+                (round_to_decimals(scale(0, DUTY_RANGE), 2), starts, 2)
+            }
+            Self::Held => (
+                DUTY_RANGE.0,
+                swing_ranks_at(parameter(0)).map(|rank| rank as f64 / 4.0),
+                1,
+            ),
+        };
+        let balance = MAX_PAIR_REDUCTION * (2.0 * parameter(amplitude_index + 1) - 1.0);
+        let pair_gains = [1.0 + balance.min(0.0), 1.0 - balance.max(0.0)];
+        let pair_gains = pair_gains.map(|gain| round_to_decimals(gain, 2));
+        let amplitude = scale(amplitude_index, (MIN_AMPLITUDE, max_amplitude));
+        Bars {
+            name: name.to_string(),
+            held: self == Self::Held,
+            period: MAX_PERIOD_S,
+            duty,
+            amplitude: round_to_decimals(amplitude, 1),
+            start,
+            gain: std::array::from_fn(|i| goal.stroke_sign(i) * pair_gains[goal.pair_index(i)]),
+        }
+    }
 }
 
 /// Smallest amplitude of the search, deg.
@@ -42,62 +91,6 @@ const DUTY_RANGE: (f64, f64) = (0.5, 0.95);
 const MAX_PAIR_REDUCTION: f64 = 0.5;
 /// Longest cycle that robot.toml allows, s.
 pub const MAX_PERIOD_S: f64 = 60.0;
-
-/// The goal of the search, and the largest amplitude.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SearchSpace {
-    /// The goal of the gait: straight or a turn, and its direction.
-    pub goal: Goal,
-    /// Largest amplitude of the search, deg.
-    pub max_amplitude: f64,
-}
-
-/// Plans the gait for parameters from 0 to 1, with values rounded as in robot.toml and the period [`MAX_PERIOD_S`],
-/// which the caller replaces. Parameters are clamped to their range; a missing parameter counts as 0.
-pub fn plan_gait(kind: GaitKind, space: SearchSpace, name: &str, parameters: &[f64]) -> Bars {
-    let SearchSpace {
-        goal,
-        max_amplitude,
-    } = space;
-    let parameter = |i: usize| parameters.get(i).map_or(0.0, |value| value.clamp(0.0, 1.0));
-    let scale = |i: usize, (low, high): (f64, f64)| low + (high - low) * parameter(i);
-    let (duty, start, amplitude_index) = match kind {
-        GaitKind::Wave => {
-            let lag = round_to_decimals(parameter(1), 2) % 1.0;
-            // The two legs of a pair are half a cycle apart. In a straight gait, the pairs are the hind legs and the
-            // front legs.
-            let [lf, rf] = match goal {
-                Goal::Straight(_) => [lag, (lag + 0.5) % 1.0],
-                Goal::Turn(_) => [(lag + 0.5) % 1.0, lag],
-            };
-            // In a turn, the pairs are LH and RF, and LF and RH; therefore RH takes the value `rf`.
-            let starts = match goal {
-                Goal::Straight(_) => [lf, rf, 0.5, 0.0],
-                Goal::Turn(_) => [lf, 0.5, rf, 0.0],
-            };
-            let starts = starts.map(|start| round_to_decimals(start, 2));
-            (round_to_decimals(scale(0, DUTY_RANGE), 2), starts, 2)
-        }
-        GaitKind::Held => (
-            DUTY_RANGE.0,
-            swing_ranks_at(parameter(0)).map(|rank| rank as f64 / 4.0),
-            1,
-        ),
-    };
-    let balance = MAX_PAIR_REDUCTION * (2.0 * parameter(amplitude_index + 1) - 1.0);
-    let pair_gains = [1.0 + balance.min(0.0), 1.0 - balance.max(0.0)];
-    let pair_gains = pair_gains.map(|gain| round_to_decimals(gain, 2));
-    let amplitude = scale(amplitude_index, (MIN_AMPLITUDE, max_amplitude));
-    Bars {
-        name: name.to_string(),
-        held: kind == GaitKind::Held,
-        period: MAX_PERIOD_S,
-        duty,
-        amplitude: round_to_decimals(amplitude, 1),
-        start,
-        gain: std::array::from_fn(|i| goal.stroke_sign(i) * pair_gains[goal.pair_index(i)]),
-    }
-}
 
 fn round_to_decimals(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
@@ -121,13 +114,6 @@ fn swing_ranks_at(position: f64) -> [usize; 4] {
 mod tests {
     use super::*;
 
-    fn search_space(goal: Goal) -> SearchSpace {
-        SearchSpace {
-            goal,
-            max_amplitude: 45.0,
-        }
-    }
-
     #[test]
     fn each_of_the_24_swing_orders_has_its_own_parameter_range() {
         let mut orders: Vec<[usize; 4]> = (0..24)
@@ -146,18 +132,13 @@ mod tests {
 
     #[test]
     fn a_planned_gait_has_the_format_of_robot_toml() {
-        let format_table = |kind, goal, name: &str, period, parameters: &[f64]| {
-            let bars = plan_gait(kind, search_space(goal), name, parameters);
+        let format_table = |kind: GaitKind, goal, name: &str, period, parameters: &[f64]| {
+            let bars = kind.plan_gait(goal, 45.0, name, parameters);
             Bars { period, ..bars }.to_toml()
         };
+        let parameters = [0.5, 0.25, 0.375, 0.5];
         assert_eq!(
-            format_table(
-                GaitKind::Wave,
-                Goal::Straight(1.0),
-                "x",
-                1.5,
-                &[0.5, 0.25, 0.375, 0.5]
-            ),
+            format_table(GaitKind::Wave, Goal::Straight(1.0), "x", 1.5, &parameters),
             "[gait.x]\nperiod = 1.5\nwaveform = \"wave\"\nduty = 0.73\namplitude = 20.0\n\
              start = { LF = 0.25, RF = 0.75, RH = 0.5, LH = 0.0 }\n"
         );
@@ -174,20 +155,12 @@ mod tests {
             (Goal::Straight(1.0), [1, 0, 3, 2]),
             (Goal::Turn(-1.0), [2, 3, 0, 1]),
         ] {
-            let bars = plan_gait(
-                GaitKind::Wave,
-                search_space(goal),
-                "x",
-                &[0.1, 0.83, 0.5, 0.7],
-            );
+            let bars = GaitKind::Wave.plan_gait(goal, 45.0, "x", &[0.1, 0.83, 0.5, 0.7]);
             for (leg, partner) in partners.into_iter().enumerate() {
-                let start_distance = (bars.start[leg] - bars.start[partner]).abs();
-                assert!(
-                    (start_distance - 0.5).abs() < 1e-9,
-                    "{goal:?} {:?}",
-                    bars.start
-                );
-                assert_eq!(bars.gain[leg].abs(), bars.gain[partner].abs());
+                let (start, gain) = (bars.start, bars.gain);
+                let start_distance = (start[leg] - start[partner]).abs();
+                assert!((start_distance - 0.5).abs() < 1e-9, "{goal:?} {start:?}");
+                assert_eq!(gain[leg].abs(), gain[partner].abs());
             }
         }
     }

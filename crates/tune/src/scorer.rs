@@ -5,7 +5,7 @@ use lizard_robot::{Bars, CheckedGait, GroundContact, Robot, Travel};
 use lizard_twin::ServoModel;
 
 use crate::goal::Goal;
-use crate::plan::{GaitKind, MAX_PERIOD_S, SearchSpace, plan_gait};
+use crate::plan::{GaitKind, MAX_PERIOD_S};
 use crate::variation::{Variation, compute_quantiles};
 
 /// Bounds of the search for a robot's largest amplitude, deg.
@@ -32,10 +32,8 @@ impl BuiltGait {
     /// violates a limit of the robot, or if this period exceeds [`MAX_PERIOD_S`].
     pub(crate) fn build(robot: &Robot, bars: &Bars, max_rate: f64) -> Option<Self> {
         let build_with_period = |period: f64| {
-            let bars = Bars {
-                period,
-                ..bars.clone()
-            };
+            let mut bars = bars.clone();
+            bars.period = period;
             let table = bars.to_toml();
             let robot = robot.with_gait(&table).ok()?;
             Some(Self { robot, table })
@@ -65,12 +63,8 @@ impl BuiltGait {
     /// the search.
     pub(crate) fn find_max_amplitude(robot: &Robot, goal: Goal, max_rate: f64) -> f64 {
         let is_within_limits = |max_amplitude: f64| {
-            let space = SearchSpace {
-                goal,
-                max_amplitude,
-            };
             let parameters = &GaitKind::Wave.start_parameters()[0];
-            let bars = plan_gait(GaitKind::Wave, space, "x", parameters);
+            let bars = GaitKind::Wave.plan_gait(goal, max_amplitude, "x", parameters);
             Self::build(robot, &bars, max_rate).is_some()
         };
         let (mut low, mut high) = AMPLITUDE_BOUNDS;
@@ -187,12 +181,8 @@ mod tests {
     }
 
     fn plan_wave_gait(max_amplitude: f64, amplitude_fraction: f64) -> Bars {
-        let space = SearchSpace {
-            goal: Goal::Straight(1.0),
-            max_amplitude,
-        };
         let parameters = [0.5, 0.25, amplitude_fraction, 0.5];
-        plan_gait(GaitKind::Wave, space, "x", &parameters)
+        GaitKind::Wave.plan_gait(Goal::Straight(1.0), max_amplitude, "x", &parameters)
     }
 
     #[test]
@@ -211,12 +201,11 @@ mod tests {
         let robot = paper_robot();
         let bars = plan_wave_gait(45.0, 0.375);
         for rate in [150.0, 262.2, 300.0] {
-            let built =
-                BuiltGait::build(&robot, &bars, rate).expect("the gait is within the limits");
+            let built = BuiltGait::build(&robot, &bars, rate);
+            let used = built.expect("the gait is within the limits").peak_rate();
             assert!(
-                built.peak_rate() <= rate && built.peak_rate() > 0.97 * rate,
-                "allowed: {rate} deg/s, used: {} deg/s",
-                built.peak_rate()
+                used <= rate && used > 0.97 * rate,
+                "allowed: {rate} deg/s, used: {used} deg/s"
             );
         }
     }

@@ -71,7 +71,8 @@ impl Search {
             self.members = scored_members.collect();
         } else {
             for (member, trial) in self.members.iter_mut().zip(scored_members) {
-                if trial.score_or_minimum() >= member.score_or_minimum() {
+                // A rejected member has the lowest score.
+                if trial.score >= member.score {
                     *member = trial;
                 }
             }
@@ -91,19 +92,14 @@ impl Search {
     }
 }
 
-impl Member {
-    fn score_or_minimum(&self) -> f64 {
-        self.score.unwrap_or(f64::NEG_INFINITY)
-    }
-}
-
 /// Creates a trial from the member with the given index: a step towards one of the best members plus a step along the
 /// difference of two other members, crossed with the member itself. A parameter that would leave the range 0 to 1 moves
 /// halfway to the bound instead.
 fn create_trial(members: &[Member], index: usize, rng: &mut Rng) -> Vec<f64> {
     let own_parameters = &members[index].parameters;
     let mut ranked_members: Vec<&Member> = members.iter().collect();
-    ranked_members.sort_by(|a, b| b.score_or_minimum().total_cmp(&a.score_or_minimum()));
+    let score = |member: &Member| member.score.unwrap_or(f64::NEG_INFINITY);
+    ranked_members.sort_by(|a, b| score(b).total_cmp(&score(a)));
     let leader = ranked_members[rng.usize(..LEADER_COUNT)];
     let mut others: Vec<usize> = (0..members.len()).filter(|i| *i != index).collect();
     rng.shuffle(&mut others);

@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use crate::comparison::Comparison;
 use crate::goal::{Goal, GoalError};
-use crate::plan::{GaitKind, SearchSpace, plan_gait};
+use crate::plan::GaitKind;
 use crate::scorer::{BuiltGait, Scorer};
 use crate::search::Search;
 
@@ -56,7 +56,8 @@ pub struct Tuning {
     tuned_gait_name: String,
     /// Largest servo speed, deg/s.
     rate: f64,
-    space: SearchSpace,
+    /// Largest amplitude of the search, deg.
+    max_amplitude: f64,
     scorer: Scorer,
     seed: u64,
 }
@@ -78,17 +79,13 @@ impl Tuning {
     ) -> Result<Self, TuningError> {
         let goal = Goal::from_gait(gait, ground)?;
         let rate = choose_rate(robot, gait, rate)?;
-        let max_amplitude = BuiltGait::find_max_amplitude(robot, goal, rate);
         Ok(Self {
             robot: robot.clone(),
             ground: *ground,
             gait: gait.clone(),
             tuned_gait_name: name.to_owned(),
             rate,
-            space: SearchSpace {
-                goal,
-                max_amplitude,
-            },
+            max_amplitude: BuiltGait::find_max_amplitude(robot, goal, rate),
             scorer: Scorer::new(robot, ground, goal, SCORING_ROBOT_COUNT, seed),
             seed,
         })
@@ -96,7 +93,7 @@ impl Tuning {
 
     /// The goal of the given gait and of the search.
     pub const fn goal(&self) -> Goal {
-        self.space.goal
+        self.scorer.goal()
     }
 
     /// Largest allowed servo speed, deg/s.
@@ -106,10 +103,8 @@ impl Tuning {
 
     /// Starts the search for a kind of gait, independently of other kinds.
     pub fn start_search(&self, kind: GaitKind) -> Search {
-        Search::new(
-            &kind.start_parameters(),
-            self.seed.wrapping_add(kind as u64),
-        )
+        let seed = self.seed.wrapping_add(kind as u64);
+        Search::new(&kind.start_parameters(), seed)
     }
 
     /// Computes the speed that a gait exceeds on 95 % of the random robots, mm/s or deg/s. Returns `None` if the gait
@@ -137,7 +132,8 @@ impl Tuning {
     }
 
     fn build(&self, kind: GaitKind, parameters: &[f64]) -> Option<BuiltGait> {
-        let bars = plan_gait(kind, self.space, &self.tuned_gait_name, parameters);
+        let name = &self.tuned_gait_name;
+        let bars = kind.plan_gait(self.goal(), self.max_amplitude, name, parameters);
         BuiltGait::build(&self.robot, &bars, self.rate)
     }
 }

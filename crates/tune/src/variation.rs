@@ -1,9 +1,7 @@
 //! Random robots and floors within the uncertainty of printed parts, of a floor and of a kitchen scale.
 
 use fastrand::Rng;
-use lizard_robot::{
-    Body, CheckedGait, Drive, DriveKind, Feet, GroundContact, Robot, Stance, Strut, Travel, Walker,
-};
+use lizard_robot::{CheckedGait, DriveKind, GroundContact, Robot, Travel, Walker};
 use lizard_twin::{FRAME_PERIOD_S, ServoModel};
 
 /// Number of the firmware's phase steps in a cycle.
@@ -50,48 +48,27 @@ impl Variation {
     pub fn sample(ground: &GroundContact, seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
         let mut sample_in = |(low, high): (f64, f64)| low + (high - low) * rng.f64();
-        let feet = ground.feet;
-        let ground = GroundContact {
-            feet: Feet {
-                mount_angle: feet.mount_angle
-                    + sample_in((-MAX_MOUNT_SHIFT_DEG, MAX_MOUNT_SHIFT_DEG)),
-                hip_forward: feet.hip_forward + sample_in((-MAX_HIP_SHIFT_MM, MAX_HIP_SHIFT_MM)),
-                hip_side: {
-                    let shift = sample_in((-MAX_HIP_SHIFT_MM, MAX_HIP_SHIFT_MM));
-                    feet.hip_side.map(|side| side + shift)
-                },
-                ..feet
-            },
-            body: Body {
-                centre_of_mass: ground
-                    .body
-                    .centre_of_mass
-                    .map(|position| position + sample_in((-MAX_MASS_SHIFT_MM, MAX_MASS_SHIFT_MM))),
-                ..ground.body
-            },
-            friction_coefficient: ground.friction_coefficient * sample_in(FRICTION_FACTORS),
-            drive: Drive {
-                kind: match ground.drive.kind {
-                    DriveKind::Rigid => DriveKind::Rigid,
-                    DriveKind::Strut(strut) => DriveKind::Strut(Strut {
-                        preload: strut.preload * sample_in(SPRING_FACTORS),
-                        spring_rate: strut.spring_rate * sample_in(SPRING_FACTORS),
-                        ..strut
-                    }),
-                },
-                ..ground.drive
-            },
-            ..*ground
-        };
+        let mut ground = *ground;
+        ground.feet.mount_angle += sample_in((-MAX_MOUNT_SHIFT_DEG, MAX_MOUNT_SHIFT_DEG));
+        ground.feet.hip_forward += sample_in((-MAX_HIP_SHIFT_MM, MAX_HIP_SHIFT_MM));
+        let hip_side_shift = sample_in((-MAX_HIP_SHIFT_MM, MAX_HIP_SHIFT_MM));
+        for side in &mut ground.feet.hip_side {
+            *side += hip_side_shift;
+        }
+        for position in &mut ground.body.centre_of_mass {
+            *position += sample_in((-MAX_MASS_SHIFT_MM, MAX_MASS_SHIFT_MM));
+        }
+        ground.friction_coefficient *= sample_in(FRICTION_FACTORS);
+        if let DriveKind::Strut(strut) = &mut ground.drive.kind {
+            strut.preload *= sample_in(SPRING_FACTORS);
+            strut.spring_rate *= sample_in(SPRING_FACTORS);
+        }
         let pad_factors = std::array::from_fn(|_| sample_in(PAD_FACTORS));
         let ratio_factor = sample_in(PAD_FACTORS);
-        let stance = Stance {
-            stiffness: ground.stance.stiffness * sample_in(LEAF_FACTORS),
-            twist: ground.stance.twist + ground.stance.twist_error * sample_in((-1.0, 1.0)),
-            ..ground.stance
-        };
+        ground.stance.stiffness *= sample_in(LEAF_FACTORS);
+        ground.stance.twist += ground.stance.twist_error * sample_in((-1.0, 1.0));
         Self {
-            ground: GroundContact { stance, ..ground },
+            ground,
             pad_factors,
             ratio_factor,
         }
@@ -120,9 +97,11 @@ impl Variation {
     pub fn simulate_cycle(&self, robot: &Robot, gait: &CheckedGait, model: ServoModel) -> Travel {
         let mut sweeps = gait.sweeps(gait.phase_at(0.0));
         let compute_targets = |phase: u16| gait.sweeps(f64::from(phase) / PHASES_PER_CYCLE);
+        let place_walker = |sweeps: [f64; 4]| {
+            Walker::with_unevenness(self.ground, sweeps, self.pad_factors, self.ratio_factor)
+        };
         if let ServoModel::Motors(motors) = model {
-            let mut walker =
-                Walker::with_unevenness(self.ground, sweeps, self.pad_factors, self.ratio_factor);
+            let mut walker = place_walker(sweeps);
             let mut run_cycle = || {
                 let start_pose = walker.body_pose();
                 for (_, phase) in gait.frames().skip(1) {
@@ -151,12 +130,7 @@ impl Variation {
             true => first_cycle.first(),
             false => first_cycle.last(),
         };
-        let mut walker = Walker::with_unevenness(
-            self.ground,
-            start_sweeps.copied().unwrap_or_default(),
-            self.pad_factors,
-            self.ratio_factor,
-        );
+        let mut walker = place_walker(start_sweeps.copied().unwrap_or_default());
         if can_legs_lag {
             for sweeps in first_cycle {
                 walker.move_to(sweeps);

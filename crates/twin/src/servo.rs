@@ -32,10 +32,7 @@ pub struct UnloadedServo {
 
 impl ServoModel {
     /// An unloaded SG-90: 60 degrees in 0.12 s, dead band 10 us (data sheet).
-    pub const SG90: Self = Self::Unloaded(UnloadedServo {
-        max_rate_deg_per_s: 500.0,
-        dead_band_us: 10.0,
-    });
+    pub const SG90: Self = Self::Unloaded(UnloadedServo::SG90);
 
     /// Creates the model of a robot's servos at the voltage of their supply.
     pub fn for_robot(robot: &Robot) -> Self {
@@ -44,6 +41,11 @@ impl ServoModel {
 }
 
 impl UnloadedServo {
+    const SG90: Self = Self {
+        max_rate_deg_per_s: 500.0,
+        dead_band_us: 10.0,
+    };
+
     /// Computes the sweep at the end of a frame from the sweep `start` and the pulse's sweep `target`, all in deg;
     /// `us_per_degree` is the servo's gain.
     pub fn compute_end_sweep(&self, start: f64, target: f64, us_per_degree: f64) -> f64 {
@@ -58,16 +60,11 @@ impl UnloadedServo {
 mod tests {
     use super::*;
 
-    const SG90: UnloadedServo = UnloadedServo {
-        max_rate_deg_per_s: 500.0,
-        dead_band_us: 10.0,
-    };
-
     #[test]
     fn a_servo_turns_no_faster_than_its_largest_rate() {
         let servo = UnloadedServo {
             dead_band_us: 0.0,
-            ..SG90
+            ..UnloadedServo::SG90
         };
         assert_eq!(servo.compute_end_sweep(0.0, 6.0, 10.0), 6.0);
         assert_eq!(servo.compute_end_sweep(0.0, 60.0, 10.0), 10.0);
@@ -76,7 +73,8 @@ mod tests {
 
     #[test]
     fn a_servo_does_not_turn_inside_its_dead_band() {
-        let compute_end_sweep = |start, target| SG90.compute_end_sweep(start, target, -10.0);
+        let sg90 = UnloadedServo::SG90;
+        let compute_end_sweep = |start, target| sg90.compute_end_sweep(start, target, -10.0);
         assert_eq!(compute_end_sweep(3.0, 3.5), 3.0);
         assert_eq!(
             compute_end_sweep(3.0, 4.0),

@@ -107,10 +107,8 @@ mod tests {
     fn each_foot_is_directly_beside_its_hip_at_neutral() {
         let robot = paper_robot();
         let feet = neutral_shape(&robot, [0.0; 4]).legs.map(|leg| leg.foot);
-        for (foot, (x, y)) in
-            feet.into_iter()
-                .zip([(-80.0, 55.0), (80.0, 55.0), (80.0, -55.0), (-80.0, -55.0)])
-        {
+        let points = [(-80.0, 55.0), (80.0, 55.0), (80.0, -55.0), (-80.0, -55.0)];
+        for (foot, (x, y)) in feet.into_iter().zip(points) {
             assert!((foot - Vector::new(x, y)).length() < 1e-9, "{foot:?}");
         }
         for (foot, leg) in feet.into_iter().zip(neutral_shape(&robot, [10.0; 4]).legs) {

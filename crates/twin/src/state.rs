@@ -1,7 +1,7 @@
 //! The twin's state after a frame.
 
 use lizard_contact::BodyPose;
-use lizard_kinematics::{Check, Margins};
+use lizard_kinematics::Margins;
 
 /// The robot's state after a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,12 +30,4 @@ pub struct State {
     pub margins: Option<Margins>,
     /// Left and right slider travel from nominal, mm; `None` if the loop of a five-bar or slider does not close.
     pub strokes: Option<[f64; 2]>,
-}
-
-impl State {
-    /// Returns the check and the value of the smallest margin; `None` if the loop of a five-bar or slider does not
-    /// close.
-    pub fn min_margin(&self) -> Option<(Check, f64)> {
-        self.margins.map(|margins| margins.min())
-    }
 }

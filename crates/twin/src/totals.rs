@@ -61,19 +61,14 @@ impl Totals {
         for (sum, slip) in self.slips.iter_mut().zip(state.slips) {
             *sum += slip;
         }
-        if let Some((check, value)) = state.min_margin()
+        if let Some((check, value)) = state.margins.map(|margins| margins.min())
             && self.min_margin.is_none_or(|(_, min)| value < min)
         {
             self.min_margin = Some((check, value));
         }
-        if let Some(strokes) = state.strokes {
-            let [min, max] = self
-                .stroke_range
-                .unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
-            self.stroke_range = Some([
-                strokes.into_iter().fold(min, f64::min),
-                strokes.into_iter().fold(max, f64::max),
-            ]);
+        if let Some([left, right]) = state.strokes {
+            let [min, max] = self.stroke_range.unwrap_or([left; 2]);
+            self.stroke_range = Some([min.min(left).min(right), max.max(left).max(right)]);
         }
     }
 

@@ -78,7 +78,9 @@ impl Twin {
                         _ => target,
                     };
                 }
-                self.walker.move_to(self.unlagged_leg_sweeps())
+                // The legs' sweeps without lag.
+                let leg_sweeps = std::array::from_fn(|i| FORWARD_TURN_SIGN[i] * self.sweeps[i]);
+                self.walker.move_to(leg_sweeps)
             }
         };
         let errors =
@@ -166,10 +168,5 @@ impl Twin {
     /// Moves the robot to another pose on the floor.
     pub fn set_body_pose(&mut self, body_pose: BodyPose) {
         self.walker.set_body_pose(body_pose);
-    }
-
-    /// The leg sweeps without lag, deg, foot forward positive.
-    fn unlagged_leg_sweeps(&self) -> [f64; 4] {
-        std::array::from_fn(|i| FORWARD_TURN_SIGN[i] * self.sweeps[i])
     }
 }

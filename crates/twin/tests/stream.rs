@@ -1,6 +1,6 @@
 //! Tests of the twin. The frames of a gait, simulated one by one, move the robot as predicted for the gait.
 
-use lizard_robot::{BodyPose, CheckedGait, Drive, DriveKind, GroundContact, Robot};
+use lizard_robot::{BodyPose, CheckedGait, Drive, DriveKind, GroundContact, Robot, Travel};
 use lizard_twin::{ServoModel, Totals, Twin, UnloadedServo};
 
 fn paper_robot() -> Robot {
@@ -34,6 +34,13 @@ fn simulate_last_of_four_cycles(
     totals
 }
 
+/// Asserts that two movements differ by less than `max_forward`, mm, and 0.2 deg.
+#[track_caller]
+fn assert_close(a: Travel, b: Travel, max_forward: f64, message: &str) {
+    assert!((a.forward - b.forward).abs() < max_forward, "{message}");
+    assert!((a.turn - b.turn).abs() < 0.2, "{message}");
+}
+
 #[test]
 fn a_robot_with_ideal_servos_moves_as_predicted_for_the_gait() {
     let robot = paper_robot();
@@ -50,18 +57,10 @@ fn a_robot_with_ideal_servos_moves_as_predicted_for_the_gait() {
                 simulate_last_of_four_cycles(&robot, gait.name(), ServoModel::Ideal, &ground);
             let (travel, expected) = (totals.travel(), gait.simulate_cycle(&ground).travel);
             let name = gait.name();
-            assert!(
-                (travel.forward - expected.forward).abs() < 0.35,
-                "{name}: expected {expected:?}, got {travel:?}"
-            );
-            assert!(
-                (travel.turn - expected.turn).abs() < 0.2,
-                "{name}: expected {expected:?}, got {travel:?}"
-            );
-            assert!(
-                (totals.duration_s() - gait.period()).abs() < 0.011,
-                "{name}"
-            );
+            let message = format!("{name}: expected {expected:?}, got {travel:?}");
+            assert_close(travel, expected, 0.35, &message);
+            let excess_s = totals.duration_s() - gait.period();
+            assert!(excess_s.abs() < 0.011, "{name}");
         }
     }
 }
@@ -159,14 +158,7 @@ fn simulate_cycle_matches_the_sum_of_its_frames() {
         let twin = Twin::new(&robot, ServoModel::SG90);
         let cycle_travel = twin.simulate_cycle(gait).travel();
         let message = format!("{name}: frames {frame_travel:?}, cycle {cycle_travel:?}");
-        assert!(
-            (cycle_travel.forward - frame_travel.forward).abs() < 0.3,
-            "{message}"
-        );
-        assert!(
-            (cycle_travel.turn - frame_travel.turn).abs() < 0.2,
-            "{message}"
-        );
+        assert_close(cycle_travel, frame_travel, 0.3, &message);
         assert_eq!(
             twin.angles(),
             <[f64; 4]>::from(robot.neutral_pose()),

@@ -7,15 +7,12 @@ use std::fmt;
 
 use lizard_core::numbers::mark::Mark;
 use lizard_core::numbers::robot::Robot;
-use lizard_core::numbers::section::{Region, START_ADDRESS};
+use lizard_core::numbers::section::Region;
 
-use crate::image::{BLANK, Image, PAGE_BYTES, Page};
+use crate::image::{BLANK, Image, PAGE_BYTES, Page, ROBOT_ADDRESS};
 
 /// The code at address 0 during an upload: `rjmp .-2`, a jump to itself. The rest of the page is blank.
 pub(super) const IDLE_JUMP: [u8; 2] = [0xff, 0xcf];
-
-/// The address of a robot's section in flash.
-const ROBOT_ADDRESS: usize = START_ADDRESS as usize;
 
 /// The contents of a board's flash, compared with an image.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -158,8 +155,8 @@ mod tests {
         let image = Image::new(vec![1, 2, 3]).expect("the image fits");
         let describe_after = |changes: &[(usize, u8)]| {
             let mut flash = vec![0xff; BOOT_ADDRESS];
-            for (address, byte) in changes {
-                flash[*address] = *byte;
+            for &(address, byte) in changes {
+                flash[address] = byte;
             }
             FlashContents::compare(&flash, &image).to_string()
         };
@@ -192,36 +189,26 @@ mod tests {
         let paper_description = format!("{lizard_description} robot {paper_label}");
         let describe =
             |flash: &[u8], image: &Image| FlashContents::compare(flash, image).to_string();
+        let unchanged_description = format!("{paper_description} already");
         for image in [&image, &robot_alone_image] {
-            assert_eq!(
-                describe(&flash, image),
-                format!("{paper_description} already")
-            );
+            assert_eq!(describe(&flash, image), unchanged_description);
         }
         assert_eq!(describe(&flash, &build_image(&large)), paper_description);
         // A sketch that is shorter than the firmware leaves the robot's section in flash.
         let mut sketch_flash = flash.clone();
         sketch_flash[..1000].fill(0x95);
-        assert_eq!(
-            describe(&sketch_flash, &robot_alone_image),
-            "the board has another program"
-        );
+        let sketch_description = describe(&sketch_flash, &robot_alone_image);
+        assert_eq!(sketch_description, "the board has another program");
         let mut damaged_flash = flash.clone();
         damaged_flash[ROBOT_ADDRESS + 100] ^= 1;
-        assert_eq!(
-            describe(&damaged_flash, &image),
-            format!("{lizard_description} with a damaged robot")
-        );
+        let expected = format!("{lizard_description} with a damaged robot");
+        assert_eq!(describe(&damaged_flash, &image), expected);
         damaged_flash[ROBOT_ADDRESS..].fill(0xff);
-        assert_eq!(
-            describe(&damaged_flash, &image),
-            format!("{lizard_description} without a robot")
-        );
+        let expected = format!("{lizard_description} without a robot");
+        assert_eq!(describe(&damaged_flash, &image), expected);
         let mut other_build_flash = flash;
         other_build_flash[0x1000] ^= 1;
-        assert_eq!(
-            describe(&other_build_flash, &image),
-            paper_description.replace("has ", "has another build of ")
-        );
+        let expected = paper_description.replace("has ", "has another build of ");
+        assert_eq!(describe(&other_build_flash, &image), expected);
     }
 }

@@ -31,7 +31,7 @@ pub struct Image {
 }
 
 /// The address of a robot's section.
-const ROBOT_ADDRESS: usize = START_ADDRESS as usize;
+pub(crate) const ROBOT_ADDRESS: usize = START_ADDRESS as usize;
 
 const _: () = assert!(
     ROBOT_ADDRESS.is_multiple_of(PAGE_BYTES),
@@ -185,14 +185,12 @@ impl Image {
     /// # Panics
     /// Never: all addresses have 16 bits, and lines are short.
     pub fn to_hex(&self) -> String {
-        let mut records = Vec::new();
-        for (index, line) in self.bytes.chunks(LINE_BYTES).enumerate() {
-            records.push(Record::Data {
-                offset: (self.start_address + index * LINE_BYTES) as u16,
-                value: line.to_vec(),
-            });
-        }
-        records.push(Record::EndOfFile);
+        let lines = self.bytes.chunks(LINE_BYTES).enumerate();
+        let records = lines.map(|(index, line)| Record::Data {
+            offset: (self.start_address + index * LINE_BYTES) as u16,
+            value: line.to_vec(),
+        });
+        let records: Vec<Record> = records.chain([Record::EndOfFile]).collect();
         let text = ihex::create_object_file_representation(&records);
         text.expect("the lines are short and one end record follows them")
     }
@@ -260,9 +258,8 @@ mod tests {
 :00000001FF\n";
 
     fn parse_error(text: &str) -> String {
-        Image::from_hex(text)
-            .expect_err("the text is not an image")
-            .to_string()
+        let error = Image::from_hex(text).expect_err("the text is not an image");
+        error.to_string()
     }
 
     #[test]
@@ -284,10 +281,8 @@ mod tests {
         let image = Image::new(bytes).expect("the image fits");
         let text = image.to_hex();
         assert_eq!(Image::from_hex(&text), Ok(image));
-        assert_eq!(
-            Image::from_hex(HEX).expect("the text is an image").to_hex(),
-            HEX
-        );
+        let image = Image::from_hex(HEX).expect("the text is an image");
+        assert_eq!(image.to_hex(), HEX);
     }
 
     #[test]
@@ -328,13 +323,14 @@ mod tests {
     fn the_error_for_an_invalid_hex_line_has_its_number() {
         let error_with_second_line =
             |line: &str| parse_error(&HEX.replacen(":0400100001020304E2", line, 1));
-        assert!(
-            error_with_second_line(":0400100001020304E3")
-                .starts_with("line 2 is not Intel HEX: invalid check")
-        );
-        assert!(
-            error_with_second_line("<html>").starts_with("line 2 is not Intel HEX: missing start")
-        );
+        for (line, reason) in [
+            (":0400100001020304E3", "invalid check"),
+            ("<html>", "missing start"),
+        ] {
+            let expected_start = format!("line 2 is not Intel HEX: {reason}");
+            let error = error_with_second_line(line);
+            assert!(error.starts_with(&expected_start), "{line}: {error}");
+        }
         assert_eq!(
             error_with_second_line(":010004009566\n"),
             "line 2 gives address 0x0004 a second, different value"

@@ -45,9 +45,10 @@ const DRAIN_TIME: Duration = Duration::from_millis(40);
 const RESPONSE_TIME_LIMIT: Duration = Duration::from_secs(2);
 
 /// A kind of boot loader.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LoaderKind {
     /// The boot loader of UNOs, and of Nanos since 2018.
+    #[default]
     Optiboot,
     /// The boot loader of older Nanos and of many clones. It starts the program 1.5 s after the last byte, even after
     /// the command to leave.
@@ -154,8 +155,8 @@ impl<B: Board> Loader<B> {
     pub async fn read_page(&mut self, address: usize) -> Result<[u8; PAGE_BYTES], LoaderError> {
         self.set_address(address).await?;
         let mut page = [0; PAGE_BYTES];
-        self.send_command(&[READ_PAGE, 0, PAGE_BYTES as u8, FLASH], &mut page)
-            .await?;
+        let command = [READ_PAGE, 0, PAGE_BYTES as u8, FLASH];
+        self.send_command(&command, &mut page).await?;
         Ok(page)
     }
 
@@ -170,8 +171,8 @@ impl<B: Board> Loader<B> {
     ) -> Result<(), LoaderError> {
         self.set_address(address).await?;
         let header = [PROGRAM_PAGE, 0, PAGE_BYTES as u8, FLASH];
-        self.send_command(&[header.as_slice(), page].concat(), &mut [])
-            .await
+        let command = [header.as_slice(), page].concat();
+        self.send_command(&command, &mut []).await
     }
 
     /// Makes the boot loader start the program in flash.

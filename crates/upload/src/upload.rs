@@ -17,12 +17,12 @@ use std::fmt;
 use std::ops::Range;
 
 use lizard_core::numbers::mark::Mark;
-use lizard_core::numbers::section::{FORMAT, Header, MAGIC, Region, START_ADDRESS};
+use lizard_core::numbers::section::{FORMAT, Header, MAGIC, Region};
 
 use crate::board::Board;
 use crate::chip::Chip;
 use crate::contents::{FlashContents, IDLE_JUMP, Program};
-use crate::image::{BLANK, BOOT_ADDRESS, Image, PAGE_BYTES, Page};
+use crate::image::{BLANK, BOOT_ADDRESS, Image, PAGE_BYTES, Page, ROBOT_ADDRESS};
 use crate::loader::{Loader, LoaderError, LoaderKind};
 use crate::target::{ImageTooLong, Target};
 
@@ -30,7 +30,7 @@ use crate::target::{ImageTooLong, Target};
 /// boot loader answers.
 const MAX_ATTEMPTS: usize = 4;
 /// Index of the page where a robot's section begins.
-const ROBOT_PAGE_INDEX: usize = START_ADDRESS as usize / PAGE_BYTES;
+const ROBOT_PAGE_INDEX: usize = ROBOT_ADDRESS / PAGE_BYTES;
 
 /// The page operation in progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -200,10 +200,8 @@ pub async fn upload<B: Board>(
     }
     let written_pages = is_page_written.into_iter().filter(|is_written| *is_written);
     let written = written_pages.count();
-    Ok(PageCounts {
-        written,
-        kept: image.pages().len() - written,
-    })
+    let kept = image.pages().len() - written;
+    Ok(PageCounts { written, kept })
 }
 
 /// Resets a board, contacts its boot loader, starts the program in flash, and returns the kind of the boot loader.
@@ -233,18 +231,18 @@ pub async fn identify<B: Board>(loader: &mut Loader<B>) -> Result<LoaderKind, Up
 }
 
 /// The error of a failed attempt.
+#[derive(Debug, thiserror::Error)]
 enum AttemptError {
     /// The boot loader failed; another attempt may help.
-    Loader(LoaderError),
+    #[error(transparent)]
+    Loader(#[from] LoaderError),
     /// The upload failed, and another attempt cannot help.
-    UploadFailed(UploadError),
+    #[error(transparent)]
+    UploadFailed(#[from] UploadError),
 }
 
-impl From<LoaderError> for AttemptError {
-    fn from(error: LoaderError) -> Self {
-        Self::Loader(error)
-    }
-}
+/// The result of an attempt or a part of it.
+type AttemptResult<T = ()> = Result<T, AttemptError>;
 
 /// An upload in progress.
 struct Upload<'a, B> {
@@ -268,15 +266,15 @@ impl<B: Board> Upload<'_, B> {
         &mut self,
         kind: LoaderKind,
         is_page_written: &mut [bool],
-    ) -> Result<(), AttemptError> {
+    ) -> AttemptResult {
         self.loader.reset_and_sync(kind).await?;
         self.has_answered = true;
         let chip = Chip(self.loader.read_signature().await?);
         if chip != Chip::ATMEGA328P {
-            return Err(AttemptError::UploadFailed(UploadError::Chip(chip)));
+            return Err(UploadError::Chip(chip).into());
         }
         let room_check = self.target.check_room(self.image, kind);
-        room_check.map_err(|error| AttemptError::UploadFailed(error.into()))?;
+        room_check.map_err(UploadError::from)?;
         let flash = self.read_flash(kind.start_address()).await?;
         let mut pages_to_write = self.image.pages();
         pages_to_write.retain(|page| flash[page.range()] != page.bytes);
@@ -302,11 +300,7 @@ impl<B: Board> Upload<'_, B> {
 
     /// Writes pages, and the image's first page last. Before the other pages, fills the first page with the idle loop
     /// or, for a robot alone, with blank bytes.
-    async fn write_pages(
-        &mut self,
-        mut pages_to_write: Vec<Page>,
-        flash: &[u8],
-    ) -> Result<(), AttemptError> {
+    async fn write_pages(&mut self, mut pages_to_write: Vec<Page>, flash: &[u8]) -> AttemptResult {
         let first_page = self.first_page();
         let mut placeholder = [BLANK; PAGE_BYTES];
         if self.image.is_robot_alone() {
@@ -325,7 +319,7 @@ impl<B: Board> Upload<'_, B> {
 
     /// Reads flash up to the boot loader and reports its contents. For a robot alone, reads only the first page of
     /// the code and the pages of the old and the new robot.
-    async fn read_flash(&mut self, boot_address: usize) -> Result<Vec<u8>, AttemptError> {
+    async fn read_flash(&mut self, boot_address: usize) -> AttemptResult<Vec<u8>> {
         let mut flash = vec![BLANK; BOOT_ADDRESS];
         if self.image.is_robot_alone() {
             self.read_pages(&mut flash, 0..1).await?;
@@ -351,21 +345,17 @@ impl<B: Board> Upload<'_, B> {
     }
 
     /// Checks that the code in flash can read the new robot.
-    fn check_code(&self, contents: &FlashContents) -> Result<(), AttemptError> {
+    fn check_code(&self, contents: &FlashContents) -> Result<(), UploadError> {
         let contents = contents.clone();
-        Err(AttemptError::UploadFailed(match contents.program {
-            Program::Lizard { mark, .. } if mark.format == FORMAT => return Ok(()),
-            Program::Lizard { mark, .. } => UploadError::Format { contents, mark },
-            _ => UploadError::NoLizard(contents),
-        }))
+        match contents.program {
+            Program::Lizard { mark, .. } if mark.format == FORMAT => Ok(()),
+            Program::Lizard { mark, .. } => Err(UploadError::Format { contents, mark }),
+            _ => Err(UploadError::NoLizard(contents)),
+        }
     }
 
     /// Reads the pages with the given indices into `flash`, and reports the progress.
-    async fn read_pages(
-        &mut self,
-        flash: &mut [u8],
-        page_indices: Range<usize>,
-    ) -> Result<(), AttemptError> {
+    async fn read_pages(&mut self, flash: &mut [u8], page_indices: Range<usize>) -> AttemptResult {
         let page_count = page_indices.len();
         for (done_count, page_index) in page_indices.enumerate() {
             let address = page_index * PAGE_BYTES;
@@ -377,7 +367,7 @@ impl<B: Board> Upload<'_, B> {
     }
 
     /// Writes pages and reads them back. Writes a page once more if it does not read back as written.
-    async fn write_and_verify(&mut self, pages: &[Page]) -> Result<(), AttemptError> {
+    async fn write_and_verify(&mut self, pages: &[Page]) -> AttemptResult {
         for (index, page) in pages.iter().enumerate() {
             self.write_page(page.address, &page.bytes).await?;
             (self.report)(Event::Progress(Step::Writing, index + 1, pages.len()));
@@ -389,12 +379,13 @@ impl<B: Board> Upload<'_, B> {
                 read_back = self.loader.read_page(page.address).await?;
             }
             if let Some(offset) = find_first_difference(&read_back, &page.bytes) {
-                return Err(AttemptError::UploadFailed(UploadError::ByteNotKept {
+                let error = UploadError::ByteNotKept {
                     address: page.address + offset,
                     written: page.bytes[offset],
                     read: read_back[offset],
                     flash_state: self.flash_state,
-                }));
+                };
+                return Err(error.into());
             }
             (self.report)(Event::Progress(Step::Verifying, index + 1, pages.len()));
         }
@@ -402,11 +393,7 @@ impl<B: Board> Upload<'_, B> {
     }
 
     /// Writes the page that starts at `address`.
-    async fn write_page(
-        &mut self,
-        address: usize,
-        bytes: &[u8; PAGE_BYTES],
-    ) -> Result<(), AttemptError> {
+    async fn write_page(&mut self, address: usize, bytes: &[u8; PAGE_BYTES]) -> AttemptResult {
         assert!(
             address < BOOT_ADDRESS,
             "an image ends before the boot loader"
@@ -429,14 +416,10 @@ impl<B: Board> Upload<'_, B> {
 /// Reads the end address of the robot in flash from its header; returns the start address if the header is invalid.
 /// Needs only the robot's first page.
 fn find_robot_end(flash: &[u8], boot_address: usize) -> usize {
-    let start = usize::from(START_ADDRESS);
-    let header: Header = Region::new(&flash[start..]).read(0);
-    let end = start + usize::from(header.length);
-    if header.magic == MAGIC && end <= boot_address {
-        end
-    } else {
-        start
-    }
+    let header: Header = Region::new(&flash[ROBOT_ADDRESS..]).read(0);
+    let end = ROBOT_ADDRESS + usize::from(header.length);
+    let is_valid = header.magic == MAGIC && end <= boot_address;
+    if is_valid { end } else { ROBOT_ADDRESS }
 }
 
 /// Returns the index of the first byte in which two pages differ; `None` if the pages are equal.

@@ -112,33 +112,21 @@ impl AnalysedVideo {
         };
         let scene = &self.scene;
         let find_nearest_frame = |time: &f64| {
+            let distance = |frame: &FrameTags| (frame.seconds - time).abs();
             let frames = self.frames.iter();
-            frames.min_by(|a, b| {
-                (a.seconds - time)
-                    .abs()
-                    .total_cmp(&(b.seconds - time).abs())
-            })
+            frames.min_by(|a, b| distance(a).total_cmp(&distance(b)))
         };
-        let frames: Vec<&FrameTags> = cycles
-            .boundaries
-            .iter()
-            .filter_map(find_nearest_frame)
-            .collect();
+        let boundaries = cycles.boundaries.iter();
+        let frames: Vec<&FrameTags> = boundaries.filter_map(find_nearest_frame).collect();
         let mean_movement = |scene: &Scene| -> [f64; 3] {
-            let mut points: Vec<PathPoint> = frames
-                .iter()
-                .filter_map(|frame| {
-                    Some(PathPoint {
-                        seconds: 0.0,
-                        pose: frame.find_body_pose(scene, self.camera.has_camera_moved)?,
-                    })
-                })
-                .collect();
+            let to_point = |frame: &&FrameTags| {
+                let pose = frame.find_body_pose(scene, self.camera.has_camera_moved)?;
+                Some(PathPoint { seconds: 0.0, pose })
+            };
+            let mut points: Vec<PathPoint> = frames.iter().filter_map(to_point).collect();
             unwrap_headings(&mut points);
-            let travels: Vec<Travel> = points
-                .windows(2)
-                .map(|pair| pair[1].pose.travel_from(pair[0].pose))
-                .collect();
+            let travel = |pair: &[PathPoint]| pair[1].pose.travel_from(pair[0].pose);
+            let travels: Vec<Travel> = points.windows(2).map(travel).collect();
             travel_components(&travels)
                 .map(|values| values.iter().sum::<f64>() / values.len().max(1) as f64)
         };

@@ -81,17 +81,15 @@ fn find_dark_pixels(frame: &Frame, half_window: usize) -> Vec<bool> {
         }
     }
     let mut is_dark = Vec::with_capacity(width * height);
+    let window_range = |centre: usize, length: usize| {
+        let end = (centre + half_window + 1).min(length);
+        (centre.saturating_sub(half_window), end)
+    };
     for (y, row) in frame.grey().chunks(width).enumerate() {
-        let (top, bottom) = (
-            y.saturating_sub(half_window),
-            (y + half_window + 1).min(height),
-        );
+        let (top, bottom) = window_range(y, height);
         let (above, below) = (top * (width + 1), bottom * (width + 1));
         for (x, grey) in row.iter().enumerate() {
-            let (left, right) = (
-                x.saturating_sub(half_window),
-                (x + half_window + 1).min(width),
-            );
+            let (left, right) = window_range(x, width);
             // Large sums wrap around, but their differences are correct.
             let window_sum = integral_image[below + right]
                 .wrapping_sub(integral_image[below + left])

@@ -46,11 +46,8 @@ pub(crate) fn compute_deviations(
         let is_inside = |point: &&PathPoint| (start.seconds..end).contains(&point.seconds);
         for point in path.iter().filter(is_inside) {
             let phase = (point.seconds - start.seconds) / (end - start.seconds);
-            let [measured, predicted] = [
-                point.pose.travel_from(start.pose),
-                gait.pose_at(phase).travel(),
-            ]
-            .map(components);
+            let measured = components(point.pose.travel_from(start.pose));
+            let predicted = components(gait.pose_at(phase).travel());
             deviations.push(Deviation {
                 cycle_index,
                 phase,
@@ -63,24 +60,19 @@ pub(crate) fn compute_deviations(
 
 /// Computes the mean path within a cycle over several walks. A bin with too few frames has no point.
 pub(crate) fn compute_points(walks: &[Walk], gait: &Gait) -> Vec<CyclePoint> {
-    let frames_per_cycle = walks
-        .iter()
-        .map(|walk| walk.deviations.len() / walk.cycles.travels.len());
-    let bin_count = frames_per_cycle.min().unwrap_or(0).clamp(1, MAX_BIN_COUNT);
-    let mut points: Vec<CyclePoint> = (0..bin_count)
-        .filter_map(|bin_index| compute_point(walks, gait, bin_index, bin_count))
-        .collect();
+    let frames_per_cycle = |walk: &Walk| walk.deviations.len() / walk.cycles.travels.len();
+    let min_count = walks.iter().map(frames_per_cycle).min();
+    let bin_count = min_count.unwrap_or(0).clamp(1, MAX_BIN_COUNT);
+    let point_of_bin = |bin_index| compute_point(walks, gait, bin_index, bin_count);
+    let mut points: Vec<CyclePoint> = (0..bin_count).filter_map(point_of_bin).collect();
     // The spread of a few cycles is inaccurate, so no bin gets an error below the average.
     for axis in 0..3 {
-        let squares = points
-            .iter()
-            .map(|point| random_error(point.measured[axis]).powi(2));
-        let typical_error = (squares.sum::<f64>() / points.len() as f64).sqrt();
+        let square = |point: &CyclePoint| random_error(point.measured[axis]).powi(2);
+        let mean_square = points.iter().map(square).sum::<f64>() / points.len() as f64;
         for point in &mut points {
             let mean = &mut point.measured[axis];
-            mean.standard_error = random_error(*mean)
-                .max(typical_error)
-                .hypot(mean.systematic_error);
+            let error = random_error(*mean).max(mean_square.sqrt());
+            mean.standard_error = error.hypot(mean.systematic_error);
         }
     }
     points
@@ -88,9 +80,8 @@ pub(crate) fn compute_points(walks: &[Walk], gait: &Gait) -> Vec<CyclePoint> {
 
 /// Returns the part of a mean's standard error that results from the spread of the cycles.
 fn random_error(mean: Mean) -> f64 {
-    (mean.standard_error.powi(2) - mean.systematic_error.powi(2))
-        .max(0.0)
-        .sqrt()
+    let variance = mean.standard_error.powi(2) - mean.systematic_error.powi(2);
+    variance.max(0.0).sqrt()
 }
 
 /// Computes the point for one of `bin_count` equal bins of the phase; `None` if the bin has too few frames.
@@ -108,10 +99,9 @@ fn compute_point(
             let cycles = means_by_cycle(walk, bin_index, bin_count, axis);
             // The errors that all cycles have in common are those of the clock, the scale and the camera.
             let clock_error = rate[axis] * walk.cycles.start_error / walk.cycles.period.value;
-            let scale_error = if axis < 2 {
-                predicted[axis] * walk.scale_error
-            } else {
-                0.0
+            let scale_error = match axis {
+                0 | 1 => predicted[axis] * walk.scale_error,
+                _ => 0.0,
             };
             let systematic_variance = clock_error.powi(2)
                 + scale_error.powi(2)
@@ -137,20 +127,15 @@ fn compute_point(
 
 /// Computes the mean deviation in a bin of the phase for each cycle that has a frame in that bin.
 fn means_by_cycle(walk: &Walk, bin_index: usize, bin_count: usize, axis: usize) -> Vec<f64> {
-    let is_in_bin =
-        |deviation: &&Deviation| (deviation.phase * bin_count as f64) as usize == bin_index;
     let cycle_mean = |index: usize| {
-        let values = walk
-            .deviations
-            .iter()
-            .filter(|deviation| deviation.cycle_index == index);
-        let values: Vec<f64> = values
-            .filter(is_in_bin)
-            .map(|deviation| deviation.offset[axis])
-            .collect();
+        let is_selected = |deviation: &&Deviation| {
+            let bin = (deviation.phase * bin_count as f64) as usize;
+            deviation.cycle_index == index && bin == bin_index
+        };
+        let selected = walk.deviations.iter().filter(is_selected);
+        let values: Vec<f64> = selected.map(|deviation| deviation.offset[axis]).collect();
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     };
-    (0..walk.cycles.travels.len())
-        .filter_map(cycle_mean)
-        .collect()
+    let cycle_count = walk.cycles.travels.len();
+    (0..cycle_count).filter_map(cycle_mean).collect()
 }

@@ -62,10 +62,8 @@ impl Movements {
         let duration = MOVEMENT_CYCLES * period;
         let movement_from = |point: &PathPoint| {
             let later_pose = path::interpolate_at(path, point.seconds + duration)?;
-            Some((
-                point.seconds,
-                movement_in_mm(later_pose.travel_from(point.pose)),
-            ))
+            let movement = movement_in_mm(later_pose.travel_from(point.pose));
+            Some((point.seconds, movement))
         };
         Self {
             duration,
@@ -83,11 +81,10 @@ impl Movements {
     /// # Errors
     /// Fails if the movement shows another gait or pace.
     pub(crate) fn fit_timing(&self, gait: &Gait) -> Result<CycleTiming, VideoError> {
-        let periods = likely_periods(gait);
         let centred_misfit =
             |start: f64, period: f64| squared_norm(&self.centred_residuals(gait, start, period));
         let (mut min_misfit, mut start, mut period) =
-            self.minimise(gait.period, &periods, centred_misfit);
+            self.minimise(gait.period, &likely_periods(gait), centred_misfit);
         let (mut expected_period, mut relative_sigma) = (gait.period, PERIOD_SIGMA);
         // If the frame rate is wrong, only the path itself gives the duration of a cycle.
         let (wide_misfit, wide_start, wide_period) =
@@ -111,9 +108,8 @@ impl Movements {
                 period: gait.period,
             });
         }
-        let sigma = (min_misfit / (3 * self.movements.len()) as f64)
-            .sqrt()
-            .max(1e-3);
+        let variance = min_misfit / (3 * self.movements.len()) as f64;
+        let sigma = variance.sqrt().max(1e-3);
         let model = |parameters: &[f64]| {
             let mut residuals = self.centred_residuals(gait, parameters[0], parameters[1]);
             residuals.iter_mut().for_each(|value| *value /= sigma);
@@ -122,28 +118,15 @@ impl Movements {
             residuals.push((parameters[0] - start) / gait.period);
             residuals
         };
-        Ok(match least_squares::fit(&[start, period], model) {
-            Some(fit) => CycleTiming {
-                start: Estimate {
-                    value: fit.parameters[0],
-                    standard_error: fit.covariance[(0, 0)].sqrt(),
-                },
-                period: Estimate {
-                    value: fit.parameters[1],
-                    standard_error: fit.covariance[(1, 1)].sqrt(),
-                },
-            },
-            None => CycleTiming {
-                start: Estimate {
-                    value: start,
-                    standard_error: gait.period / START_COUNT as f64,
-                },
-                period: Estimate {
-                    value: period,
-                    standard_error: relative_sigma * period,
-                },
-            },
-        })
+        let [start, period] = match least_squares::fit(&[start, period], model) {
+            Some(fit) => [0, 1]
+                .map(|i: usize| Estimate::new(fit.parameters[i], fit.covariance[(i, i)].sqrt())),
+            None => [
+                Estimate::new(start, gait.period / START_COUNT as f64),
+                Estimate::new(period, relative_sigma * period),
+            ],
+        };
+        Ok(CycleTiming { start, period })
     }
 
     /// Computes the misfit of a gait: the squared difference between measured and predicted movements, as a fraction of
@@ -157,10 +140,8 @@ impl Movements {
     pub(crate) fn misfit_at_best_multiple(&self, gait: &Gait) -> (f64, u32) {
         let misfits = PERIOD_MULTIPLES.map(|multiple| {
             let period = f64::from(multiple) * gait.period;
-            (
-                self.compute_misfit_with_periods(gait, period, &[period]),
-                multiple,
-            )
+            let misfit = self.compute_misfit_with_periods(gait, period, &[period]);
+            (misfit, multiple)
         });
         let best = misfits.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
         best.unwrap_or((f64::INFINITY, 1))
@@ -175,10 +156,8 @@ impl Movements {
 
     /// Computes the sum of the measured movements' squares.
     fn sum_of_squares(&self) -> f64 {
-        self.movements
-            .iter()
-            .map(|(_, measured)| movement_length(*measured).powi(2))
-            .sum()
+        let square = |(_, measured): &(f64, [f64; 3])| movement_length(*measured).powi(2);
+        self.movements.iter().map(square).sum()
     }
 
     /// Finds the first cycle whose movement differs from the next cycle's, and returns its start, s; `None` if all
@@ -194,9 +173,8 @@ impl Movements {
             let (mut difference, mut mean_squares) = (0.0, 0.0);
             for (time, movement) in self.movements.iter().filter(is_in_cycle) {
                 if let Some(next_movement) = self.movement_at(time + period) {
-                    difference +=
-                        movement_length([0, 1, 2].map(|axis| next_movement[axis] - movement[axis]))
-                            .powi(2);
+                    let change = [0, 1, 2].map(|axis| next_movement[axis] - movement[axis]);
+                    difference += movement_length(change).powi(2);
                     mean_squares += (movement_length(next_movement).powi(2)
                         + movement_length(*movement).powi(2))
                         / 2.0;
@@ -258,11 +236,9 @@ impl Movements {
         for axis in 0..3 {
             let on_axis = residuals.iter().skip(axis).step_by(3);
             let mean = on_axis.sum::<f64>() / self.movements.len() as f64;
-            residuals
-                .iter_mut()
-                .skip(axis)
-                .step_by(3)
-                .for_each(|residual| *residual -= mean);
+            for residual in residuals.iter_mut().skip(axis).step_by(3) {
+                *residual -= mean;
+            }
         }
         residuals
     }

@@ -11,6 +11,7 @@ use lizard_contact::{BodyPose, Travel};
 use crate::cycle_timing::{CycleTiming, Movements};
 use crate::estimate::Estimate;
 use crate::gait::{Gait, HALF_WINDOW, MIN_MOVEMENT, movement_in_mm, movement_length};
+use crate::mean;
 use crate::path::{self, PathPoint};
 use crate::video_error::VideoError;
 
@@ -96,10 +97,8 @@ pub(crate) fn find_cycles(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Vid
 
 /// Computes the movements while the robot walks evenly; fails if they are too few for a comparison with a gait.
 pub(crate) fn compute_movements(path: &[PathPoint], gait: &Gait) -> Result<Movements, VideoError> {
-    Ok(Movements::from_path(
-        select_even_walk(path, gait)?.0,
-        gait.period,
-    ))
+    let (walk, _) = select_even_walk(path, gait)?;
+    Ok(Movements::from_path(walk, gait.period))
 }
 
 /// Selects the part of a path on which the robot walks evenly; returns it with the times of its start and end, s.
@@ -133,14 +132,12 @@ fn mean_displacement_to_calm(
     period: f64,
     gait: &Gait,
 ) -> Option<BodyPose> {
-    let displacements: Vec<BodyPose> = calm_points
-        .iter()
-        .filter_map(|point| {
-            let start_seconds = point.seconds - calm_phase * period;
-            let start = pose_at_start(path, start_seconds, period, gait)?;
-            Some(path::pose_from_travel(point.pose.travel_from(start)))
-        })
-        .collect();
+    let displacement_to = |point: &PathPoint| {
+        let start_seconds = point.seconds - calm_phase * period;
+        let start = pose_at_start(path, start_seconds, period, gait)?;
+        Some(path::pose_from_travel(point.pose.travel_from(start)))
+    };
+    let displacements: Vec<BodyPose> = calm_points.iter().filter_map(displacement_to).collect();
     let mean_coordinate = |coordinate: fn(&BodyPose) -> f64| {
         displacements.iter().map(coordinate).sum::<f64>() / displacements.len() as f64
     };
@@ -164,26 +161,19 @@ fn pose_at_start(path: &[PathPoint], seconds: f64, period: f64, gait: &Gait) -> 
         path::compose(point.pose, path::inverse(displacement))
     };
     let fraction = (seconds - a.seconds) / (b.seconds - a.seconds);
-    Some(path::interpolate(
-        shifted_pose(a),
-        shifted_pose(b),
-        fraction,
-    ))
+    let [a, b] = [a, b].map(shifted_pose);
+    Some(path::interpolate(a, b, fraction))
 }
 
 /// Finds the start and the end of the time in which the robot walks evenly, s.
 fn find_even_walk(path: &[PathPoint], gait: &Gait) -> Result<[f64; 2], VideoError> {
-    let travels: Vec<(f64, Travel)> = path
-        .iter()
-        .filter_map(|point| {
-            let later_pose = path::interpolate_at(path, point.seconds + gait.period)?;
-            Some((point.seconds, later_pose.travel_from(point.pose)))
-        })
-        .collect();
-    let movement_lengths: Vec<f64> = travels
-        .iter()
-        .map(|(_, travel)| movement_length(movement_in_mm(*travel)))
-        .collect();
+    let travel_from = |point: &PathPoint| {
+        let later_pose = path::interpolate_at(path, point.seconds + gait.period)?;
+        Some((point.seconds, later_pose.travel_from(point.pose)))
+    };
+    let travels: Vec<(f64, Travel)> = path.iter().filter_map(travel_from).collect();
+    let length = |(_, travel): &(f64, Travel)| movement_length(movement_in_mm(*travel));
+    let movement_lengths: Vec<f64> = travels.iter().map(length).collect();
     let max_length = movement_lengths.iter().copied().fold(0.0, f64::max);
     if travels.is_empty() {
         let duration = path.last().map_or(0.0, |point| point.seconds)
@@ -191,24 +181,18 @@ fn find_even_walk(path: &[PathPoint], gait: &Gait) -> Result<[f64; 2], VideoErro
         return Err(too_short_error(duration, gait));
     }
     if max_length < MIN_MOVEMENT {
-        let distances = travels
-            .iter()
-            .map(|(_, travel)| travel.forward.hypot(travel.left));
+        let max = |size: fn(&Travel) -> f64| {
+            let sizes = travels.iter().map(|(_, travel)| size(travel));
+            sizes.fold(0.0, f64::max)
+        };
         return Err(VideoError::NoMovement {
-            distance: distances.fold(0.0, f64::max),
-            turn: travels
-                .iter()
-                .map(|(_, travel)| travel.turn.abs())
-                .fold(0.0, f64::max),
+            distance: max(|travel| travel.forward.hypot(travel.left)),
+            turn: max(|travel| travel.turn.abs()),
         });
     }
-    let mut large_lengths: Vec<f64> = movement_lengths
-        .iter()
-        .copied()
-        .filter(|length| *length > max_length / 2.0)
-        .collect();
-    large_lengths.sort_by(f64::total_cmp);
-    let usual_length = large_lengths[large_lengths.len() / 2];
+    let mut large_lengths = movement_lengths.clone();
+    large_lengths.retain(|length| *length > max_length / 2.0);
+    let usual_length = mean::median(large_lengths).unwrap_or(max_length);
     // Finds the longest run of frames after each of which the robot moves as far as usual within a cycle.
     let (mut longest_run, mut run_start): (Option<[usize; 2]>, Option<usize>) = (None, None);
     for (i, length) in movement_lengths.iter().enumerate() {
@@ -223,14 +207,9 @@ fn find_even_walk(path: &[PathPoint], gait: &Gait) -> Result<[f64; 2], VideoErro
     }
     let [even_begin, even_end] = longest_run.unwrap_or_default();
     let is_moving = |length: &f64| *length > MIN_UNEVEN_FRACTION * usual_length;
-    let first = movement_lengths
-        .iter()
-        .position(is_moving)
-        .unwrap_or(even_begin);
-    let last = movement_lengths
-        .iter()
-        .rposition(is_moving)
-        .unwrap_or(even_end);
+    let first = movement_lengths.iter().position(is_moving);
+    let last = movement_lengths.iter().rposition(is_moving);
+    let (first, last) = (first.unwrap_or(even_begin), last.unwrap_or(even_end));
     for (start, end, seconds) in [
         (first, even_begin, travels[even_begin].0),
         (even_end, last, travels[even_end].0 + gait.period),

@@ -31,13 +31,12 @@ fn decode_png(bytes: &[u8]) -> Result<Frame, String> {
     let mut pixels = vec![0; reader.output_buffer_size().ok_or("it is too large")?];
     let info = reader.next_frame(&mut pixels).map_err(error_text)?;
     let channels = info.color_type.samples();
-    let grey = pixels[..info.buffer_size()]
-        .chunks_exact(channels)
-        .map(|pixel| match *pixel {
-            [red, green, blue, ..] => luminance(red, green, blue),
-            [grey, ..] => grey,
-            [] => 0,
-        });
+    let pixels = pixels[..info.buffer_size()].chunks_exact(channels);
+    let grey = pixels.map(|pixel| match *pixel {
+        [red, green, blue, ..] => luminance(red, green, blue),
+        [grey, ..] => grey,
+        [] => 0,
+    });
     let (width, height) = (info.width as usize, info.height as usize);
     Frame::new(width, height, grey.collect()).ok_or_else(|| "it has no pixels".to_owned())
 }

@@ -84,18 +84,13 @@ fn fit_edge(frame: &Frame, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
         let s = start + i as f64 * stride;
         for (j, grey) in profile.iter_mut().enumerate() {
             let t = (j as f64 - half_count as f64) * SAMPLE_SPACING;
-            *grey = frame.grey_at([
-                from[0] + s * along[0] + t * normal[0],
-                from[1] + s * along[1] + t * normal[1],
-            ]);
+            *grey =
+                frame.grey_at([0, 1].map(|axis| from[axis] + s * along[axis] + t * normal[axis]));
         }
     }
     let mean_grey_at = |j: usize| {
-        let sum: f64 = profiles
-            .chunks(2 * half_count + 1)
-            .map(|profile| profile[j])
-            .sum();
-        sum / profile_count as f64
+        let profiles = profiles.chunks(2 * half_count + 1);
+        profiles.map(|profile| profile[j]).sum::<f64>() / profile_count as f64
     };
     let (black, white) = (
         (mean_grey_at(0) + mean_grey_at(1)) / 2.0,
@@ -113,20 +108,17 @@ fn fit_edge(frame: &Frame, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
         let grey_sum = profile.iter().sum::<f64>() - ends_mean;
         let bright_width =
             SAMPLE_SPACING * (grey_sum - black * (2 * half_count) as f64) / (white - black);
-        let (s, t) = (
-            (i as f64 - (profile_count - 1) as f64 / 2.0) * stride,
-            half_count as f64 * SAMPLE_SPACING - bright_width,
-        );
+        let s = (i as f64 - (profile_count - 1) as f64 / 2.0) * stride;
+        let t = half_count as f64 * SAMPLE_SPACING - bright_width;
         edge_points.push((s, t));
         sum += t;
         moment += s * t;
         square_sum += s * s;
     }
     let (offset, slope) = (sum / profile_count as f64, moment / square_sum);
-    let squared_residuals = edge_points
-        .iter()
-        .map(|(s, t)| (t - offset - slope * s).powi(2));
-    if (squared_residuals.sum::<f64>() / profile_count as f64).sqrt() > MAX_EDGE_DEVIATION {
+    let squared_residual = |(s, t): &(f64, f64)| (t - offset - slope * s).powi(2);
+    let residual_sum: f64 = edge_points.iter().map(squared_residual).sum();
+    if (residual_sum / profile_count as f64).sqrt() > MAX_EDGE_DEVIATION {
         return None;
     }
     let half_length = length / 2.0;
@@ -142,9 +134,6 @@ fn intersect(a: &Line, b: &Line) -> Option<Pixel> {
     let cross = a.direction[0] * b.direction[1] - a.direction[1] * b.direction[0];
     let [x, y] = [b.point[0] - a.point[0], b.point[1] - a.point[1]];
     let distance = (x * b.direction[1] - y * b.direction[0]) / cross;
-    let point = [
-        a.point[0] + distance * a.direction[0],
-        a.point[1] + distance * a.direction[1],
-    ];
+    let point = [0, 1].map(|axis| a.point[axis] + distance * a.direction[axis]);
     point.iter().all(|value| value.is_finite()).then_some(point)
 }

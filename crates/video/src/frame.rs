@@ -26,9 +26,8 @@ impl Frame {
     /// `None` if the length of `pixels` is not `4 * width * height`, or is zero.
     pub fn from_rgba(width: usize, height: usize, pixels: &[u8]) -> Option<Self> {
         let (pixels, remainder) = pixels.as_chunks::<4>();
-        let grey = pixels
-            .iter()
-            .map(|&[red, green, blue, _]| luminance(red, green, blue));
+        let to_grey = |&[red, green, blue, _]: &[u8; 4]| luminance(red, green, blue);
+        let grey = pixels.iter().map(to_grey);
         remainder
             .is_empty()
             .then(|| Self::new(width, height, grey.collect()))?
@@ -43,11 +42,8 @@ impl Frame {
     ) -> Option<Self> {
         let rows = self.grey.chunks(self.width).take(bottom).skip(top);
         let grey = rows.flat_map(|row| row.get(left..right).unwrap_or_default());
-        Self::new(
-            right.checked_sub(left)?,
-            bottom.checked_sub(top)?,
-            grey.copied().collect(),
-        )
+        let (width, height) = (right.checked_sub(left)?, bottom.checked_sub(top)?);
+        Self::new(width, height, grey.copied().collect())
     }
 
     /// Returns the width and the height, px.
@@ -66,10 +62,8 @@ impl Frame {
         let x = x.clamp(0.0, (self.width - 1) as f64);
         let y = y.clamp(0.0, (self.height - 1) as f64);
         let (column, row) = (x as usize, y as usize);
-        let (right, below) = (
-            (column + 1).min(self.width - 1),
-            (row + 1).min(self.height - 1),
-        );
+        let right = (column + 1).min(self.width - 1);
+        let below = (row + 1).min(self.height - 1);
         let (u, v) = (x - column as f64, y - row as f64);
         let grey = |row: usize, column: usize| f64::from(self.grey[row * self.width + column]);
         (grey(row, column) * (1.0 - u) + grey(row, right) * u) * (1.0 - v)

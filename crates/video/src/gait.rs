@@ -56,12 +56,8 @@ impl Gait {
                 .windows(2)
                 .map(|pair| movement_length([0, 1, 2].map(|axis| pair[1][axis] - pair[0][axis])));
             // A movement itself has half the weight of a change, because the clock is not known exactly.
-            changes.sum::<f64>()
-                + 0.5
-                    * movements
-                        .iter()
-                        .map(|movement| movement_length(*movement))
-                        .sum::<f64>()
+            let lengths = movements.iter().map(|movement| movement_length(*movement));
+            changes.sum::<f64>() + 0.5 * lengths.sum::<f64>()
         };
         let calmest = (0..count).min_by(|&a, &b| roughness_at(a).total_cmp(&roughness_at(b)));
         calmest.unwrap_or(0) as f64 / count as f64
@@ -77,10 +73,8 @@ impl Gait {
     /// Returns the components of the predicted movement between two phases; see [`movement_in_mm`].
     pub(crate) fn movement_between(&self, from: f64, to: f64) -> [f64; 3] {
         let whole_cycles = from.floor();
-        movement_in_mm(
-            self.pose_at(to - whole_cycles)
-                .travel_from(self.pose_at(from - whole_cycles)),
-        )
+        let [from, to] = [from, to].map(|phase| self.pose_at(phase - whole_cycles));
+        movement_in_mm(to.travel_from(from))
     }
 }
 

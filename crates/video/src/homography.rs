@@ -11,29 +11,19 @@ impl Homography {
     /// not determine it.
     pub(crate) fn from_points(from: &[[f64; 2]], to: &[[f64; 2]]) -> Option<Self> {
         let rows = 2 * from.len().min(to.len());
-        let mut matrix = DMatrix::zeros(rows, 8);
+        let mut matrix = DMatrix::<f64>::zeros(rows, 8);
         let mut right_hand_side = DVector::zeros(rows);
         // The points are scaled to at most 1, so that the columns are of similar size.
-        let scale = from
-            .iter()
-            .flatten()
-            .fold(1e-9f64, |max, value| max.max(value.abs()));
+        let coordinates = from.iter().flatten();
+        let scale = coordinates.fold(1e-9f64, |max, value| max.max(value.abs()));
         for (i, (&[x, y], &[u, v])) in from.iter().zip(to).enumerate() {
             let [x, y] = [x / scale, y / scale];
-            for (j, (row, target)) in [
-                ([x, y, 1.0, 0.0, 0.0, 0.0], u),
-                ([0.0, 0.0, 0.0, x, y, 1.0], v),
-            ]
-            .into_iter()
-            .enumerate()
-            {
-                for (column, value) in row
-                    .into_iter()
-                    .chain([-target * x, -target * y])
-                    .enumerate()
-                {
-                    matrix[(2 * i + j, column)] = value;
-                }
+            let equations = [
+                ([x, y, 1.0, 0.0, 0.0, 0.0, -u * x, -u * y], u),
+                ([0.0, 0.0, 0.0, x, y, 1.0, -v * x, -v * y], v),
+            ];
+            for (j, (row, target)) in equations.into_iter().enumerate() {
+                matrix.row_mut(2 * i + j).copy_from_slice(&row);
                 right_hand_side[2 * i + j] = target;
             }
         }
@@ -45,9 +35,8 @@ impl Homography {
         let h = &solution;
         let map = Matrix3::new(h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], 1.0);
         let map = map * Matrix3::from_diagonal(&Vector3::new(1.0 / scale, 1.0 / scale, 1.0));
-        map.iter()
-            .all(|value| value.is_finite())
-            .then_some(Self(map))
+        let is_finite = map.iter().all(|value| value.is_finite());
+        is_finite.then_some(Self(map))
     }
 
     /// Returns the image of a point.

@@ -36,11 +36,8 @@ pub(crate) fn fit(start: &[f64], residuals: impl Fn(&[f64]) -> Vec<f64>) -> Opti
                 damped[(i, i)] += damping * normal_matrix[(i, i)].max(1e-12);
             }
             let step = damped.cholesky()?.solve(&gradient);
-            let next: Vec<f64> = parameters
-                .iter()
-                .zip(step.iter())
-                .map(|(parameter, change)| parameter - change)
-                .collect();
+            let next = DVector::from_column_slice(&parameters) - step;
+            let next = next.as_slice().to_vec();
             let next_residuals = residuals(&next);
             let next_sum = squared_norm(&next_residuals);
             if next_sum <= sum_of_squares {
@@ -83,11 +80,8 @@ fn compute_jacobian(
             shifted[column] += shift;
             residuals(&shifted)
         };
-        for (row, (plus, minus)) in residuals_at(increment)
-            .iter()
-            .zip(residuals_at(-increment))
-            .enumerate()
-        {
+        let (plus, minus) = (residuals_at(increment), residuals_at(-increment));
+        for (row, (plus, minus)) in plus.iter().zip(&minus).enumerate() {
             jacobian[(row, column)] = (plus - minus) / (2.0 * increment);
         }
     }

@@ -36,24 +36,18 @@ pub(crate) fn compute_mean(walks: &[WalkValues]) -> Mean {
     let cycle_count = walks.iter().map(|walk| walk.cycles.len()).sum::<usize>();
     let cycle_mean = |cycles: &[f64]| cycles.iter().sum::<f64>() / cycles.len() as f64;
     let weighted_mean = |value: &dyn Fn(&WalkValues) -> f64| {
-        let terms = walks
-            .iter()
-            .map(|walk| walk.cycles.len() as f64 * value(walk));
-        terms.sum::<f64>() / cycle_count as f64
+        let term = |walk: &WalkValues| walk.cycles.len() as f64 * value(walk);
+        walks.iter().map(term).sum::<f64>() / cycle_count as f64
     };
     let mean = weighted_mean(&|walk| cycle_mean(&walk.cycles));
     let sum_of_squares_about = |cycles: &[f64], centre: f64| {
         let squares = cycles.iter().map(|cycle| (cycle - centre).powi(2));
         squares.sum::<f64>()
     };
-    let total_sum_of_squares: f64 = walks
-        .iter()
-        .map(|walk| sum_of_squares_about(&walk.cycles, mean))
-        .sum();
-    let sum_of_squares_within: f64 = walks
-        .iter()
-        .map(|walk| sum_of_squares_about(&walk.cycles, cycle_mean(&walk.cycles)))
-        .sum();
+    let about_mean = |walk: &WalkValues| sum_of_squares_about(&walk.cycles, mean);
+    let total_sum_of_squares: f64 = walks.iter().map(about_mean).sum();
+    let within = |walk: &WalkValues| sum_of_squares_about(&walk.cycles, cycle_mean(&walk.cycles));
+    let sum_of_squares_within: f64 = walks.iter().map(within).sum();
     let degrees_of_freedom = cycle_count - walks.len();
     let variance_within = sum_of_squares_within / degrees_of_freedom as f64;
     let variance_between = (total_sum_of_squares - sum_of_squares_within)
@@ -74,18 +68,23 @@ pub(crate) fn compute_mean(walks: &[WalkValues]) -> Mean {
     }
 }
 
+/// Returns the median of values, the upper one of two; `None` if there are no values.
+pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
 /// Returns the factor by which an error must be enlarged if it was estimated with few degrees of freedom, so that the
 /// true value lies within two standard errors with a probability of 95 %.
 pub(crate) fn small_sample_factor(degrees_of_freedom: usize) -> f64 {
     let (mut low, mut high) = (1.0, 100.0);
     for _ in 0..60 {
         let middle = (low + high) / 2.0;
-        *if student_t_probability(2.0 * middle, degrees_of_freedom) < PROBABILITY_WITHIN_TWO_SIGMAS
-        {
-            &mut low
-        } else {
-            &mut high
-        } = middle;
+        let probability = student_t_probability(2.0 * middle, degrees_of_freedom);
+        match probability < PROBABILITY_WITHIN_TWO_SIGMAS {
+            true => low = middle,
+            false => high = middle,
+        }
     }
     high
 }

@@ -39,10 +39,9 @@ impl MeasuredGait {
             };
             mean::compute_mean(&walks.iter().map(walk_values).collect::<Vec<_>>())
         };
-        let cycles: Vec<Travel> = walks
-            .iter()
-            .flat_map(|walk| walk.cycles.travels.clone())
-            .collect();
+        let travels = |walk: &Walk| walk.cycles.travels.clone();
+        let cycles: Vec<Travel> = walks.iter().flat_map(travels).collect();
+        let boundaries = |walk: &Walk| walk.cycles.boundaries.clone();
         let mean_over_cycles = |value: fn(&Walk) -> f64| {
             let weight = |walk: &Walk| walk.cycles.travels.len() as f64 / cycles.len() as f64;
             walks.iter().map(|walk| weight(walk) * value(walk)).sum()
@@ -55,10 +54,7 @@ impl MeasuredGait {
                 value: mean_over_cycles(|walk| walk.cycles.period.value),
                 standard_error: mean_over_cycles(|walk| walk.cycles.period.standard_error),
             },
-            cycle_boundaries: walks
-                .iter()
-                .flat_map(|walk| walk.cycles.boundaries.clone())
-                .collect(),
+            cycle_boundaries: walks.iter().flat_map(boundaries).collect(),
             cycle_path: cycle_path::compute_points(&walks, gait),
             cycles,
             walks,

@@ -99,15 +99,13 @@ impl MeasuredServo {
         let horn_path = HornPath::new(path);
         let commands = servo_commands::list_commands(jig.side);
         let first_command_seconds = horn_path.find_first_command(&commands)?;
-        let rests: Vec<Option<f64>> = (0..commands.len())
-            .map(|i| horn_path.rest_angle(first_command_seconds, COMMAND_INTERVAL, i))
-            .collect();
+        let rest_angle = |i| horn_path.rest_angle(first_command_seconds, COMMAND_INTERVAL, i);
+        let rests: Vec<Option<f64>> = (0..commands.len()).map(rest_angle).collect();
         let [gain, hysteresis] =
             fit_gain_and_hysteresis(&commands, &rests).ok_or(ServoError::StepMismatch)?;
         let large_steps = horn_path.find_large_steps(first_command_seconds, &rests);
-        let too_few_frames = ServoError::TooFewFrames {
-            rate: horn_path.frame_rate(),
-        };
+        let frame_rate = horn_path.frame_rate();
+        let too_few_frames = ServoError::TooFewFrames { rate: frame_rate };
         let groups: Vec<&[LargeStep]> = large_steps.iter().map(Vec::as_slice).collect();
         let fit = Rates::fit(&groups, jig.rotor_time_constant).ok_or(too_few_frames)?;
         let (rate_ccw, rate_cw) = (fit.rates[0], fit.rates[1]);
@@ -118,15 +116,12 @@ impl MeasuredServo {
                 slew: jig.slew,
             });
         }
+        let dead_band =
+            horn_path.find_dead_band(first_command_seconds, &commands, &rests, gain.value);
         Ok(Self {
             gain,
             hysteresis,
-            dead_band: horn_path.find_dead_band(
-                first_command_seconds,
-                &commands,
-                &rests,
-                gain.value,
-            ),
+            dead_band,
             rate: add_model_error(rate),
             rates: [
                 fit.propagate_error(rate_ccw, &[1.0, 0.0]),
@@ -135,7 +130,7 @@ impl MeasuredServo {
             .map(add_model_error),
             rotor_time_constant: fit.rotor_time_constant,
             first_command_seconds,
-            frame_rate: horn_path.frame_rate(),
+            frame_rate,
             large_steps,
             expected_time_constant: jig.rotor_time_constant,
         })
@@ -180,10 +175,8 @@ impl MeasuredServo {
             return Err(ServoError::VideosSwapped);
         }
         let value = torque / loss.value;
-        Ok(Estimate {
-            value,
-            standard_error: value * (loss.standard_error / loss.value).hypot(LOAD_SIGMA),
-        })
+        let relative_error = (loss.standard_error / loss.value).hypot(LOAD_SIGMA);
+        Ok(Estimate::new(value, value * relative_error))
     }
 }
 
@@ -193,12 +186,8 @@ fn add_model_error(rate: Estimate) -> Estimate {
 }
 
 fn add_relative_error(estimate: Estimate, relative_sigma: f64) -> Estimate {
-    Estimate {
-        standard_error: estimate
-            .standard_error
-            .hypot(relative_sigma * estimate.value),
-        ..estimate
-    }
+    let error = relative_sigma * estimate.value;
+    Estimate::new(estimate.value, estimate.standard_error.hypot(error))
 }
 
 /// Fits gain and hysteresis to the angles at which the horn rests in the visited poses; `None` if too few of these
@@ -226,15 +215,10 @@ fn fit_gain_and_hysteresis(
     let standard_error = |i: usize| {
         small_sample_factor(degrees_of_freedom) * (variance * fit.covariance[(i, i)]).sqrt()
     };
-    let gain = Estimate {
-        value: fit.parameters[1],
-        standard_error: standard_error(1),
-    };
+    let gain = Estimate::new(fit.parameters[1], standard_error(1));
     let gain = add_relative_error(gain, CAMERA_SIGMA);
-    let hysteresis = Estimate {
-        value: fit.parameters[2] / gain.value,
-        standard_error: standard_error(2) / gain.value.abs(),
-    };
+    let hysteresis_error = standard_error(2) / gain.value.abs();
+    let hysteresis = Estimate::new(fit.parameters[2] / gain.value, hysteresis_error);
     Some([gain, hysteresis])
 }
 
@@ -263,11 +247,7 @@ impl HornPath {
     /// Computes the frames per second from the median interval, which missing frames hardly change.
     fn frame_rate(&self) -> f64 {
         let intervals = self.angles.windows(2).map(|pair| pair[1].0 - pair[0].0);
-        let mut intervals: Vec<f64> = intervals.collect();
-        intervals.sort_by(f64::total_cmp);
-        intervals
-            .get(intervals.len() / 2)
-            .map_or(0.0, |interval| 1.0 / interval)
+        mean::median(intervals.collect()).map_or(0.0, |interval| 1.0 / interval)
     }
 
     /// Returns the indices of the frames in which the horn rests after a command. The first command is at
@@ -306,10 +286,8 @@ impl HornPath {
         interval: f64,
     ) -> Option<f64> {
         let command_and_rest = |i: usize| {
-            Some((
-                commands[i].pulse_angle(),
-                self.rest_angle(first_command_seconds, interval, i)?,
-            ))
+            let rest = self.rest_angle(first_command_seconds, interval, i)?;
+            Some((commands[i].pulse_angle(), rest))
         };
         let pairs: Vec<(f64, f64)> = (0..commands.len()).filter_map(command_and_rest).collect();
         if (pairs.len() as f64) < MIN_VISIBLE_FRACTION * commands.len() as f64 {
@@ -340,16 +318,12 @@ impl HornPath {
         let end = last - interval * (commands.len() as f64 - 1.0 + REST_FRACTIONS[0]);
         let step_count =
             ((end - first + interval) / (SEARCH_STEP_FRACTION * interval)).max(0.0) as usize;
-        (0..=step_count)
-            .map(|i| first - interval + i as f64 * SEARCH_STEP_FRACTION * interval)
-            .filter_map(|first_command_seconds| {
-                Some((
-                    self.unexplained_fraction(commands, first_command_seconds, interval)?,
-                    first_command_seconds,
-                ))
-            })
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(fraction, first_command_seconds)| (first_command_seconds, fraction))
+        let candidates = (0..=step_count).filter_map(|i| {
+            let seconds = first - interval + i as f64 * SEARCH_STEP_FRACTION * interval;
+            let unexplained = self.unexplained_fraction(commands, seconds, interval)?;
+            Some((seconds, unexplained))
+        });
+        candidates.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Finds the time of the first command, s.
@@ -363,17 +337,13 @@ impl HornPath {
             });
         }
         let is_explained = |(_, unexplained): &(f64, f64)| *unexplained < MAX_UNEXPLAINED_FRACTION;
-        if let Some((first_command_seconds, _)) = self
-            .find_best_first_command(commands, COMMAND_INTERVAL)
-            .filter(is_explained)
-        {
+        let best = self.find_best_first_command(commands, COMMAND_INTERVAL);
+        if let Some((first_command_seconds, _)) = best.filter(is_explained) {
             return Ok(self.refine_first_command(first_command_seconds));
         }
         for multiple in INTERVAL_MULTIPLES {
-            if self
-                .find_best_first_command(commands, multiple * COMMAND_INTERVAL)
-                .is_some_and(|best| is_explained(&best))
-            {
+            let best = self.find_best_first_command(commands, multiple * COMMAND_INTERVAL);
+            if best.is_some_and(|best| is_explained(&best)) {
                 return Err(ServoError::WrongStepInterval { ratio: multiple });
             }
         }
@@ -388,18 +358,10 @@ impl HornPath {
     /// Refines the time of the first command, s, from the times at which the large steps are half complete.
     fn refine_first_command(&self, first_command_seconds: f64) -> f64 {
         let estimate_from_step = |i: usize| {
-            let (from, to) = (
-                self.rest_angle(first_command_seconds, COMMAND_INTERVAL, i - 1)?,
-                self.rest_angle(first_command_seconds, COMMAND_INTERVAL, i)?,
-            );
-            let half_way_angle = (from + to) / 2.0;
-            let indices = self
-                .rest_indices(first_command_seconds, COMMAND_INTERVAL, i - 1)
-                .start
-                ..self
-                    .rest_indices(first_command_seconds, COMMAND_INTERVAL, i)
-                    .end;
-            let pairs = self.angles[indices].windows(2);
+            let rest_angle = |i| self.rest_angle(first_command_seconds, COMMAND_INTERVAL, i);
+            let half_way_angle = (rest_angle(i - 1)? + rest_angle(i)?) / 2.0;
+            let rest_indices = |i| self.rest_indices(first_command_seconds, COMMAND_INTERVAL, i);
+            let pairs = self.angles[rest_indices(i - 1).start..rest_indices(i).end].windows(2);
             let mut crossings =
                 pairs.filter(|pair| (pair[0].1 < half_way_angle) != (pair[1].1 < half_way_angle));
             let pair = crossings.next()?;
@@ -408,14 +370,8 @@ impl HornPath {
             let time = start_time + fraction * (end_time - start_time);
             Some(time - COMMAND_INTERVAL * i as f64 - HALF_WAY_SECONDS)
         };
-        let mut estimates: Vec<f64> = servo_commands::large_step_indices()
-            .filter_map(estimate_from_step)
-            .collect();
-        estimates.sort_by(f64::total_cmp);
-        estimates
-            .get(estimates.len() / 2)
-            .copied()
-            .unwrap_or(first_command_seconds)
+        let estimates = servo_commands::large_step_indices().filter_map(estimate_from_step);
+        mean::median(estimates.collect()).unwrap_or(first_command_seconds)
     }
 
     /// Finds the large steps, counter-clockwise and clockwise.
@@ -429,15 +385,9 @@ impl HornPath {
             let (Some(from), Some(to)) = (rests[i - 1], rests[i]) else {
                 continue;
             };
-            let indices = self
-                .rest_indices(first_command_seconds, COMMAND_INTERVAL, i - 1)
-                .end
-                ..self
-                    .rest_indices(first_command_seconds, COMMAND_INTERVAL, i)
-                    .end;
-            let angles = self.angles[indices]
-                .iter()
-                .map(|(time, angle)| (*time, angle - from));
+            let rest_indices = |i| self.rest_indices(first_command_seconds, COMMAND_INTERVAL, i);
+            let angles = self.angles[rest_indices(i - 1).end..rest_indices(i).end].iter();
+            let angles = angles.map(|(time, angle)| (*time, angle - from));
             steps[usize::from(to < from)].push(LargeStep::new(angles, to - from));
         }
         steps
@@ -458,10 +408,8 @@ impl HornPath {
             let rest_angles =
                 &self.angles[self.rest_indices(first_command_seconds, COMMAND_INTERVAL, i)];
             let Some(rest) = rest else { continue };
-            squares += rest_angles
-                .iter()
-                .map(|(_, angle)| (angle - rest).powi(2))
-                .sum::<f64>();
+            let square = |(_, angle): &(f64, f64)| (angle - rest).powi(2);
+            squares += rest_angles.iter().map(square).sum::<f64>();
             degrees_of_freedom += rest_angles.len().saturating_sub(1);
             frame_count += rest_angles.len();
         }
@@ -491,10 +439,7 @@ impl HornPath {
                 cycles: lost_angles,
                 systematic_error: 0.0,
             }]);
-            Estimate {
-                value: mean.value,
-                standard_error: mean.standard_error.hypot(DEAD_BAND_SIGMA),
-            }
+            Estimate::new(mean.value, mean.standard_error.hypot(DEAD_BAND_SIGMA))
         });
         DeadBand {
             width,

@@ -10,6 +10,7 @@ use lizard_contact::GRAVITY;
 use nalgebra::Vector3;
 
 use crate::analysed_video::AnalysedVideo;
+use crate::camera::Camera;
 use crate::estimate::Estimate;
 use crate::least_squares;
 use crate::mean::small_sample_factor;
@@ -139,38 +140,28 @@ impl MeasuredSlide {
     /// # Errors
     /// Fails if the video does not show a robot that slides down a board.
     pub fn from_video(video: &AnalysedVideo) -> Result<Self, SlideError> {
-        let cameras: Vec<_> = video.frame_cameras().collect();
+        let cameras: Vec<Camera> = video.frame_cameras().collect();
         let first_seconds = video.path.first().map_or(0.0, |point| point.seconds);
-        let is_level = |point: &PathPoint| point.seconds < first_seconds + LEVEL_SECONDS;
-        let level_count = video
-            .path
-            .iter()
-            .take_while(|point| is_level(point))
-            .count();
-        let up_directions = cameras[..level_count]
-            .iter()
-            .map(|camera| camera.up_direction());
+        let is_level = |point: &&PathPoint| point.seconds < first_seconds + LEVEL_SECONDS;
+        let level_count = video.path.iter().take_while(is_level).count();
+        let level_cameras = cameras[..level_count].iter();
+        let up_directions = level_cameras.map(|camera| camera.up_direction());
         let vertical = up_directions.sum::<Vector3<f64>>().normalize();
-        let observations: Vec<Observation> = video
-            .path
-            .iter()
-            .zip(&cameras)
-            .map(|(point, camera)| {
-                let up_direction = camera.to_floor_axes(&vertical);
-                Observation {
-                    seconds: point.seconds,
-                    tilt: up_direction.x.hypot(up_direction.y).atan2(up_direction.z),
-                    downhill: [-up_direction.x, -up_direction.y],
-                    position: [point.pose.forward, point.pose.left],
-                    heading: point.pose.heading,
-                }
-            })
-            .collect();
+        let observe = |(point, camera): (&PathPoint, &Camera)| {
+            let up_direction = camera.to_floor_axes(&vertical);
+            Observation {
+                seconds: point.seconds,
+                tilt: up_direction.x.hypot(up_direction.y).atan2(up_direction.z),
+                downhill: [-up_direction.x, -up_direction.y],
+                position: [point.pose.forward, point.pose.left],
+                heading: point.pose.heading,
+            }
+        };
+        let pairs = video.path.iter().zip(&cameras);
+        let observations: Vec<Observation> = pairs.map(observe).collect();
         let max_tilt = |observations: &[Observation]| {
-            observations
-                .iter()
-                .map(|observation| observation.tilt)
-                .fold(0.0, f64::max)
+            let tilts = observations.iter().map(|observation| observation.tilt);
+            tilts.fold(0.0, f64::max)
         };
         let angle = max_tilt(&observations[..level_count]).to_degrees();
         if angle > MAX_LEVEL_TILT {
@@ -181,28 +172,23 @@ impl MeasuredSlide {
             (observation.position[0] - rest_position[0])
                 .hypot(observation.position[1] - rest_position[1])
         };
-        let Some(sliding_index) = observations
-            .iter()
-            .position(|observation| distance(observation) > MIN_SLIDE)
-        else {
+        let has_slid = |observation: &Observation| distance(observation) > MIN_SLIDE;
+        let Some(sliding_index) = observations.iter().position(has_slid) else {
             return Err(SlideError::NoSlide {
                 distance: observations.iter().map(distance).fold(0.0, f64::max),
                 tilt: max_tilt(&observations).to_degrees(),
             });
         };
-        let first_index = observations[..sliding_index]
-            .iter()
-            .rposition(|observation| distance(observation) < FIT_RANGE[0]);
-        let first_index = first_index.map_or(0, |index| index + 1);
-        let displacement =
-            [0, 1].map(|i| observations[sliding_index].position[i] - rest_position[i]);
-        check_directions(&observations[sliding_index], displacement)?;
+        let has_rested = |observation: &Observation| distance(observation) < FIT_RANGE[0];
+        let last_rest = observations[..sliding_index].iter().rposition(has_rested);
+        let first_index = last_rest.map_or(0, |index| index + 1);
+        let sliding = &observations[sliding_index];
+        let displacement = [0, 1].map(|i| sliding.position[i] - rest_position[i]);
+        check_directions(sliding, displacement)?;
         let slide_distance = displacement[0].hypot(displacement[1]);
         let distance_along = |observation: &Observation| {
-            (0..2)
-                .map(|i| (observation.position[i] - rest_position[i]) * displacement[i])
-                .sum::<f64>()
-                / slide_distance
+            let product = |i: usize| (observation.position[i] - rest_position[i]) * displacement[i];
+            (0..2).map(product).sum::<f64>() / slide_distance
         };
         let smoothed_tilts = smooth_tilts(&observations);
         // The slide ends when it is long enough or when something stops the robot.
@@ -225,19 +211,16 @@ impl MeasuredSlide {
             })
             .collect();
         let sliding_friction = fit_sliding(&points)?;
-        let (begin_seconds, begin_error) = extrapolate_begin(
-            &points,
-            sliding_friction.value,
-            observations[first_index.max(1) - 1].seconds,
-        );
+        let previous_seconds = observations[first_index.max(1) - 1].seconds;
+        let (begin_seconds, begin_error) =
+            extrapolate_begin(&points, sliding_friction.value, previous_seconds);
         let index_near = |seconds: f64| {
             let index = observations.partition_point(|observation| observation.seconds < seconds);
             index.min(observations.len() - 1)
         };
-        let (begin_index, earlier_index) = (
-            index_near(begin_seconds),
-            index_near(begin_seconds - 2.0 * HALF_AVERAGING_TIME).saturating_sub(1),
-        );
+        let begin_index = index_near(begin_seconds);
+        let earlier_index = index_near(begin_seconds - 2.0 * HALF_AVERAGING_TIME);
+        let earlier_index = earlier_index.saturating_sub(1);
         let tilt = smoothed_tilts[begin_index].to_degrees();
         let interval = observations[begin_index].seconds - observations[earlier_index].seconds;
         let rate =
@@ -246,29 +229,18 @@ impl MeasuredSlide {
             return Err(SlideError::LiftedTooFast { rate });
         }
         let angle_error = LEVEL_SIGMA.hypot(TILT_SIGMA);
-        let tilt = Estimate {
-            value: tilt,
-            standard_error: angle_error.hypot(rate * begin_error),
-        };
+        let tilt = Estimate::new(tilt, angle_error.hypot(rate * begin_error));
         let static_friction = tilt.value.to_radians().tan();
         let tan_derivative = 1.0 + static_friction * static_friction;
+        let static_error = tan_derivative * tilt.standard_error.to_radians();
+        let tilt_error = tan_derivative * angle_error.to_radians();
+        let sliding_error = sliding_friction.standard_error.hypot(tilt_error);
         Ok(Self {
-            is_head_first: angle_between(
-                observations[sliding_index].heading,
-                observations[sliding_index].downhill,
-            ) < 90.0,
+            is_head_first: angle_between(sliding.heading, sliding.downhill) < 90.0,
             begin_seconds,
             tilt,
-            static_friction: Estimate {
-                value: static_friction,
-                standard_error: tan_derivative * tilt.standard_error.to_radians(),
-            },
-            sliding_friction: Estimate {
-                value: sliding_friction.value,
-                standard_error: sliding_friction
-                    .standard_error
-                    .hypot(tan_derivative * angle_error.to_radians()),
-            },
+            static_friction: Estimate::new(static_friction, static_error),
+            sliding_friction: Estimate::new(sliding_friction.value, sliding_error),
         })
     }
 }
@@ -295,11 +267,8 @@ fn angle_between(heading: f64, [x, y]: [f64; 2]) -> f64 {
 /// Computes the mean position of the robot on the board, mm.
 fn mean_position(observations: &[Observation]) -> [f64; 2] {
     [0, 1].map(|i| {
-        observations
-            .iter()
-            .map(|observation| observation.position[i])
-            .sum::<f64>()
-            / observations.len() as f64
+        let coordinate = |observation: &Observation| observation.position[i];
+        observations.iter().map(coordinate).sum::<f64>() / observations.len() as f64
     })
 }
 
@@ -329,10 +298,9 @@ fn smooth_tilts(observations: &[Observation]) -> Vec<f64> {
 
 /// Fits the coefficient of sliding friction to the points of a slide.
 fn fit_sliding(points: &[SlidePoint]) -> Result<Estimate, SlideError> {
-    let too_few_frames = SlideError::TooFewFrames {
-        frame_count: points.len(),
-    };
-    if points.len() < MIN_FRAMES {
+    let frame_count = points.len();
+    let too_few_frames = SlideError::TooFewFrames { frame_count };
+    if frame_count < MIN_FRAMES {
         return Err(too_few_frames);
     }
     // The distances without friction, and the amounts by which a friction coefficient of 1 would reduce them. The
@@ -366,26 +334,20 @@ fn fit_sliding(points: &[SlidePoint]) -> Result<Estimate, SlideError> {
     };
     let fit = least_squares::fit(&[points[0].distance, 0.0, points[0].tilt.tan()], model)
         .ok_or(too_few_frames)?;
-    let degrees_of_freedom = points.len() - 3;
+    let degrees_of_freedom = frame_count - 3;
     let variance = fit.sum_of_squares / degrees_of_freedom as f64 * fit.covariance[(2, 2)];
-    Ok(Estimate {
-        value: fit.parameters[2],
-        standard_error: small_sample_factor(degrees_of_freedom) * variance.sqrt(),
-    })
+    let standard_error = small_sample_factor(degrees_of_freedom) * variance.sqrt();
+    Ok(Estimate::new(fit.parameters[2], standard_error))
 }
 
 /// Extrapolates the start of a slide backward from the first frame that shows a movement. Returns the time of the start
 /// and its standard error, s. `previous_seconds` is the time of the frame before the movement.
 fn extrapolate_begin(points: &[SlidePoint], friction: f64, previous_seconds: f64) -> (f64, f64) {
-    let SlidePoint {
-        seconds,
-        tilt,
-        distance,
-    } = points[0];
-    let acceleration = 1000.0 * GRAVITY * (tilt.sin() - friction * tilt.cos());
-    let elapsed_seconds = (2.0 * distance / acceleration.max(1.0)).sqrt();
-    let gap = seconds - previous_seconds;
-    let begin = (seconds - elapsed_seconds).max(previous_seconds - gap - 1.0);
+    let first = &points[0];
+    let acceleration = 1000.0 * GRAVITY * (first.tilt.sin() - friction * first.tilt.cos());
+    let elapsed_seconds = (2.0 * first.distance / acceleration.max(1.0)).sqrt();
+    let gap = first.seconds - previous_seconds;
+    let begin = (first.seconds - elapsed_seconds).max(previous_seconds - gap - 1.0);
     // If the acceleration grows from zero, the slide began earlier, so half of `elapsed_seconds` counts as error.
     (begin, (gap / 2.0).hypot(elapsed_seconds / 2.0))
 }

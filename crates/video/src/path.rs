@@ -56,10 +56,9 @@ pub(crate) fn interpolate_at(path: &[PathPoint], seconds: f64) -> Option<BodyPos
     let b = path.get(next_index)?;
     let a = &path[next_index.saturating_sub(1)];
     let interval = b.seconds - a.seconds;
-    let fraction = if interval > 0.0 {
-        (seconds - a.seconds) / interval
-    } else {
-        1.0
+    let fraction = match interval > 0.0 {
+        true => (seconds - a.seconds) / interval,
+        false => 1.0,
     };
     (fraction >= 0.0 && seconds >= a.seconds.min(b.seconds))
         .then(|| interpolate(a.pose, b.pose, fraction))

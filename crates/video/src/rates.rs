@@ -5,6 +5,8 @@
 //! hardly distinguishes the rate from the time constant. The fit therefore assumes the time constant in robot.toml to
 //! be right within a factor of two, and the error of the rate includes this uncertainty.
 
+use nalgebra::DMatrix;
+
 use crate::estimate::Estimate;
 use crate::least_squares;
 use crate::mean::small_sample_factor;
@@ -50,7 +52,7 @@ pub(crate) struct Rates {
     /// The rate of each group, deg/s.
     pub rates: Vec<f64>,
     /// The covariance of the rates.
-    covariance: Vec<Vec<f64>>,
+    covariance: DMatrix<f64>,
     /// The common time constant, s; `None` if the video does not determine it.
     pub rotor_time_constant: Option<Estimate>,
 }
@@ -97,47 +99,30 @@ impl Rates {
         let degrees_of_freedom = total_frame_count
             .checked_sub(steps.len() + group_count)
             .filter(|n| *n > 0)?;
-        let sigma = ANGLE_SIGMA
-            * (first_fit.sum_of_squares / degrees_of_freedom as f64)
-                .sqrt()
-                .max(0.05);
-        let fit = least_squares::fit(&first_fit.parameters, |parameters| {
-            residuals(parameters, sigma)
-        })?;
+        let variance = first_fit.sum_of_squares / degrees_of_freedom as f64;
+        let sigma = ANGLE_SIGMA * variance.sqrt().max(0.05);
+        let model = |parameters: &[f64]| residuals(parameters, sigma);
+        let fit = least_squares::fit(&first_fit.parameters, model)?;
         let variance_factor = small_sample_factor(degrees_of_freedom).powi(2);
-        let [log_ratio, log_error] = [
-            fit.parameters[group_count],
-            fit.covariance[(group_count, group_count)].sqrt(),
-        ];
-        let time_constant = expected_time_constant * log_ratio.exp();
+        let covariance = fit.covariance.view((0, 0), (group_count, group_count));
+        let log_error = fit.covariance[(group_count, group_count)].sqrt();
+        let time_constant = expected_time_constant * fit.parameters[group_count].exp();
+        let rotor_time_constant =
+            Estimate::new(time_constant, time_constant * log_error.hypot(MOTOR_SIGMA));
         Some(Self {
             rates: fit.parameters[..group_count].to_vec(),
-            covariance: (0..group_count)
-                .map(|i| {
-                    (0..group_count)
-                        .map(|j| variance_factor * fit.covariance[(i, j)])
-                        .collect()
-                })
-                .collect(),
-            rotor_time_constant: (log_error < MAX_LOG_ERROR).then_some(Estimate {
-                value: time_constant,
-                standard_error: time_constant * log_error.hypot(MOTOR_SIGMA),
-            }),
+            covariance: covariance * variance_factor,
+            rotor_time_constant: (log_error < MAX_LOG_ERROR).then_some(rotor_time_constant),
         })
     }
 
     /// Propagates the errors of the rates to a value that is computed from them. `gradient` has the value's derivative
     /// with respect to each rate.
     pub(crate) fn propagate_error(&self, value: f64, gradient: &[f64]) -> Estimate {
-        let pairs = gradient.iter().zip(&self.covariance).flat_map(|(a, row)| {
-            row.iter()
-                .zip(gradient)
-                .map(move |(covariance, b)| a * covariance * b)
-        });
-        Estimate {
-            value,
-            standard_error: pairs.sum::<f64>().max(0.0).sqrt(),
-        }
+        let count = gradient.len();
+        let pairs = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
+        let terms = pairs.map(|(i, j)| gradient[i] * self.covariance[(i, j)] * gradient[j]);
+        Estimate::new(value, terms.sum::<f64>().max(0.0).sqrt())
     }
 }
 

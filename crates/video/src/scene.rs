@@ -73,9 +73,8 @@ impl Scene {
     /// Fails if no camera fits the tags, or if their arrangement or size differs from the sheet's.
     pub(crate) fn fit(views: &[View], dimensions: Dimensions) -> Result<Self, VideoError> {
         let width = dimensions.frame_size[0] as f64;
-        let fits = START_FOCAL_RATIOS
-            .iter()
-            .filter_map(|start| fit_parameters(views, &dimensions, start * width));
+        let fit_from = |start: &f64| fit_parameters(views, &dimensions, start * width);
+        let fits = START_FOCAL_RATIOS.iter().filter_map(fit_from);
         let best_fit = fits.min_by(|a, b| a.sum_of_squares.total_cmp(&b.sum_of_squares));
         let best_fit = best_fit.ok_or(VideoError::NoCamera)?;
         let corner_count = views.len() * FLOOR_TAG_COUNT * 4;
@@ -94,12 +93,9 @@ impl Scene {
             });
         }
         let kept_parameter_count = SHARED_PARAMETER_COUNT + POSE_PARAMETER_COUNT;
-        let degrees_of_freedom = (2 * corner_count
-            + views
-                .iter()
-                .map(|view| 8 * view.deck_corners.len())
-                .sum::<usize>())
-        .saturating_sub(best_fit.parameters.len());
+        let deck_residual_counts = views.iter().map(|view| 8 * view.deck_corners.len());
+        let residual_count = 2 * corner_count + deck_residual_counts.sum::<usize>();
+        let degrees_of_freedom = residual_count.saturating_sub(best_fit.parameters.len());
         let reduced_chi_square =
             (best_fit.sum_of_squares / degrees_of_freedom.max(1) as f64).max(1.0);
         Ok(Self {
@@ -180,12 +176,8 @@ impl Scene {
     /// Returns the centres of the floor tags on the floor, mm.
     pub(crate) fn floor_tag_centres(&self) -> [[f64; 2]; FLOOR_TAG_COUNT] {
         std::array::from_fn(|id| {
-            strip_to_floor(
-                &self.parameters,
-                self.dimensions.print_scale,
-                id,
-                sheet::centre_on_strip(id),
-            )
+            let centre = sheet::centre_on_strip(id);
+            strip_to_floor(&self.parameters, self.dimensions.print_scale, id, centre)
         })
     }
 }
@@ -223,10 +215,8 @@ fn floor_residuals(
     let mut residuals = Vec::with_capacity(8 * FLOOR_TAG_COUNT);
     for (id, corners) in floor_corners.iter().enumerate() {
         let [x, y] = sheet::centre_on_strip(id);
-        for ([u, v], corner) in printed_corners(shared, dimensions.print_scale, id)
-            .iter()
-            .zip(corners)
-        {
+        let printed_corners = printed_corners(shared, dimensions.print_scale, id);
+        for ([u, v], corner) in printed_corners.iter().zip(corners) {
             let point = strip_to_floor(shared, dimensions.print_scale, id, [x + u, y + v]);
             let image = camera.project(point, 0.0);
             residuals.extend([0, 1].map(|i| (image[i] - corner[i]) / FLOOR_SIGMA));
@@ -273,11 +263,8 @@ fn estimate_deck_pose(camera: &Camera, corners: &[Pixel; 4], deck_height: f64) -
     let [a, b, c, d] = corners.map(|corner| map.map(corner));
     let mean = |i: usize| (a[i] + b[i] + c[i] + d[i]) / 4.0;
     let upper_minus_lower = |i: usize| a[i] + b[i] - c[i] - d[i];
-    Some([
-        mean(0),
-        mean(1),
-        upper_minus_lower(1).atan2(upper_minus_lower(0)),
-    ])
+    let heading = upper_minus_lower(1).atan2(upper_minus_lower(0));
+    Some([mean(0), mean(1), heading])
 }
 
 /// Estimates the camera's pose from the first strip; `None` if the strip's tags do not determine it.
@@ -286,30 +273,20 @@ fn estimate_camera_pose(
     dimensions: &Dimensions,
     focal_length: f64,
 ) -> Option<CameraPose> {
-    camera_pose_from_homography(
-        &strip_homography(floor_corners, dimensions, 0)?,
-        focal_length,
-        dimensions.frame_size,
-    )
+    let homography = strip_homography(floor_corners, dimensions)?;
+    camera_pose_from_homography(&homography, focal_length, dimensions.frame_size)
 }
 
-/// Computes the homography from a strip, with its centre as the origin, to the frame; `None` if it is degenerate.
-fn strip_homography(
-    floor_corners: &FloorCorners,
-    dimensions: &Dimensions,
-    strip: usize,
-) -> Option<Homography> {
-    let ids = strip * TAGS_PER_STRIP..(strip + 1) * TAGS_PER_STRIP;
+/// Computes the homography from the first strip, with its centre as the origin, to the frame; `None` if it is
+/// degenerate.
+fn strip_homography(floor_corners: &FloorCorners, dimensions: &Dimensions) -> Option<Homography> {
     let mut points = Vec::new();
-    for id in ids.clone() {
+    for id in 0..TAGS_PER_STRIP {
         let [x, y] = sheet::centre_on_strip(id);
-        let corners = sheet::tag_corners(sheet::tag_edge(id));
-        points
-            .extend(corners.map(|[u, v]| {
-                [x + u, y + v].map(|coordinate| dimensions.print_scale * coordinate)
-            }));
+        let corners = sheet::tag_corners(sheet::tag_edge(id)).map(|[u, v]| [x + u, y + v]);
+        points.extend(corners.map(|corner| corner.map(|value| dimensions.print_scale * value)));
     }
-    Homography::from_points(&points, &floor_corners[ids].concat())
+    Homography::from_points(&points, &floor_corners[..TAGS_PER_STRIP].concat())
 }
 
 /// Computes the errors of the floor tags' corners in all views, and those of the deck tags' corners if
@@ -327,16 +304,11 @@ fn compute_residuals(
         rest = remaining;
         next
     };
-    let cameras: Vec<Camera> = views
-        .iter()
-        .map(|_| {
-            Camera::new(
-                shared[0],
-                dimensions.frame_size,
-                next_parameters(POSE_PARAMETER_COUNT),
-            )
-        })
-        .collect();
+    let mut cameras = Vec::with_capacity(views.len());
+    for _ in views {
+        let pose = next_parameters(POSE_PARAMETER_COUNT);
+        cameras.push(Camera::new(shared[0], dimensions.frame_size, pose));
+    }
     for (view, camera) in views.iter().zip(&cameras) {
         let corners = &view.floor_corners;
         all_residuals.extend(floor_residuals(shared, camera, dimensions, corners));
@@ -351,7 +323,7 @@ fn compute_residuals(
 /// Fits all parameters, starting with the given focal length; `None` if the tags do not determine them.
 fn fit_parameters(views: &[View], dimensions: &Dimensions, focal_length: f64) -> Option<Fit> {
     let first_view = views.first()?;
-    let to_floor = strip_homography(&first_view.floor_corners, dimensions, 0)?.inverse()?;
+    let to_floor = strip_homography(&first_view.floor_corners, dimensions)?.inverse()?;
     let find_centre = |id: usize| {
         let corners = first_view.floor_corners[id].map(|corner| to_floor.map(corner));
         [0, 1].map(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 4.0)
@@ -371,15 +343,11 @@ fn fit_parameters(views: &[View], dimensions: &Dimensions, focal_length: f64) ->
         let camera = Camera::new(focal_length, dimensions.frame_size, &pose);
         start.extend(pose);
         for corners in &view.deck_corners {
-            deck_poses.extend(estimate_deck_pose(
-                &camera,
-                corners,
-                dimensions.deck_height,
-            )?);
+            let pose = estimate_deck_pose(&camera, corners, dimensions.deck_height)?;
+            deck_poses.extend(pose);
         }
     }
     start.extend(deck_poses);
-    least_squares::fit(&start, |parameters| {
-        compute_residuals(parameters, views, dimensions, true)
-    })
+    let model = |parameters: &[f64]| compute_residuals(parameters, views, dimensions, true);
+    least_squares::fit(&start, model)
 }

@@ -95,19 +95,14 @@ mod tests {
         let commands = list_commands(-1.0);
         for i in large_step_indices() {
             let side = if i % 2 == 0 { 1.0 } else { -1.0 };
-            assert_eq!(
-                step_size(&commands, i),
-                2.0 * HALF_LARGE_STEP * side,
-                "command {i}"
-            );
+            let expected = 2.0 * HALF_LARGE_STEP * side;
+            assert_eq!(step_size(&commands, i), expected, "command {i}");
         }
         assert_eq!(small_step_indices().end, commands.len());
         for i in small_step_indices().step_by(2) {
             let [step, return_step] = [i, i + 1].map(|index| step_size(&commands, index));
-            assert!(
-                (step + return_step).abs() < 1e-12 && step > 0.0,
-                "command {i}"
-            );
+            let returns = (step + return_step).abs() < 1e-12;
+            assert!(returns && step > 0.0, "command {i}");
         }
     }
 

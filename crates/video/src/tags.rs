@@ -66,10 +66,8 @@ fn decode(frame: &Frame, outline: &TagOutline) -> Option<Tag> {
     (0..4).find_map(|quarter_turns| {
         let corners = std::array::from_fn(|i| outline.corners[(i + quarter_turns) % 4]);
         let side = CELLS_PER_SIDE as f64;
-        let to_frame = Homography::from_points(
-            &[[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]],
-            &corners,
-        )?;
+        let square = [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]];
+        let to_frame = Homography::from_points(&square, &corners)?;
         let appears_white = |row: usize, column: usize| {
             let offsets = [
                 [0.0, 0.0],

@@ -171,12 +171,7 @@ impl Video {
     /// Checks that every floor tag is visible at least once, and the deck tag in most frames.
     fn check_tags(&self) -> Result<(), VideoError> {
         let frame_count = self.frames.len();
-        let count_frames_with = |id: usize| {
-            self.frames
-                .iter()
-                .filter(|frame| frame.corners[id].is_some())
-                .count()
-        };
+        let count_frames_with = |id: usize| self.visible_tags(id).len();
         if frame_count == 0 {
             return Err(VideoError::NoFrames);
         }
@@ -196,15 +191,17 @@ impl Video {
         Ok(())
     }
 
+    /// Returns the corners of a tag in each frame that shows it.
+    fn visible_tags(&self, id: usize) -> Vec<[Pixel; 4]> {
+        let frames = self.frames.iter();
+        frames.filter_map(|frame| frame.corners[id]).collect()
+    }
+
     /// Computes the usual corners of each floor tag: interquartile means over all frames, because a tag that is partly
     /// covered for a while seems displaced.
     fn find_usual_floor_corners(&self) -> FloorCorners {
         std::array::from_fn(|id| {
-            let visible_tags: Vec<_> = self
-                .frames
-                .iter()
-                .filter_map(|frame| frame.corners[id])
-                .collect();
+            let visible_tags = self.visible_tags(id);
             std::array::from_fn(|corner| {
                 [0, 1].map(|i| {
                     interquartile_mean(visible_tags.iter().map(|tag| tag[corner][i]).collect())
@@ -225,9 +222,8 @@ impl Video {
         };
         let shows_camera_shift = |frame: &&FrameTags| {
             let tags = (0..FLOOR_TAG_COUNT).filter_map(|id| Some((id, frame.corners[id]?)));
-            tags.filter(|(id, tag)| is_displaced(tag, &usual_corners[*id]))
-                .count()
-                > 1
+            let displaced_tags = tags.filter(|(id, tag)| is_displaced(tag, &usual_corners[*id]));
+            displaced_tags.count() > 1
         };
         self.frames.iter().filter(shows_camera_shift).count() > self.frames.len() / 50
     }
@@ -245,11 +241,7 @@ impl Video {
                 .map(move |i| i * count.saturating_sub(1) / sample_count.saturating_sub(1).max(1))
         };
         if !has_camera_moved {
-            let deck_corners: Vec<_> = self
-                .frames
-                .iter()
-                .filter_map(|frame| frame.corners[DECK_TAG_ID])
-                .collect();
+            let deck_corners = self.visible_tags(DECK_TAG_ID);
             return Ok(vec![View {
                 floor_corners: self.find_usual_floor_corners(),
                 deck_corners: evenly_spaced_indices(deck_corners.len())
@@ -257,11 +249,8 @@ impl Video {
                     .collect(),
             }]);
         }
-        let frame_count = self
-            .frames
-            .iter()
-            .filter(|frame| frame.floor_corners().is_none())
-            .count();
+        let is_incomplete = |frame: &&FrameTags| frame.floor_corners().is_none();
+        let frame_count = self.frames.iter().filter(is_incomplete).count();
         if frame_count as f64 > MAX_MISSING_FRACTION * self.frames.len() as f64
             || complete_views.is_empty()
         {
@@ -274,9 +263,8 @@ impl Video {
                 deck_corners: vec![deck_corners],
             }
         };
-        Ok(evenly_spaced_indices(complete_views.len())
-            .map(to_view)
-            .collect())
+        let views = evenly_spaced_indices(complete_views.len()).map(to_view);
+        Ok(views.collect())
     }
 
     /// Checks that the robot stays in the area in which the floor tags give valid poses.
@@ -285,11 +273,8 @@ impl Video {
         let centre =
             [0, 1].map(|i| tags.iter().map(|tag| tag[i]).sum::<f64>() / FLOOR_TAG_COUNT as f64);
         let distance_from_centre = |[x, y]: [f64; 2]| (x - centre[0]).hypot(y - centre[1]);
-        let max_distance = tags
-            .into_iter()
-            .map(distance_from_centre)
-            .fold(0.0, f64::max)
-            + MAX_TAG_DISTANCE;
+        let tag_distances = tags.into_iter().map(distance_from_centre);
+        let max_distance = tag_distances.fold(0.0, f64::max) + MAX_TAG_DISTANCE;
         for point in path {
             let distance = distance_from_centre([point.pose.forward, point.pose.left]);
             if distance > max_distance {

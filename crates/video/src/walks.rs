@@ -19,9 +19,8 @@ const MIN_REST_RATIO: f64 = 1.4;
 pub(crate) fn find_walks(path: &[PathPoint], min_rest_duration: f64) -> Vec<[f64; 2]> {
     let mut is_resting = vec![false; path.len()];
     for (first, point) in path.iter().enumerate() {
-        let end = path
-            .partition_point(|later_point| later_point.seconds < point.seconds + min_rest_duration)
-            + 1;
+        let rest_end = point.seconds + min_rest_duration;
+        let end = path.partition_point(|later_point| later_point.seconds < rest_end) + 1;
         // A rest at the start or the end of the video may have lasted longer.
         let ends = match first {
             0 => MIN_FRAMES.min(end)..end + 1,
@@ -35,22 +34,16 @@ pub(crate) fn find_walks(path: &[PathPoint], min_rest_duration: f64) -> Vec<[f64
     }
     let mut walks = Vec::new();
     let mut begin = 0;
-    while begin < path.len() {
-        let is_rest = is_resting[begin];
-        let end = (begin..path.len())
-            .find(|&i| is_resting[i] != is_rest)
-            .unwrap_or(path.len());
+    for run in is_resting.chunk_by(|a, b| a == b) {
+        let (is_rest, end) = (run[0], begin + run.len());
         // Includes the last frame of the rest before and the first frame of the rest after.
         let walk = &path[begin.saturating_sub(1)..(end + 1).min(path.len())];
         let [first, last] = [0, walk.len() - 1].map(|i| walk[i].seconds);
         if !is_rest && moves_away(walk) {
             // The gait may begin and end with a standstill, which looks like a rest.
-            walks.push([
-                path[0].seconds.max(first - min_rest_duration / 2.0),
-                path[path.len() - 1]
-                    .seconds
-                    .min(last + min_rest_duration / 2.0),
-            ]);
+            let (from, to) = (path[0].seconds, path[path.len() - 1].seconds);
+            let half_rest = min_rest_duration / 2.0;
+            walks.push([from.max(first - half_rest), to.min(last + half_rest)]);
         }
         begin = end;
     }
@@ -84,10 +77,8 @@ fn longest_standstill(gait: &Gait) -> f64 {
 /// True if the poses scatter no more than while a robot rests.
 fn is_still(path: &[PathPoint]) -> bool {
     let count = path.len() as f64;
-    let movements: Vec<[f64; 3]> = path
-        .iter()
-        .map(|point| movement_in_mm(point.pose.travel_from(path[0].pose)))
-        .collect();
+    let movement_to = |point: &PathPoint| movement_in_mm(point.pose.travel_from(path[0].pose));
+    let movements: Vec<[f64; 3]> = path.iter().map(movement_to).collect();
     let mean =
         [0, 1, 2].map(|axis| movements.iter().map(|movement| movement[axis]).sum::<f64>() / count);
     let squared_deviation = |movement: &[f64; 3]| {

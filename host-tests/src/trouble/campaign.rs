@@ -55,10 +55,8 @@ impl fmt::Display for Summary {
         }
         for rule in Rule::ALL {
             let violates_rule = |failure: &&Failure| {
-                failure
-                    .violations
-                    .iter()
-                    .any(|violation| violation.rule == *rule)
+                let mut violations = failure.violations.iter();
+                violations.any(|violation| violation.rule == *rule)
             };
             let failures: Vec<&Failure> = self.failures.iter().filter(violates_rule).collect();
             if let Some(first) = failures.first() {
@@ -109,10 +107,8 @@ pub fn run_campaign(
                     }
                     let scenario = Scenario::generate(seed, number, robot);
                     let (cycle_count, failure) = run_and_check(image, robot, &scenario);
-                    report_progress(
-                        done_count.fetch_add(1, Ordering::Relaxed) + 1,
-                        failure.as_ref(),
-                    );
+                    let new_count = done_count.fetch_add(1, Ordering::Relaxed) + 1;
+                    report_progress(new_count, failure.as_ref());
                     let mut summary = summary.lock().expect("no thread has panicked");
                     let counts = &mut summary.counts_by_activity;
                     let (run_count, failed_count) = counts.entry(scenario.activity).or_default();
@@ -125,8 +121,7 @@ pub fn run_campaign(
         }
     });
     let mut summary = summary.into_inner().expect("no thread has panicked");
-    summary
-        .failures
-        .sort_by_key(|failure| failure.scenario.number);
+    let failures = &mut summary.failures;
+    failures.sort_by_key(|failure| failure.scenario.number);
     summary
 }

@@ -10,13 +10,10 @@ use super::step::Step;
 
 /// Returns the command for a random pose in which each servo is within 9 degrees of neutral.
 pub fn random_pose(rng: &mut Rng, robot: &Robot) -> String {
-    let servos = robot.servos();
-    let angles: Vec<String> = (0..4)
-        .map(|index| {
-            let sweep = f64::from(rng.i32(-900..900)) / 100.0;
-            format!("{:.2}", (servos[index].neutral + sweep).rem_euclid(360.0))
-        })
-        .collect();
+    let angles = robot.servos().each_ref().map(|servo| {
+        let sweep = f64::from(rng.i32(-900..900)) / 100.0;
+        format!("{:.2}", (servo.neutral + sweep).rem_euclid(360.0))
+    });
     format!("pose {}", angles.join(" "))
 }
 

@@ -185,10 +185,8 @@ impl Record {
             let echo = text.strip_prefix("ok ");
             echo.is_some_and(|echo| received.text.ends_with(echo))
         };
-        let next_lines = self
-            .printed_lines
-            .iter()
-            .filter(|line| (start..end).contains(&line.cycle));
+        let lines = self.printed_lines.iter();
+        let next_lines = lines.filter(|line| (start..end).contains(&line.cycle));
         if next_lines.clone().any(|line| is_ok(&line.text)) {
             return Some(true);
         }

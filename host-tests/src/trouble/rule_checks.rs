@@ -34,21 +34,17 @@ fn observer_limits(robot: &Robot, scenario: &Scenario) -> Limits {
     let scale_text = if mentions("scale ") { LARGE_SCALE } else { "0" };
     let scale_in_scenario: f64 = scale_text.parse().expect("the scale is a number");
     let servos = robot.servos().each_ref();
+    let thresholds = robot.supplies().board_thresholds;
     Limits {
         // Allows for a cycle of rounding at both ends of a pulse, and half an angle step.
         max_change_cycles: servos.map(|servo| {
             us_to_cycles(max_speed / 50.0 * servo.us_per_degree.abs().max(scale_in_scenario)) + 4
         }),
         width_ranges: servos.map(|servo| {
-            (
-                us_to_cycles(servo.min_us) - 1,
-                us_to_cycles(servo.max_us) + 1,
-            )
+            let [min, max] = [servo.min_us, servo.max_us].map(us_to_cycles);
+            (min - 1, max + 1)
         }),
-        levels_mv: robot
-            .supplies()
-            .board_thresholds
-            .map(|volts| (1_000.0 * volts) as u32),
+        levels_mv: thresholds.map(|volts| (1_000.0 * volts) as u32),
         max_frame_remainder: 25 * lizard_rules::MS,
         max_report_time: 300 * lizard_rules::MS,
         max_queue_time: 150 * lizard_rules::MS,
@@ -84,11 +80,9 @@ pub fn find_violations(record: &Record, robot: &Robot, scenario: &Scenario) -> V
         (Rule::StopRepeated, check_stops_are_answered(record)),
     ];
     for (rule, result) in checks {
-        violations.extend(
-            result
-                .err()
-                .map(|observation| Violation::new(rule, observation)),
-        );
+        if let Err(observation) = result {
+            violations.push(Violation::new(rule, observation));
+        }
     }
     violations.sort_by_key(|violation| violation.rule);
     violations.dedup_by_key(|violation| violation.rule);
@@ -128,11 +122,8 @@ pub fn collect_events(record: &Record) -> Vec<(Time, Event<'_>)> {
     for cycle in &record.byte_cycles {
         add(*cycle, Event::ByteReceived);
     }
-    for received in record
-        .received_lines
-        .iter()
-        .filter(|received| !received.text.is_empty())
-    {
+    let received_lines = record.received_lines.iter();
+    for received in received_lines.filter(|received| !received.text.is_empty()) {
         let is_command = received.is_command;
         add(received.cycle, Event::LineReceived { is_command });
         let is_saved = received.text == "save" && record.is_saved(received.cycle);
@@ -141,14 +132,11 @@ pub fn collect_events(record: &Record) -> Vec<(Time, Event<'_>)> {
         }
     }
     for (received, is_accepted) in record.motion_commands() {
-        let effect = received.effect;
-        add(
-            received.cycle,
-            Event::MotionCommand {
-                effect,
-                is_accepted,
-            },
-        );
+        let command = Event::MotionCommand {
+            effect: received.effect,
+            is_accepted,
+        };
+        add(received.cycle, command);
     }
     for line in &record.printed_lines {
         let length_cycles = SENT_BYTE_CYCLES * line.text.len() as u64;
@@ -158,6 +146,7 @@ pub fn collect_events(record: &Record) -> Vec<(Time, Event<'_>)> {
     for exchange in &record.exchanges {
         let (sent_at, line) = (to_time(exchange.sent_cycle), exchange.line.as_str());
         let effect = exchange.effect;
+        let timeout = sent_at + to_time(400 * MS);
         events.push(match &exchange.answer {
             Some(Line { cycle, text, .. }) => (
                 to_time(*cycle),
@@ -168,10 +157,7 @@ pub fn collect_events(record: &Record) -> Vec<(Time, Event<'_>)> {
                     answer: text,
                 },
             ),
-            None => (
-                sent_at + to_time(400 * MS),
-                Event::Unanswered(sent_at, line),
-            ),
+            None => (timeout, Event::Unanswered(sent_at, line)),
         });
     }
     for (cycle, pulse) in &record.pulses {
@@ -201,15 +187,13 @@ fn check_alive(record: &Record) -> Result<(), String> {
 fn check_stand(record: &Record) -> Result<(), String> {
     let mut exchanges = record.exchanges.iter().rev();
     let last_status = exchanges.next().ok_or("no line was sent")?;
-    let stand_exchange = exchanges
-        .find(|exchange| exchange.line == "stand")
-        .ok_or("stand was not sent")?;
+    let stand_exchange = exchanges.find(|exchange| exchange.line == "stand");
+    let stand_exchange = stand_exchange.ok_or("stand was not sent")?;
     if !stand_exchange.is_accepted() {
         return Err(format!("answer to stand: {:?}", stand_exchange.answer));
     }
-    if last_status.status_value("gait") != Some("stand")
-        || last_status.status_value("fault") != Some("none")
-    {
+    let status = ["gait", "fault"].map(|key| last_status.status_value(key));
+    if status != [Some("stand"), Some("none")] {
         return Err(format!("status after stand: {:?}", last_status.answer));
     }
     let late_start_cycle = record.end_cycle - 110 * MS;
@@ -243,8 +227,8 @@ fn check_refusals(record: &Record) -> Result<(), String> {
         else {
             continue;
         };
-        let have_status = status_before.status_value("gait").is_some()
-            && status_after.status_value("gait").is_some();
+        let gaits = [status_before, status_after].map(|status| status.status_value("gait"));
+        let have_status = gaits.iter().all(Option::is_some);
         let span = answer_before.cycle..answer_after.cycle;
         let has_motion_ended = record.printed_lines.iter().any(|line| {
             let reports_end =
@@ -252,8 +236,7 @@ fn check_refusals(record: &Record) -> Result<(), String> {
             reports_end && span.contains(&line.cycle)
         });
         // A routine continues by itself, for example from a motion to a rest.
-        let is_routine = status_before.status_value("gait") == Some(PATROL)
-            || status_after.status_value("gait") == Some(PATROL);
+        let is_routine = gaits.contains(&Some(PATROL));
         let may_have_changed = has_motion_ended
             || is_routine
             || record.is_disturbed(answer_before.cycle, answer_after.cycle);
@@ -277,31 +260,23 @@ fn check_refusals(record: &Record) -> Result<(), String> {
 /// interrupts between them.
 fn check_pulse_times(record: &Record) -> Result<(), String> {
     for servo in 0..4 {
-        let pulses = record
-            .pulses
-            .iter()
-            .filter(|(_, pulse)| pulse.servo == servo);
+        let is_of_servo = |(_, pulse): &&(u64, Pulse)| pulse.servo == servo;
+        let pulses = record.pulses.iter().filter(is_of_servo);
         let start_cycles: Vec<u64> = pulses.map(|(cycle, _)| *cycle).collect();
         for pair in start_cycles.windows(2) {
             let (from, to) = (pair[0], pair[1]);
             // A longer interval means a missing frame, which another rule covers.
             let is_next_frame = to - from < FRAME_CYCLES + FRAME_CYCLES / 2;
-            let is_delayed = record
-                .interrupt_blocks
-                .iter()
-                .any(|block| block.overlaps(from, to));
-            let was_reset = record
-                .starts
-                .iter()
-                .any(|start| (from..to).contains(&start.cycle));
+            let mut blocks = record.interrupt_blocks.iter();
+            let is_delayed = blocks.any(|block| block.overlaps(from, to));
+            let mut starts = record.starts.iter();
+            let was_reset = starts.any(|start| (from..to).contains(&start.cycle));
             if is_next_frame && to - from != FRAME_CYCLES && !is_delayed && !was_reset {
                 let late_cycles = to as i64 - (from + FRAME_CYCLES) as i64;
-                let observation = format!(
-                    "A{}'s pulse is {late_cycles} cycles late at {} ms",
-                    servo + 1,
-                    to / MS
-                );
-                return Err(observation);
+                let (number, ms) = (servo + 1, to / MS);
+                return Err(format!(
+                    "A{number}'s pulse is {late_cycles} cycles late at {ms} ms"
+                ));
             }
         }
     }
@@ -312,17 +287,13 @@ fn check_pulse_times(record: &Record) -> Result<(), String> {
 fn check_only_sent_lines(record: &Record) -> Result<(), String> {
     for line in &record.printed_lines {
         // After a reset, the banner may follow an incomplete answer in the same line.
-        let Some(answered_line) = line
-            .text
-            .strip_prefix("ok ")
-            .filter(|text| !text.contains('#'))
-        else {
+        let echo = line.text.strip_prefix("ok ");
+        let Some(answered_line) = echo.filter(|text| !text.contains('#')) else {
             continue;
         };
-        let sent_line = if answered_line.starts_with("gait=") {
-            "status"
-        } else {
-            answered_line
+        let sent_line = match answered_line.starts_with("gait=") {
+            true => "status",
+            false => answered_line,
         };
         // After a reset during a line, the program receives only the last part of the line. If the radio link breaks
         // during a line, noise may end the line early.
@@ -330,10 +301,8 @@ fn check_only_sent_lines(record: &Record) -> Result<(), String> {
         let mut starts = record.starts.iter();
         let was_reset = starts.any(|start| recent_cycles.contains(&start.cycle));
         let link_breaks_after = |cycle: u64| {
-            record
-                .radio_spans
-                .iter()
-                .any(|link| (cycle..cycle + 200 * MS).contains(&link.end))
+            let mut spans = record.radio_spans.iter();
+            spans.any(|link| (cycle..cycle + 200 * MS).contains(&link.end))
         };
         let mut sent_lines = record.sent_lines.iter();
         let is_same_line = |(cycle, text): &(u64, String)| {
@@ -363,28 +332,21 @@ fn check_stops_are_answered(record: &Record) -> Result<(), String> {
             let is_answer = line.text.ends_with("ok stop") || line.text.starts_with("err 7");
             line.cycle + EARLIER_ANSWER_CYCLES > *stop && is_answer
         };
-        let answer_cycle = record
-            .printed_lines
-            .iter()
-            .find(is_stop_answer)
-            .map(|line| line.cycle);
+        let answer = record.printed_lines.iter().find(is_stop_answer);
+        let answer_cycle = answer.map(|line| line.cycle);
         let find_deadline = |link: &Span| {
             let start = link.start.max(*stop);
-            let deadline = start
-                + if record.has_found_baud_rate(start) {
-                    ANSWER_CYCLES
-                } else {
-                    RATE_SEARCH_CYCLES
-                };
+            let deadline = match record.has_found_baud_rate(start) {
+                true => start + ANSWER_CYCLES,
+                false => start + RATE_SEARCH_CYCLES,
+            };
             let is_undisturbed = !record.is_disturbed(start.saturating_sub(300 * MS), deadline);
             (link.end >= deadline && is_undisturbed).then_some(deadline)
         };
         let deadline = record.radio_spans.iter().find_map(find_deadline);
         if deadline.is_some_and(|deadline| answer_cycle.is_none_or(|cycle| cycle > deadline)) {
-            return Err(format!(
-                "no answer to the stop first sent at {} ms",
-                stop / MS
-            ));
+            let ms = stop / MS;
+            return Err(format!("no answer to the stop first sent at {ms} ms"));
         }
     }
     Ok(())
@@ -394,9 +356,8 @@ fn check_stops_are_answered(record: &Record) -> Result<(), String> {
 /// reports. A change is a reported fault, a motion command or a start of the program.
 fn check_led(record: &Record) -> Result<(), String> {
     let led_edges = record.edges.iter().filter(|edge| edge.pin == LED_PIN);
-    let led_edges: Vec<(Time, bool)> = led_edges
-        .map(|edge| (edge.cycle as Time, edge.is_rising))
-        .collect();
+    let led_edges = led_edges.map(|edge| (edge.cycle as Time, edge.is_rising));
+    let led_edges: Vec<(Time, bool)> = led_edges.collect();
     let reported_code = |exchange: &'_ Exchange| {
         let cycle = exchange.answer.as_ref()?.cycle;
         Some((cycle, led::fault_code(exchange.status_value("fault")?)))
@@ -406,15 +367,12 @@ fn check_led(record: &Record) -> Result<(), String> {
         let is_accepted_command = text.starts_with("ok ") && !text.starts_with("ok gait=");
         is_accepted_command || text.starts_with("# fault") || text.starts_with("# held")
     };
-    let change_lines = record
-        .printed_lines
-        .iter()
-        .filter(|line| reports_change(&line.text));
+    let lines = record.printed_lines.iter();
+    let change_lines = lines.filter(|line| reports_change(&line.text));
     let changes = change_lines.map(|line| line.cycle);
     let changes = changes.chain(record.motion_commands().map(|(received, _)| received.cycle));
-    let changes: Vec<u64> = changes
-        .chain(record.starts.iter().map(|start| start.cycle))
-        .collect();
+    let starts = record.starts.iter().map(|start| start.cycle);
+    let changes: Vec<u64> = changes.chain(starts).collect();
     for (cycle, code) in record.exchanges.iter().filter_map(reported_code) {
         // A flash of the LED that began before the last change belongs to the previous pattern.
         let last_change = changes.iter().filter(|change| **change < cycle).max();

@@ -92,10 +92,9 @@ impl<'a> Script<'a> {
     }
 
     fn say(&mut self, line: impl Into<String>) {
-        let step = if self.is_driven {
-            Step::Send
-        } else {
-            Step::Say
+        let step = match self.is_driven {
+            true => Step::Send,
+            false => Step::Say,
         };
         self.steps.push(step(line.into()));
     }
@@ -116,6 +115,11 @@ impl<'a> Script<'a> {
 
     fn random_pose(&mut self) -> String {
         random_commands::random_pose(self.rng, self.robot)
+    }
+
+    fn say_random_gait(&mut self) {
+        let gait = self.random_gait();
+        self.say(gait);
     }
 
     fn random_gait(&mut self) -> String {
@@ -155,8 +159,7 @@ impl<'a> Script<'a> {
             }
             Activity::Holding => {
                 if self.rng.bool() {
-                    let gait = self.random_gait();
-                    self.say(gait);
+                    self.say_random_gait();
                     self.wait_up_to(900);
                     self.say("stop");
                 }
@@ -168,8 +171,7 @@ impl<'a> Script<'a> {
                 self.wait_up_to(250);
             }
             Activity::Cycling => {
-                let gait = self.random_gait();
-                self.say(gait);
+                self.say_random_gait();
                 self.wait_up_to(2_000);
             }
             Activity::Saving => self.start_saving(),
@@ -189,8 +191,7 @@ impl<'a> Script<'a> {
                 return;
             }
             1 => {
-                let gait = self.random_gait();
-                self.say(gait);
+                self.say_random_gait();
                 self.wait_up_to(400);
             }
             _ => {}
@@ -207,17 +208,13 @@ impl<'a> Script<'a> {
         if !is_power_on {
             match self.rng.u8(0..4) {
                 0 => self.say("rest"),
-                1 => {
-                    let gait = self.random_gait();
-                    self.say(gait);
-                }
+                1 => self.say_random_gait(),
                 _ => {}
             }
             self.wait_up_to(700);
-            let start_step = if self.rng.u8(0..3) == 0 {
-                Step::PowerCycle
-            } else {
-                Step::Reset
+            let start_step = match self.rng.u8(0..3) {
+                0 => Step::PowerCycle,
+                _ => Step::Reset,
             };
             self.steps.push(start_step);
         }
@@ -229,10 +226,7 @@ impl<'a> Script<'a> {
     fn start_talking(&mut self) {
         match self.rng.u8(0..3) {
             0 => self.say("rest"),
-            1 => {
-                let gait = self.random_gait();
-                self.say(gait);
-            }
+            1 => self.say_random_gait(),
             _ => {}
         }
         for _ in 0..self.rng.u8(1..5) {
@@ -289,10 +283,8 @@ impl<'a> Script<'a> {
         if self.rng.u8(0..4) == 0 {
             self.add_noise();
         }
-        let rate = *self
-            .rng
-            .choice(&BaudRate::ALL)
-            .unwrap_or(&BaudRate::Fastest);
+        let rate = self.rng.choice(&BaudRate::ALL);
+        let rate = rate.unwrap_or(&BaudRate::Fastest);
         let link = RadioLink {
             baud: f64::from(rate.baud()),
             packet_loss: *self.rng.choice(&[0.0, 0.01, 0.1]).unwrap_or(&0.0),
@@ -349,10 +341,9 @@ impl<'a> Script<'a> {
     /// for the status after each of them.
     fn add_final_checks(&mut self) {
         // In one of four cases, waits long enough for the LED's fault pattern and for the gait after power-on.
-        let wait_ms = if self.rng.u8(0..4) == 0 {
-            5_500
-        } else {
-            self.rng.u64(350..800)
+        let wait_ms = match self.rng.u8(0..4) {
+            0 => 5_500,
+            _ => self.rng.u64(350..800),
         };
         self.wait(wait_ms);
         // Ends an incomplete line, left by a reset or by the end of a link, and makes it invalid.
@@ -371,11 +362,8 @@ impl<'a> Script<'a> {
         self.say(refused_line);
         self.say("status");
         // A supply counts as good only one second after it has recovered.
-        if self
-            .steps
-            .iter()
-            .any(|step| matches!(step, Step::Supply(_) | Step::WeakSupply(_)))
-        {
+        let is_supply = |step: &Step| matches!(step, Step::Supply(_) | Step::WeakSupply(_));
+        if self.steps.iter().any(is_supply) {
             self.wait(1_300);
         }
         self.steps.push(Step::SayOrStand("walk".into()));

@@ -87,20 +87,16 @@ impl ScenarioRun<'_> {
             Step::Say(line) => _ = self.say(line),
             Step::Send(line) => self.send(line),
             Step::SayOrStand(line) => {
-                if self
-                    .say(line)
-                    .is_some_and(|answer| answer.starts_with("err 7"))
-                {
+                let answer = self.say(line);
+                if answer.is_some_and(|answer| answer.starts_with("err 7")) {
                     self.say("stand");
                 }
             }
             Step::Wait(cycles) => self.run_to(now + cycles),
             Step::Stall(cycles) => {
                 self.uno.stall_main(*cycles);
-                self.record.stalls.push(Span {
-                    start: now,
-                    end: now + cycles,
-                });
+                let end = now + cycles;
+                self.record.stalls.push(Span { start: now, end });
             }
             Step::BlockInterrupts(cycles) => {
                 self.uno.block_interrupts(*cycles);
@@ -153,11 +149,8 @@ impl ScenarioRun<'_> {
             let old_line_count = self.record.printed_lines.len();
             self.send("status");
             self.run_to(self.uno.cycle() + ANSWER_TIMEOUT_MS * CYCLES_PER_MS);
-            let new_lines = &self.record.printed_lines[old_line_count..];
-            if new_lines
-                .iter()
-                .any(|line| line.text.starts_with("ok gait="))
-            {
+            let mut new_lines = self.record.printed_lines[old_line_count..].iter();
+            if new_lines.any(|line| line.text.starts_with("ok gait=")) {
                 return;
             }
         }
@@ -167,10 +160,9 @@ impl ScenarioRun<'_> {
     /// most a twentieth of this number.
     fn add_noise(&mut self, cycles: u64) {
         let max_count = cycles / RECEIVED_BYTE_CYCLES;
-        let count = if self.noise_rng.bool() {
-            max_count
-        } else {
-            self.noise_rng.u64(..=max_count / 20)
+        let count = match self.noise_rng.bool() {
+            true => max_count,
+            false => self.noise_rng.u64(..=max_count / 20),
         };
         for _ in 0..count {
             let byte = match self.noise_rng.u8(..4) {
@@ -217,12 +209,8 @@ impl ScenarioRun<'_> {
     /// Sets the supply voltage in mV, and records a change.
     fn set_supply(&mut self, mv: f64) {
         let now = self.uno.cycle();
-        if self
-            .record
-            .supply_mv
-            .last()
-            .is_some_and(|(_, previous_mv)| *previous_mv == mv)
-        {
+        let previous = self.record.supply_mv.last();
+        if previous.is_some_and(|(_, previous_mv)| *previous_mv == mv) {
             return;
         }
         self.uno.set_supply_mv(mv);
@@ -237,15 +225,11 @@ impl ScenarioRun<'_> {
     fn run_to(&mut self, end_cycle: u64) {
         while self.uno.cycle() < end_cycle && self.is_alive() {
             let now = self.uno.cycle();
-            let is_stalled = self
-                .record
-                .stalls
-                .last()
-                .is_some_and(|stall| stall.end > now);
-            let step_cycles = if is_stalled || self.is_supply_weak || self.drive.is_some() {
-                CYCLES_PER_MS
-            } else {
-                end_cycle - now
+            let last_stall = self.record.stalls.last();
+            let is_stalled = last_stall.is_some_and(|stall| stall.end > now);
+            let step_cycles = match is_stalled || self.is_supply_weak || self.drive.is_some() {
+                true => CYCLES_PER_MS,
+                false => end_cycle - now,
             };
             self.uno.run_until_cycle(end_cycle.min(now + step_cycles));
             self.record_events();
@@ -264,12 +248,8 @@ impl ScenarioRun<'_> {
         let edges = self.uno.take_edges();
         for (pulse_cycle, pin) in self.latest_pulse_cycles.iter_mut().zip(self.pins) {
             let is_rise = |edge: &&Edge| edge.is_rising && edge.pin == pin;
-            *pulse_cycle = edges
-                .iter()
-                .rev()
-                .find(is_rise)
-                .map(|edge| edge.cycle)
-                .or(*pulse_cycle);
+            let last_rise = edges.iter().rev().find(is_rise);
+            *pulse_cycle = last_rise.map(|edge| edge.cycle).or(*pulse_cycle);
         }
         self.record.edges.extend(edges);
         let starts = self.uno.reset_events();
@@ -283,16 +263,11 @@ impl ScenarioRun<'_> {
         }
         if self.is_supply_weak {
             let recent_start = self.uno.cycle().saturating_sub(RECENT_PULSE_CYCLES);
-            let active_servo_count = self
-                .latest_pulse_cycles
-                .iter()
-                .flatten()
-                .filter(|cycle| **cycle >= recent_start)
-                .count();
-            self.set_supply(if active_servo_count >= 3 {
-                LOADED_WEAK_MV
-            } else {
-                GOOD_MV
+            let pulses = self.latest_pulse_cycles.iter().flatten();
+            let recent_count = pulses.filter(|cycle| **cycle >= recent_start).count();
+            self.set_supply(match recent_count {
+                3.. => LOADED_WEAK_MV,
+                _ => GOOD_MV,
             });
         }
     }
@@ -310,11 +285,8 @@ impl ScenarioRun<'_> {
             record.byte_cycles.push(byte.cycle);
             match byte.byte {
                 b'\r' | b'\n' => {
-                    record.received_lines.push(parse_received_line(
-                        &line_bytes,
-                        byte.cycle,
-                        self.robot,
-                    ));
+                    let line = parse_received_line(&line_bytes, byte.cycle, self.robot);
+                    record.received_lines.push(line);
                     line_bytes.clear();
                 }
                 0x08 | 0x7f => _ = line_bytes.pop_if(|last| last.is_ascii()),
@@ -346,9 +318,8 @@ fn find_suffix_effect(line: &str, robot: &Robot) -> Effect {
     if parse(line.as_bytes(), robot).is_ok() {
         return effect(line, robot);
     }
-    let suffix_effects = line
-        .char_indices()
-        .map(|(index, _)| effect(&line[index..], robot));
+    let effect_from = |(index, _): (usize, char)| effect(&line[index..], robot);
+    let suffix_effects = line.char_indices().map(effect_from);
     let mut effects = suffix_effects.filter(|effect| *effect != Effect::None);
     effects.next().unwrap_or(Effect::None)
 }

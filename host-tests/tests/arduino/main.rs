@@ -54,11 +54,9 @@ fn compute_jitter(widths: &[u64]) -> u64 {
 
 #[test]
 fn edges_of_eight_servos_match_the_rust_engine_to_the_cycle() {
-    let mut rust_uno = Uno::load(
-        FirmwareBench::elf_path().with_file_name("examples/sweep.elf"),
-        Fidelity::DataSheet,
-    )
-    .unwrap_or_else(|error| panic!("`make sweep` builds it: {error}"));
+    let path = FirmwareBench::elf_path().with_file_name("examples/sweep.elf");
+    let mut rust_uno = Uno::load(path, Fidelity::DataSheet)
+        .unwrap_or_else(|error| panic!("`make sweep` builds it: {error}"));
     let mut cpp_uno = load_sketch("EightServos");
     for uno in [&mut rust_uno, &mut cpp_uno] {
         uno.run_ms(20_000);
@@ -66,10 +64,8 @@ fn edges_of_eight_servos_match_the_rust_engine_to_the_cycle() {
     let [rust_edges, cpp_edges] = [&rust_uno, &cpp_uno].map(collect_relative_edges);
     let frame_count = 20_000 * CYCLES_PER_MS / u64::from(frame_cycles(8));
     let common_count = rust_edges.len().min(cpp_edges.len());
-    assert!(
-        common_count as u64 >= (frame_count - 3) * 16,
-        "{common_count} edges"
-    );
+    let min_count = (frame_count - 3) * 16;
+    assert!(common_count as u64 >= min_count, "{common_count} edges");
     let first_difference = (0..common_count).find(|index| cpp_edges[*index] != rust_edges[*index]);
     let pair = first_difference.map(|index| (index, cpp_edges[index], rust_edges[index]));
     assert_eq!(pair, None, "the first differing edge (index, C++, Rust)");
@@ -128,11 +124,8 @@ fn the_servo_library_has_jitter_in_the_same_flood() {
             image.static_ram(),
             handler_cycles_per_second(&uno)
         );
-        assert!(
-            measured_jitters
-                .iter()
-                .all(|jitter| allowed_jitters.contains(jitter))
-        );
+        let is_allowed = |jitter: &u64| allowed_jitters.contains(jitter);
+        assert!(measured_jitters.iter().all(is_allowed));
     }
 }
 
@@ -142,18 +135,12 @@ fn a_late_pulse_is_left_out_and_no_pulse_is_too_short() {
     uno.run_ms(10_000);
     let pulses = uno.pulses(Pin::d(9));
     // The sketch disables interrupts half of the time, so many of the 500 pulses are late.
-    assert!(
-        (100..400).contains(&pulses.len()),
-        "{} pulses",
-        pulses.len()
-    );
+    let count = pulses.len();
+    assert!((100..400).contains(&count), "{count} pulses");
     for pulse in pulses {
         // A falling edge waits until interrupts are enabled again, at most 30 us.
-        assert!(
-            (24_000..24_500).contains(&pulse.width),
-            "{} cycles",
-            pulse.width
-        );
+        let width = pulse.width;
+        assert!((24_000..24_500).contains(&width), "{width} cycles");
     }
     assert!(uno.is_high(Pin::d(13)), "the sketch reported no late edge");
 }
@@ -166,21 +153,15 @@ fn every_change_of_a_width_is_atomic_and_no_pulse_is_cut() {
         unreachable!("two pins have two lists of widths")
     };
     for width in [0x5dff, 0x5e00] {
-        let pulse_count = rewritten_widths
-            .iter()
-            .filter(|actual| **actual == width)
-            .count();
+        let widths = rewritten_widths.iter();
+        let pulse_count = widths.filter(|actual| **actual == width).count();
         assert!(pulse_count > 20, "{pulse_count} pulses of {width} cycles");
     }
-    let torn_width = rewritten_widths
-        .iter()
-        .find(|width| ![0x5dff, 0x5e00].contains(*width));
+    let mut widths = rewritten_widths.iter();
+    let torn_width = widths.find(|width| ![0x5dff, 0x5e00].contains(*width));
     assert_eq!(torn_width, None);
-    assert!(
-        attached_widths.len() > 20,
-        "{} pulses",
-        attached_widths.len()
-    );
+    let count = attached_widths.len();
+    assert!(count > 20, "{count} pulses");
     assert_eq!(attached_widths.iter().find(|width| **width != 24_000), None);
 }
 
@@ -204,22 +185,17 @@ fn angles_and_widths_match_the_servo_library() {
         (2400, 180, 2000),
         (-20, 0, 1000),
     ] {
-        assert_eq!(
-            uno.say(&written_value.to_string()),
-            Some(format!("{angle} {width_us}")),
-            "written value {written_value}"
-        );
+        let answer = uno.say(&written_value.to_string());
+        let expected = Some(format!("{angle} {width_us}"));
+        assert_eq!(answer, expected, "written value {written_value}");
         uno.run_ms(50);
         uno.take_edges();
         uno.run_ms(50);
         let widths = pulse_widths(&uno, Pin::d(2));
         assert!(!widths.is_empty());
-        assert!(
-            widths
-                .iter()
-                .all(|width| *width == width_us * u64::from(CYCLES_PER_US)),
-            "written value {written_value}: {widths:?}"
-        );
+        let expected = width_us * u64::from(CYCLES_PER_US);
+        let are_expected = widths.iter().all(|width| *width == expected);
+        assert!(are_expected, "written value {written_value}: {widths:?}");
         // All other servos are detached.
         assert!(uno.edges().iter().all(|edge| edge.pin == Pin::d(2)));
     }

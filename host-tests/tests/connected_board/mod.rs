@@ -53,9 +53,8 @@ impl ConnectedBoard {
     pub fn run_until(&mut self, mut condition: impl FnMut(&mut Uno) -> bool) -> bool {
         TIME_LIMIT.poll(|| {
             let period = Duration::from_millis(10);
-            self.port
-                .serve(&mut self.uno, period)
-                .expect("the port works");
+            let result = self.port.serve(&mut self.uno, period);
+            result.expect("the port works");
             self.edges.extend(self.uno.take_edges());
             condition(&mut self.uno)
         })
@@ -85,9 +84,8 @@ impl ConnectedBoard {
     /// Returns the addresses below the boot loader at which flash differs from a program.
     pub fn find_differing_addresses(&self, program: &[u8]) -> Vec<usize> {
         let flash = self.uno.flash();
-        (0..BOOT_LOADER_START)
-            .filter(|&address| flash[address] != program[address])
-            .collect()
+        let differs = |address: &usize| flash[*address] != program[*address];
+        (0..BOOT_LOADER_START).filter(differs).collect()
     }
 
     /// Asserts that flash contains this program and the unchanged boot loader of a stock UNO.

@@ -30,10 +30,8 @@ fn boot_at(baud: f64) -> FirmwareBench {
     let mut bench = boot_to_stand(Fidelity::DataSheet);
     bench.uno.set_baud(baud);
     ask_until_answered(&mut bench);
-    assert!(
-        (bench.uno.chip_baud() / baud - 1.0).abs() < 0.022,
-        "{baud} baud"
-    );
+    let error = bench.uno.chip_baud() / baud - 1.0;
+    assert!(error.abs() < 0.022, "{baud} baud");
     bench
 }
 

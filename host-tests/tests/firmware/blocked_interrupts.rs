@@ -54,11 +54,8 @@ fn run_blocked_frames(
     }
     run.run_to(start + intervals.len() as u64 * FRAME_CYCLES - SLOT_CYCLES / 2);
     let frames = run.frames_since(start);
-    assert_eq!(
-        frames.len(),
-        intervals.len(),
-        "not every interval has a frame"
-    );
+    let count = frames.len();
+    assert_eq!(count, intervals.len(), "not every interval has a frame");
     let with_interval =
         |(interval, (frame, expected)): (&BlockedInterval, _)| (*interval, frame, expected);
     intervals.iter().zip(frames).map(with_interval).collect()
@@ -93,15 +90,13 @@ fn interrupts_blocked_for_the_allowed_time_move_no_edge() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_walking(fidelity);
         let length = MAX_BLOCKED_CYCLES;
-        let intervals: Vec<BlockedInterval> = (0..450)
-            .map(|cycles_before_edge| BlockedInterval {
-                cycles_before_edge,
-                length,
-            })
-            .collect();
-        for (interval, frame, expected) in
-            run_blocked_frames(&mut run, DelayedEdges::Both, &intervals)
-        {
+        let intervals = (0..450).map(|cycles_before_edge| BlockedInterval {
+            cycles_before_edge,
+            length,
+        });
+        let intervals: Vec<BlockedInterval> = intervals.collect();
+        let frames = run_blocked_frames(&mut run, DelayedEdges::Both, &intervals);
+        for (interval, frame, expected) in frames {
             let widths = frame.all_widths();
             assert_eq!(widths, Some(expected), "{interval:?}: {frame:?}");
         }
@@ -117,9 +112,8 @@ fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
         let mut run = ReferenceRun::start_standing(fidelity);
         let intervals = generate_too_long_intervals();
         let mut dropped_count = 0;
-        for (interval, frame, expected) in
-            run_blocked_frames(&mut run, DelayedEdges::Rising, &intervals)
-        {
+        let frames = run_blocked_frames(&mut run, DelayedEdges::Rising, &intervals);
+        for (interval, frame, expected) in frames {
             for (sent_width, expected) in frame.widths.into_iter().zip(expected) {
                 dropped_count += u64::from(sent_width.is_none());
                 let is_exact = sent_width.is_none_or(|sent_width| sent_width == expected);
@@ -137,9 +131,8 @@ fn a_late_falling_edge_occurs_at_once_and_is_counted() {
         let mut run = ReferenceRun::start_standing(fidelity);
         let intervals = generate_too_long_intervals();
         let mut late_count = 0;
-        for (interval, frame, expected) in
-            run_blocked_frames(&mut run, DelayedEdges::Falling, &intervals)
-        {
+        let frames = run_blocked_frames(&mut run, DelayedEdges::Falling, &intervals);
+        for (interval, frame, expected) in frames {
             // After the blocked interval, the handler's prologue takes up to 90 cycles.
             let max_delay = (interval.length + 90).saturating_sub(interval.cycles_before_edge);
             for (sent_width, expected) in frame.expect_all_widths().into_iter().zip(expected) {

@@ -2,7 +2,7 @@
 
 use lizard_host::sim::frame::FRAME_CYCLES;
 use lizard_host_tests::{CYCLES_PER_US, robot};
-use simulated_uno::{CYCLES_PER_MS, EepromOperation, Fidelity, PowerCut, Pulse, State};
+use simulated_uno::{CYCLES_PER_MS, Fidelity, PowerCut, Pulse, State};
 
 use crate::measurements::{
     assert_within_slew_limit, assert_within_slew_limit_for_scales, measure_widths, power_cycle,
@@ -132,11 +132,8 @@ fn saved_settings_apply_from_the_first_pulse_after_power_on() {
         assert_eq!(bench.say("save"), "ok save");
         bench.run_ms(500);
         let widths = measure_widths(&mut bench);
-        assert_near(
-            widths[0],
-            calibrated_width(1.5, a1_us_per_degree(), 0.0),
-            "trimmed",
-        );
+        let expected_width = calibrated_width(1.5, a1_us_per_degree(), 0.0);
+        assert_near(widths[0], expected_width, "trimmed");
         power_cycle(&mut bench);
         bench.run_ms(700);
         // From the first pulse on, the widths match the saved settings.
@@ -144,10 +141,8 @@ fn saved_settings_apply_from_the_first_pulse_after_power_on() {
         assert_eq!(read_calibration(&mut bench), calibration);
         let line_count = bench.lines().len();
         let last_lines = bench.texts_from(line_count - 12).join("\n");
-        assert!(
-            !last_lines.contains("calibration:"),
-            "the saved settings are invalid: {last_lines}"
-        );
+        let is_valid = !last_lines.contains("calibration:");
+        assert!(is_valid, "the saved settings are invalid: {last_lines}");
     });
 }
 
@@ -198,19 +193,12 @@ fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
             assert!(operations.len() > 6 * 6, "{}", operations.len());
         }
         for operation in &operations {
-            let EepromOperation {
-                old_value,
-                new_value,
-                ..
-            } = operation;
+            let (old_value, new_value) = (operation.old_value, operation.new_value);
             assert_ne!(old_value, new_value, "an unchanged byte was written");
         }
         for pair in operations.windows(2) {
-            let interval = pair[1].cycle - pair[0].cycle;
-            assert!(
-                interval >= 3 * CYCLES_PER_MS,
-                "two bytes were written at once"
-            );
+            let are_separate = pair[1].cycle - pair[0].cycle >= 3 * CYCLES_PER_MS;
+            assert!(are_separate, "two bytes were written at once");
         }
         assert_eq!(run.late_edge_count(), 0);
         assert_eq!(Status::read(&mut run.bench).number("rx_lost"), 0.0);
@@ -251,11 +239,8 @@ fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_arrives() {
         bench.expect_ok(&format!("boot {gait}"));
         assert_eq!(bench.say("save"), "ok save");
         power_cycle(&mut bench);
-        assert_steady(
-            &run_and_record_pulses(&mut bench, 2900),
-            neutral_widths(),
-            1,
-        );
+        let pulses = run_and_record_pulses(&mut bench, 2900);
+        assert_steady(&pulses, neutral_widths(), 1);
         bench.run_ms(300);
         assert_eq!(bench.last_text(), format!("# boot: {gait}"));
         let status = Status::read(&mut bench);
@@ -263,11 +248,8 @@ fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_arrives() {
         power_cycle(&mut bench);
         bench.run_ms(2000);
         bench.uno.send(b" ");
-        assert_steady(
-            &run_and_record_pulses(&mut bench, 4000),
-            neutral_widths(),
-            1,
-        );
+        let pulses = run_and_record_pulses(&mut bench, 4000);
+        assert_steady(&pulses, neutral_widths(), 1);
     });
 }
 

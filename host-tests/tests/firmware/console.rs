@@ -1,7 +1,6 @@
 //! Tests of the console: each line gets one answer, and the pulses agree with the answer.
 
 use fastrand::Rng;
-use lizard_host::sim::analysis::compute_servo_frames;
 use lizard_host_tests::{
     CYCLES_PER_US, FirmwareBench, Frame, assert_contains, gait_commands, robot,
 };
@@ -9,8 +8,8 @@ use lizard_kinematics::{Check, Limits, Solution};
 use simulated_uno::{FREQUENCY, Fidelity};
 
 use crate::{
-    FRAMES_PER_SECOND, Status, boot_and_command, boot_to_stand, first_moving_gait, frame_widths,
-    parse_angles, pose_command, run_in_both_simulations,
+    FRAMES_PER_SECOND, Status, boot_and_command, boot_to_stand, first_moving_gait, frame_angles,
+    frame_widths, parse_angles, pose_command, run_in_both_simulations,
 };
 
 /// Largest rounding error of a printed angle, deg: half a step each for the two printed decimals, the pulse width and
@@ -119,10 +118,8 @@ fn find_refused_poses() -> Vec<(String, u8)> {
     let margin = margin.expect("a pose violates a margin");
     let stroke = stroke.map(|line| (line, 5));
     println!("a pose that violates only a stroke: {stroke:?}");
-    [Some((travel, 3)), Some((margin, 4)), stroke]
-        .into_iter()
-        .flatten()
-        .collect()
+    let poses = [Some((travel, 3)), Some((margin, 4)), stroke];
+    poses.into_iter().flatten().collect()
 }
 
 /// Returns the error code of a pose within the travel; `None` if the pose is allowed, or so close to a limit that the
@@ -191,10 +188,8 @@ fn every_refused_line_gets_its_error_code_and_changes_nothing() {
         for &(line, code) in &refused_lines {
             let answer = bench.say(line);
             let text = answer.strip_prefix(&format!("err {code} "));
-            assert!(
-                text.is_some_and(|text| !text.is_empty()),
-                "{line}: {answer}"
-            );
+            let has_text = text.is_some_and(|text| !text.is_empty());
+            assert!(has_text, "{line}: {answer}");
         }
         // Both boards must have walked for the same time before they are compared.
         for board in [&mut bench, &mut reference_bench] {
@@ -253,9 +248,7 @@ fn status_agrees_with_the_pulses() {
         bench.say("stop");
         bench.run_ms(100);
         let status = Status::read(&mut bench);
-        let sent_angles = compute_servo_frames(robot(), &bench.run_for_frames(1))[0]
-            .angles
-            .expect("each servo has a pulse");
+        let sent_angles = frame_angles(&bench.run_for_frames(1))[0];
         for (servo, (printed, sent)) in status.pose().into_iter().zip(sent_angles).enumerate() {
             let error_deg = (printed - sent).abs();
             assert!(
@@ -289,10 +282,9 @@ fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
             assert_eq!(counted_frames, frames.round());
             let phase_change = status.number("phase") - previous_status.number("phase");
             let gait_cycles = frames.round() / 50.0 / gait.period();
-            let expected = if gait.is_reversed() {
-                -gait_cycles
-            } else {
-                gait_cycles
+            let expected = match gait.is_reversed() {
+                true => -gait_cycles,
+                false => gait_cycles,
             };
             let error = (phase_change - expected).rem_euclid(1.0);
             // A phase is printed with three decimals.
@@ -313,14 +305,12 @@ fn watch_reports_the_pose_of_every_nth_frame_until_switched_off() {
         assert_eq!(bench.say("watch 7"), "ok watch 7");
         let line_count = bench.lines().len();
         let frames = bench.run_for_frames(75);
-        let sent_frames = compute_servo_frames(robot(), &frames);
+        let sent_angles = frame_angles(&frames);
         // A report after the beginning of the last frame may belong to the next one.
         let end_cycle = frames[74].start;
-        let lines: Vec<String> = bench.lines()[line_count..]
-            .iter()
-            .filter(|line| line.cycle < end_cycle)
-            .map(|line| line.text.clone())
-            .collect();
+        let lines = bench.lines()[line_count..].iter();
+        let lines = lines.filter(|line| line.cycle < end_cycle);
+        let lines: Vec<String> = lines.map(|line| line.text.clone()).collect();
         assert!((10..=11).contains(&lines.len()), "{lines:?}");
         let mut previous_frame = None;
         for line in &lines {
@@ -331,8 +321,7 @@ fn watch_reports_the_pose_of_every_nth_frame_until_switched_off() {
             assert!(is_next, "{lines:?}");
             previous_frame = Some(frame_number);
             let printed_angles = parse_angles(pose);
-            let was_sent = sent_frames.iter().any(|frame| {
-                let angles = frame.angles.expect("each servo has a pulse");
+            let was_sent = sent_angles.iter().any(|angles| {
                 (0..4).all(|i| (printed_angles[i] - angles[i]).abs() <= MAX_PRINT_ERROR_DEG)
             });
             assert!(was_sent, "{line} was never sent");

@@ -42,9 +42,8 @@ fn random_line(rng: &mut Rng) -> String {
         }
         18 => {
             let length = rng.u64(..90) + 1;
-            (0..length)
-                .map(|_| char::from(33 + rng.u64(..94) as u8))
-                .collect()
+            let random_character = |_| char::from(33 + rng.u64(..94) as u8);
+            (0..length).map(random_character).collect()
         }
         _ => "stand".into(),
     }
@@ -64,9 +63,8 @@ fn send_random_lines(bench: &mut FirmwareBench, first_rise: u64, rng: &mut Rng) 
         let earliest_cycle = bench.uno.cycle() + eeprom_cycles + wait_cycles + sending_cycles;
         let frame = (earliest_cycle - tick_cycle).div_ceil(FRAME_CYCLES);
         let cycles_in_frame = CYCLES_PER_MS + rng.u64(..18 * CYCLES_PER_MS);
-        bench
-            .uno
-            .run_until_cycle(tick_cycle + frame * FRAME_CYCLES + cycles_in_frame - sending_cycles);
+        let start_cycle = tick_cycle + frame * FRAME_CYCLES + cycles_in_frame - sending_cycles;
+        bench.uno.run_until_cycle(start_cycle);
         bench.say(&line);
         sent_count += 1;
         // The main loop reads no input while it saves or erases a rest pose.

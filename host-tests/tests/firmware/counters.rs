@@ -75,10 +75,8 @@ fn a_counter_read_during_a_carry_has_its_old_or_new_value() {
             let lines = &run.bench.lines()[line_count_before..];
             let answer = lines.iter().find(|line| line.is_answer());
             let answer = answer.expect("the robot answers").text.clone();
-            match answer
-                .split(' ')
-                .find_map(|pair| pair.strip_prefix("late="))
-            {
+            let mut pairs = answer.split(' ');
+            match pairs.find_map(|pair| pair.strip_prefix("late=")) {
                 Some("255") => old_value_count += 1,
                 Some("256") => new_value_count += 1,
                 count => panic!("round {round}: unexpected count {count:?} in {answer}"),

@@ -6,7 +6,9 @@ use std::mem::offset_of;
 use std::ops::Range;
 
 use lizard_core::console::word::Word;
-use lizard_core::numbers::section::{Header, Numbers, REGION_BYTES, START_ADDRESS, write_checksum};
+use lizard_core::numbers::section::{
+    FORMAT, Header, Numbers, REGION_BYTES, START_ADDRESS, write_checksum,
+};
 use lizard_host::board::SimulatedBoard;
 
 use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, load_named_robot, rng, robot};
@@ -92,19 +94,11 @@ fn build_missing_sections() -> Vec<DamagedSection> {
             section.truncate(end)
         }));
     }
-    for format in [
-        0u16,
-        lizard_core::numbers::section::FORMAT - 1,
-        lizard_core::numbers::section::FORMAT + 1,
-        0xffff,
-    ] {
-        sections.push(damage_section(
-            format!("version {format}"),
-            OTHER_VERSION_NOTE,
-            |section| {
-                section[4..6].copy_from_slice(&format.to_le_bytes());
-            },
-        ));
+    for format in [0, FORMAT - 1, FORMAT + 1, 0xffff] {
+        let description = format!("version {format}");
+        sections.push(damage_section(description, OTHER_VERSION_NOTE, |section| {
+            section[4..6].copy_from_slice(&format.to_le_bytes());
+        }));
     }
     sections
 }
@@ -128,13 +122,10 @@ fn build_sections_with_flipped_bit() -> Vec<DamagedSection> {
     ];
     let mut flip = |bytes: Range<usize>, expected_note| {
         let (byte, bit) = (rng.usize(bytes), rng.u8(..8));
-        damage_section(
-            format!("bit {bit} of byte {byte}"),
-            expected_note,
-            |section| {
-                section[byte] ^= 1 << bit;
-            },
-        )
+        let description = format!("bit {bit} of byte {byte}");
+        damage_section(description, expected_note, |section| {
+            section[byte] ^= 1 << bit;
+        })
     };
     let notes = [MISSING_ROBOT_NOTE, OTHER_VERSION_NOTE]
         .into_iter()
@@ -183,9 +174,8 @@ fn build_invalid_sections() -> Vec<DamagedSection> {
 fn boot_damaged_board(damaged: &DamagedSection, fidelity: Fidelity) -> FirmwareBench {
     let mut image: Image = FirmwareBench::image();
     let addresses = u32::from(START_ADDRESS)..u32::from(START_ADDRESS) + u32::from(REGION_BYTES);
-    image
-        .replace(addresses, &damaged.section)
-        .expect("the section fits");
+    let result = image.replace(addresses, &damaged.section);
+    result.expect("the section fits");
     FirmwareBench(SimulatedBoard::with_image(image, fidelity, robot()))
 }
 
@@ -201,11 +191,7 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
     let query_words = [Word::Help, Word::QuestionMark, Word::Status, Word::Watch];
     let refused_words = Word::ALL.iter().filter(|word| !query_words.contains(word));
     let examples = refused_words.map(|word| word.example().to_owned());
-    let moves = [
-        first_moving_gait(),
-        "stand".to_owned(),
-        pose_command([1.0; 4]),
-    ];
+    let moves = [first_moving_gait(), "stand".into(), pose_command([1.0; 4])];
     for line in moves.into_iter().chain(examples) {
         let (notes, answer) = bench.ask(&line);
         assert_eq!(answer, "err 10 no robot in the flash", "{line}");
@@ -227,11 +213,8 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
     let texts = bench.texts_from(0).into_iter();
     let fault_lines = texts.filter(|text| text.starts_with("# fault:"));
     assert_eq!(fault_lines.count(), 1, "number of fault reports");
-    let other_edge = bench
-        .uno
-        .edges()
-        .into_iter()
-        .find(|edge| edge.pin != LED_PIN);
+    let mut edges = bench.uno.edges().into_iter();
+    let other_edge = edges.find(|edge| edge.pin != LED_PIN);
     assert_eq!(other_edge, None, "a pin other than the LED's changed");
     for pin in (2..=12).chain(14..=19).map(Pin::arduino) {
         assert!(!bench.uno.is_high(pin), "{pin}");
@@ -260,22 +243,20 @@ fn impossible_numbers_move_no_servo_even_with_a_valid_checksum() {
 /// This check is the only part of the start-up that a robot compiled into the firmware would not need.
 #[test]
 fn the_largest_section_is_checked_within_a_frame() {
-    for_each_in_parallel(
-        &["grain", "large", "own-gaits", "paper", "unequal"],
-        |name| {
-            let robot = load_named_robot(name);
-            let image = FirmwareBench::image_with(&robot);
-            let board = SimulatedBoard::with_image(image, Fidelity::DataSheet, &robot);
-            let calls = FirmwareBench(board).time_calls("Robot::open", 200);
-            let [call] = calls[..] else {
-                panic!("{name}: {calls:?}");
-            };
-            let section_bytes = robot.section().len();
-            let ms = call.cycles() as f64 / CYCLES_PER_MS as f64;
-            println!("{name}: {section_bytes} bytes in {ms:.1} ms");
-            assert!(call.cycles() < FRAME_CYCLES, "{name}: {call:?}");
-        },
-    );
+    let names = ["grain", "large", "own-gaits", "paper", "unequal"];
+    for_each_in_parallel(&names, |name| {
+        let robot = load_named_robot(name);
+        let image = FirmwareBench::image_with(&robot);
+        let board = SimulatedBoard::with_image(image, Fidelity::DataSheet, &robot);
+        let calls = FirmwareBench(board).time_calls("Robot::open", 200);
+        let [call] = calls[..] else {
+            panic!("{name}: {calls:?}");
+        };
+        let section_bytes = robot.section().len();
+        let ms = call.cycles() as f64 / CYCLES_PER_MS as f64;
+        println!("{name}: {section_bytes} bytes in {ms:.1} ms");
+        assert!(call.cycles() < FRAME_CYCLES, "{name}: {call:?}");
+    });
 }
 
 #[test]

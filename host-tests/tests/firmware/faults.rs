@@ -23,10 +23,8 @@ fn assert_stopped(bench: &mut FirmwareBench, word: &str, message: &str, flash_co
     assert_eq!(printed_lines.count(), 1, "{line}");
     let flashes = count_flashes(bench, 12);
     assert!(flashes.len() >= 3, "{flashes:?}");
-    assert!(
-        flashes.iter().all(|count| *count == flash_count),
-        "{flashes:?}"
-    );
+    let are_equal = flashes.iter().all(|count| *count == flash_count);
+    assert!(are_equal, "{flashes:?}");
 }
 
 #[test]
@@ -47,10 +45,8 @@ fn a_gait_ends_if_no_line_arrives_within_the_deadman_time() {
         .find(|line| line.text.contains("no command within the deadman time"))
         .map(|line| (line.cycle - start) / CYCLES_PER_MS);
     // 800 ms after the last line, which came at 1400 ms plus the time of an answer; a line takes 5 ms.
-    assert!(
-        stop_ms.is_some_and(|ms| (2_190..2_260).contains(&ms)),
-        "stopped after {stop_ms:?} ms"
-    );
+    let is_in_time = stop_ms.is_some_and(|ms| (2_190..2_260).contains(&ms));
+    assert!(is_in_time, "stopped after {stop_ms:?} ms");
     let message = "no command within the deadman time, stopped";
     assert_stopped(&mut bench, "link", message, 3);
     bench.expect_ok(&first_moving_gait());

@@ -2,12 +2,11 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use lizard_host::sim::analysis::compute_servo_frames;
 use lizard_host_tests::{CYCLES_PER_US, robot};
 use lizard_robot::CheckedGait;
 use simulated_uno::Fidelity;
 
-use crate::{FRAMES_PER_SECOND, boot_to_stand, for_each_in_parallel};
+use crate::{FRAMES_PER_SECOND, boot_to_stand, for_each_in_parallel, frame_angles};
 
 /// Documented maximum error of the gait tables relative to floating point, deg.
 const MAX_TABLE_ERROR_DEG: f64 = 0.50;
@@ -30,16 +29,8 @@ fn record_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
     let mut bench = boot_to_stand(fidelity);
     let line = gait.command();
     assert_eq!(bench.say(&line), format!("ok {line}"));
-    let frames = bench.run_for_frames(
-        (3.5 * gait.period() * FRAMES_PER_SECOND as f64) as u64 + 3 * FRAMES_PER_SECOND,
-    );
-    let to_angles = |frame: lizard_host::sim::analysis::ServoFrame| {
-        frame.angles.expect("each servo has a pulse")
-    };
-    compute_servo_frames(robot(), &frames)
-        .into_iter()
-        .map(to_angles)
-        .collect()
+    let gait_frames = (3.5 * gait.period() * FRAMES_PER_SECOND as f64) as u64;
+    frame_angles(&bench.run_for_frames(gait_frames + 3 * FRAMES_PER_SECOND))
 }
 
 /// Returns the phase of a gait `frame_count` frames after its start.
@@ -51,17 +42,14 @@ fn compute_phase(gait: &CheckedGait, frame_count: usize) -> f64 {
 
 /// Returns the angles of a gait in each frame from its start, computed in floating point, deg.
 fn compute_expected_angles(gait: &CheckedGait, frame_count: usize) -> Vec<[f64; 4]> {
-    (0..frame_count)
-        .map(|n| gait.angles(compute_phase(gait, n)))
-        .collect()
+    let angles = |frame: usize| gait.angles(compute_phase(gait, frame));
+    (0..frame_count).map(angles).collect()
 }
 
 /// Returns the largest deviation of a servo angle from the gait in deg, if the gait starts at frame `start`.
 fn max_deviation(float_angles: &[[f64; 4]], sent_angles: &[[f64; 4]], start: usize) -> f64 {
-    let pairs = sent_angles[start..]
-        .iter()
-        .flatten()
-        .zip(float_angles.iter().flatten());
+    let sent_angles = sent_angles[start..].iter().flatten();
+    let pairs = sent_angles.zip(float_angles.iter().flatten());
     pairs.fold(0.0, |largest, (actual, expected)| {
         (actual - expected).abs().max(largest)
     })
@@ -74,16 +62,10 @@ fn find_gait_start(
     float_angles: &[[f64; 4]],
     sent_angles: &[[f64; 4]],
 ) -> usize {
-    let by_deviation = |a: &usize, b: &usize| {
-        max_deviation(float_angles, sent_angles, *a).total_cmp(&max_deviation(
-            float_angles,
-            sent_angles,
-            *b,
-        ))
-    };
+    let deviation = |start: &usize| max_deviation(float_angles, sent_angles, *start);
     // The start comes after the move to the first pose, and at least a whole cycle before the end.
     let end = sent_angles.len() - (gait.period() * FRAMES_PER_SECOND as f64) as usize - 10;
-    let start = (0..end).min_by(by_deviation);
+    let start = (0..end).min_by(|a, b| deviation(a).total_cmp(&deviation(b)));
     start.expect("the recording is longer than a cycle")
 }
 
@@ -95,27 +77,18 @@ fn the_pulses_of_every_gait_follow_the_gait_frame_by_frame() {
             let float_angles = compute_expected_angles(gait, sent_angles.len());
             let start = find_gait_start(gait, &float_angles, &sent_angles);
             let error = max_deviation(&float_angles, &sent_angles, start);
-            println!(
-                "{:<10} {} frames, max {error:.4} deg",
-                gait.name(),
-                sent_angles.len() - start
-            );
-            assert!(
-                error <= MAX_TABLE_ERROR_DEG + max_rounding_error_deg(),
-                "{}: {error} deg",
-                gait.name()
-            );
+            let (name, frame_count) = (gait.name(), sent_angles.len() - start);
+            println!("{name:<10} {frame_count} frames, max {error:.4} deg");
+            let max_error = MAX_TABLE_ERROR_DEG + max_rounding_error_deg();
+            assert!(error <= max_error, "{name}: {error} deg");
             // One frame earlier or later, the deviation is larger, so the comparison can distinguish frames.
             if gait.has_movement() {
-                assert!(error > 0.0, "{}: no rounding error", gait.name());
+                assert!(error > 0.0, "{name}: no rounding error");
                 // The first frame has no previous frame.
                 let neighbours = [Some(start + 1), start.checked_sub(1)];
                 for neighbour in neighbours.into_iter().flatten() {
-                    assert!(
-                        max_deviation(&float_angles, &sent_angles, neighbour) > error,
-                        "{}",
-                        gait.name()
-                    );
+                    let deviation = max_deviation(&float_angles, &sent_angles, neighbour);
+                    assert!(deviation > error, "{name}");
                 }
             }
         }
@@ -139,42 +112,33 @@ fn the_pulses_of_every_gait_move_the_robot_as_the_contact_model_predicts() {
         let start = find_gait_start(gait, &float_angles, &sent_angles);
         // Compares whole gait cycles, from the first frame at full pace that begins a cycle: two cycles if one cycle is
         // not a whole number of frames.
-        let gait_cycles = if (gait.period() * FRAMES_PER_SECOND as f64).fract() == 0.0 {
-            1
-        } else {
-            2
+        let frames_per_cycle = gait.period() * FRAMES_PER_SECOND as f64;
+        let gait_cycles = match frames_per_cycle.fract() == 0.0 {
+            true => 1.0,
+            false => 2.0,
         };
         // If two cycles are not a whole number of frames either, the missing fraction of a frame is negligible.
-        let frame_count =
-            (f64::from(gait_cycles) * gait.period() * FRAMES_PER_SECOND as f64) as usize;
-        let phase_step = 1.0 / (gait.period() * FRAMES_PER_SECOND as f64);
-        let first_frame = (start + ACCELERATION_FRAMES..sent_angles.len())
-            .find(|frame| {
-                let phase = compute_phase(gait, frame - start);
-                if gait.is_reversed() {
-                    1.0 - phase <= phase_step
-                } else {
-                    phase < phase_step
-                }
-            })
-            .expect("a cycle begins");
-        let travel = robot().predict_travel(
-            sent_angles[first_frame..=first_frame + frame_count]
-                .iter()
-                .copied(),
-        );
-        let (measured_forward, measured_turn) = (
-            travel.forward / f64::from(gait_cycles),
-            travel.turn / f64::from(gait_cycles),
-        );
+        let frame_count = (gait_cycles * frames_per_cycle) as usize;
+        let phase_step = 1.0 / frames_per_cycle;
+        let begins_cycle = |frame: &usize| {
+            let phase = compute_phase(gait, frame - start);
+            match gait.is_reversed() {
+                true => 1.0 - phase <= phase_step,
+                false => phase < phase_step,
+            }
+        };
+        let mut frames = start + ACCELERATION_FRAMES..sent_angles.len();
+        let first_frame = frames.find(begins_cycle).expect("a cycle begins");
+        let cycle_angles = sent_angles[first_frame..=first_frame + frame_count].iter();
+        let travel = robot().predict_travel(cycle_angles.copied());
+        let [measured_forward, measured_turn] =
+            [travel.forward, travel.turn].map(|value| value / gait_cycles);
         println!("{name:<10} {measured_forward:7.2} mm {measured_turn:7.2} deg");
         // An error of a tenth of a degree may change which feet stick.
         let scale = robot().lizard().links.l10 / 135.0;
         let max_error = (0.3 * scale).max(forward.abs() * 0.02);
-        assert!(
-            (measured_forward - forward).abs() <= max_error,
-            "{name}: {travel:?}"
-        );
+        let forward_error = (measured_forward - forward).abs();
+        assert!(forward_error <= max_error, "{name}: {travel:?}");
         assert!((measured_turn - turn).abs() <= 0.2, "{name}: {travel:?}");
     });
     let compared_count = compared_count.into_inner();

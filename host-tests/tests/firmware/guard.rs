@@ -11,7 +11,9 @@ use lizard_kinematics::{self as kinematics, Limits, Pose, Solution, wrap};
 use lizard_proof::{LENGTH_BAND_STEPS, margin_band};
 use simulated_uno::Fidelity;
 
-use crate::{FRAMES_PER_SECOND, Status, boot_to_stand, for_each_in_parallel, neutral_widths};
+use crate::{
+    FRAMES_PER_SECOND, Status, boot_to_stand, for_each_in_parallel, frame_angles, neutral_widths,
+};
 
 /// Returns the largest error of the guard's slider position relative to floating point, mm.
 fn max_stroke_error() -> f64 {
@@ -97,9 +99,8 @@ fn a_pose_is_accepted_exactly_if_it_is_safe_in_floating_point() {
                 assert!(answer.starts_with("ok pose"), "{angles:?}: {answer}");
                 accepted_count += 1;
             } else if !is_safe(angles, &limits_with_tolerance(-1.0)) {
-                let code = answer
-                    .strip_prefix("err ")
-                    .and_then(|rest| rest.chars().next());
+                let reason = answer.strip_prefix("err ");
+                let code = reason.and_then(|reason| reason.chars().next());
                 match code {
                     Some('3') if !is_within_travel(angles) => refused_counts[0] += 1,
                     Some('4') => refused_counts[0] += 1,
@@ -117,9 +118,8 @@ fn a_pose_is_accepted_exactly_if_it_is_safe_in_floating_point() {
 /// one. Examples are `err 4 leg margin of A1 is 0.259, ...`, `err 4 type-2 margin of the head is below 0.1, ...` and
 /// `err 5 left slider is at 55.35 mm, ...`.
 fn parse_refusal(answer: &str) -> (&str, Option<f64>) {
-    let (name, rest) = answer
-        .split_once(" is ")
-        .expect("a refusal has a name and a value");
+    let pieces = answer.split_once(" is ");
+    let (name, rest) = pieces.expect("a refusal has a name and a value");
     if rest.starts_with("below 0.1, ") {
         return (&name[4..], None);
     }
@@ -133,28 +133,19 @@ fn parse_refusal(answer: &str) -> (&str, Option<f64>) {
 fn compute_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f64)> {
     let margins = &solution.margins;
     // The margin is negative if the crank tips are crossed.
-    let signed_type2 = |end: usize| {
+    let type2 = [0, 1].map(|end: usize| {
         let gap = [&solution.head, &solution.tail][end].gap;
-        if gap.x < 0.0 {
-            -margins.type2[end]
-        } else {
-            margins.type2[end]
+        match gap.x < 0.0 {
+            true => -margins.type2[end],
+            false => margins.type2[end],
         }
-    };
+    });
     // If the couplers are nearly in line, an error of one length step turns them by a large angle.
     let end_tolerance = |end: usize| max_margin_error(margins.type2[end].max(0.05)) + 0.0005;
     let stroke_tolerance = max_stroke_error() + 0.005;
     let conditions = [
-        (
-            "4 type-2 margin of the head",
-            signed_type2(0),
-            end_tolerance(0),
-        ),
-        (
-            "4 type-2 margin of the tail",
-            signed_type2(1),
-            end_tolerance(1),
-        ),
+        ("4 type-2 margin of the head", type2[0], end_tolerance(0)),
+        ("4 type-2 margin of the tail", type2[1], end_tolerance(1)),
         ("4 type-1 margin of A1", margins.type1[0], end_tolerance(0)),
         ("4 type-1 margin of A2", margins.type1[1], end_tolerance(0)),
         ("4 type-1 margin of A3", margins.type1[2], end_tolerance(1)),
@@ -269,10 +260,8 @@ fn no_frame_violates_a_limit_under_random_commands() {
             if frame_pair[1].start - frame_pair[0].start > lizard_host_tests::FRAME_CYCLES {
                 continue;
             }
-            let (angles_before, angles_after) = (
-                pair[0].angles.expect("each servo has a pulse"),
-                pair[1].angles.expect("each servo has a pulse"),
-            );
+            let [angles_before, angles_after] =
+                [&pair[0], &pair[1]].map(|frame| frame.angles.expect("each servo has a pulse"));
             for servo in 0..4 {
                 let step = (angles_after[servo] - angles_before[servo]).abs();
                 assert!(
@@ -300,9 +289,8 @@ fn find_poses_with_unsafe_path() -> Option<[[f64; 4]; 2]> {
             let fraction = f64::from(*percent) / 100.0;
             let sweep = |i: usize| Sweep((from[i] + fraction * (to[i] - from[i])) as i16);
             let pose = Sweeps(std::array::from_fn(sweep));
-            Clearance::measure(firmware, &pose)
-                .first_hazard(firmware)
-                .is_some()
+            let clearance = Clearance::measure(firmware, &pose);
+            clearance.first_hazard(firmware).is_some()
         };
         (0..=100).filter(is_unsafe_at).count()
     };
@@ -311,10 +299,8 @@ fn find_poses_with_unsafe_path() -> Option<[[f64; 4]; 2]> {
     for _ in 0..2000 {
         let pose = random_safe_pose(&mut rng);
         if unsafe_count_between(neutral, pose) == 0 && unsafe_count_between(pose, neutral) == 0 {
-            let partner = kept_poses
-                .iter()
-                .find(|kept_pose| unsafe_count_between(**kept_pose, pose) > 20);
-            if let Some(kept_pose) = partner {
+            let is_partner = |kept_pose: &&[f64; 4]| unsafe_count_between(**kept_pose, pose) > 20;
+            if let Some(kept_pose) = kept_poses.iter().find(is_partner) {
                 return Some([*kept_pose, pose]);
             }
             // Keeps few poses, so that all pairs can be tried, because some robots have no unsafe path.
@@ -342,10 +328,8 @@ fn assert_every_safe_pose_is_reached() {
             "the guard holds the robot on its path to {pose:?}"
         );
         for (actual, expected) in status.pose().into_iter().zip(pose) {
-            assert!(
-                wrap(actual - expected).abs() <= 0.02,
-                "expected {expected} deg, got {actual}"
-            );
+            let error = wrap(actual - expected).abs();
+            assert!(error <= 0.02, "expected {expected} deg, got {actual}");
         }
     }
 }
@@ -366,17 +350,13 @@ fn the_robot_stops_on_an_unsafe_path_before_it_violates_a_limit() {
         assert_eq!(Status::read(&mut bench).text("guard"), "held");
         let frames = bench.run_for_frames(FRAMES_PER_SECOND);
         assert!(frames.iter().all(|frame| frame.widths == frames[0].widths));
-        let held_angles = compute_servo_frames(robot(), &frames)[0]
-            .angles
-            .expect("each servo has a pulse");
+        let held_angles = frame_angles(&frames)[0];
         assert!(is_safe(held_angles, &limits_with_tolerance(-1.0)) && held_angles != from);
         // The robot can move again: the path back to neutral is safe.
         assert_eq!(bench.say("stand"), "ok stand");
         bench.run_ms(5000);
-        assert_eq!(
-            bench.run_for_frames(1)[0].expect_all_widths(),
-            neutral_widths()
-        );
+        let widths = bench.run_for_frames(1)[0].expect_all_widths();
+        assert_eq!(widths, neutral_widths());
         assert_eq!(Status::read(&mut bench).text("guard"), "clear");
     });
 }

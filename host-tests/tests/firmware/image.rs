@@ -4,7 +4,7 @@
 use std::process::Command;
 
 use lizard_host_tests::{FirmwareBench, robot, root};
-use simulated_uno::{Fidelity, Image, SRAM_END, SRAM_START};
+use simulated_uno::{Fidelity, Image, SRAM_END, SRAM_START, vector_name};
 
 use crate::{Status, boot_to_stand};
 
@@ -17,16 +17,11 @@ fn find_function_paths(parts: &[&str]) -> Vec<String> {
     let image = image();
     let functions = image.symbols().iter().filter(|symbol| symbol.is_function);
     let paths: Vec<String> = functions.map(|symbol| symbol.path()).collect();
-    assert!(
-        paths
-            .iter()
-            .any(|path| path.ends_with("Controller::compute_frame")),
-        "the ELF has no symbols"
-    );
-    paths
-        .into_iter()
-        .filter(|path| parts.iter().any(|part| path.contains(part)))
-        .collect()
+    let is_frame_function = |path: &String| path.ends_with("Controller::compute_frame");
+    let has_symbols = paths.iter().any(is_frame_function);
+    assert!(has_symbols, "the ELF has no symbols");
+    let is_wanted = |path: &String| parts.iter().any(|part| path.contains(part));
+    paths.into_iter().filter(is_wanted).collect()
 }
 
 #[test]
@@ -70,19 +65,16 @@ fn the_image_contains_no_floating_point_routines() {
             || name.contains("f64")
             || name.contains("libm")
     };
-    let float_names: Vec<&str> = functions
-        .map(|symbol| symbol.name.as_str())
-        .filter(|name| is_float(name))
-        .collect();
+    let names = functions.map(|symbol| symbol.name.as_str());
+    let float_names: Vec<&str> = names.filter(|name| is_float(name)).collect();
     assert!(float_names.is_empty(), "{float_names:?}");
 }
 
 #[test]
 fn tables_and_messages_stay_in_flash() {
     let bench = boot_to_stand(Fidelity::DataSheet);
-    let ram: Vec<u8> = (SRAM_START..SRAM_END)
-        .map(|address| bench.uno.peek(address))
-        .collect();
+    let ram = (SRAM_START..SRAM_END).map(|address| bench.uno.peek(address));
+    let ram: Vec<u8> = ram.collect();
     let ram_contains = |bytes: &[u8]| ram.windows(bytes.len()).any(|window| window == bytes);
     let waves = robot().firmware().waves();
     for n in 0..waves.len() {
@@ -92,10 +84,8 @@ fn tables_and_messages_stay_in_flash() {
             if samples.iter().all(|sample| *sample == samples[0]) {
                 continue;
             }
-            let bytes: Vec<u8> = samples
-                .iter()
-                .flat_map(|sample| sample.to_le_bytes())
-                .collect();
+            let bytes = samples.iter().flat_map(|sample| sample.to_le_bytes());
+            let bytes: Vec<u8> = bytes.collect();
             assert!(!ram_contains(&bytes), "wave {n} is in RAM");
         }
     }
@@ -123,12 +113,9 @@ fn no_interrupt_has_a_higher_priority_than_the_servos() {
         bench.say(line);
         bench.run_ms(300);
     }
-    let used_vectors: Vec<&str> = bench
-        .uno
-        .interrupt_stats()
-        .iter()
-        .map(|interrupt| simulated_uno::vector_name(interrupt.vector))
-        .collect();
+    let stats = bench.uno.interrupt_stats();
+    let used_vectors = stats.iter().map(|interrupt| vector_name(interrupt.vector));
+    let used_vectors: Vec<&str> = used_vectors.collect();
     assert_eq!(
         used_vectors,
         ["TIMER1_COMPA", "TIMER1_COMPB", "USART_RX", "USART_UDRE"]
@@ -141,10 +128,8 @@ fn the_error_for_an_image_that_does_not_fit_names_the_excess_and_the_largest_fun
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     let changed_elf = folder.path().join("changed.elf");
     let image = image();
-    let code_end = image
-        .symbol("__code_end")
-        .expect("the ELF has the symbol")
-        .address;
+    let symbol = |name: &str| image.symbol(name).expect("the ELF has the symbol");
+    let code_end = symbol("__code_end").address;
     // The script takes the bounds of the robot's section from two symbols. Moving a symbol makes the code or the robot
     // too large.
     let check_with_symbol = |symbol: &str, address: u64| {
@@ -176,18 +161,13 @@ fn the_error_for_an_image_that_does_not_fit_names_the_excess_and_the_largest_fun
     let sizes = lines[1..]
         .iter()
         .map(|line| line.trim().split(' ').next()?.parse::<u32>().ok());
-    assert!(
-        sizes.is_sorted_by(|larger, smaller| larger.is_some() && larger >= smaller),
-        "{message}"
-    );
+    let are_sorted = sizes.is_sorted_by(|larger, smaller| larger.is_some() && larger >= smaller);
+    assert!(are_sorted, "{message}");
     let has_frame_function = lines[1..3]
         .iter()
         .any(|line| line.ends_with("::controller::compute_frame"));
     assert!(has_frame_function, "{message}");
-    let start = image
-        .symbol("__robot_start")
-        .expect("the ELF has the symbol")
-        .address;
+    let start = symbol("__robot_start").address;
     let (is_accepted, message) = check_with_symbol("__robot_end", start + 300);
     assert!(!is_accepted);
     assert!(message.starts_with("the robot does not fit: "), "{message}");

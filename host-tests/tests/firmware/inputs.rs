@@ -86,11 +86,8 @@ fn read_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<String> {
     let is_note = |line: &String| {
         line.starts_with('#') && !excluded_starts.iter().any(|start| line.starts_with(start))
     };
-    bench
-        .texts_from(first_line)
-        .into_iter()
-        .filter(is_note)
-        .collect()
+    let texts = bench.texts_from(first_line).into_iter();
+    texts.filter(is_note).collect()
 }
 
 /// Predicts the robot's displacement for these pulses with the contact model.
@@ -144,10 +141,8 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
             bench.uno.set_contact(OBSTACLE_PIN, false);
             frames.extend(bench.run_for_frames(6 * FRAMES_PER_SECOND));
             let turn_travel = predict_travel(&frames);
-            assert!(
-                turn_travel.turn > 75.0,
-                "the robot did not turn: {turn_travel:?}"
-            );
+            let has_turned = turn_travel.turn > 75.0;
+            assert!(has_turned, "the robot did not turn: {turn_travel:?}");
             assert!(read_notes(&mut bench, line_count).is_empty());
             // The patrol needs no second press: it waits only for the obstacle switch.
             bench.run_ms(2_500);
@@ -218,10 +213,8 @@ fn stop_rest_reset_hang_or_weak_supply_end_the_patrol_and_no_press_restarts_it()
                 bench.uno.set_contact(pin, false);
                 for (pulses, width_before) in servo_pulses.iter().zip(widths_before) {
                     let is_steady = pulses.iter().all(|pulse| pulse.width == width_before);
-                    assert!(
-                        is_steady && pulses.is_empty() == (width_before == 0),
-                        "{name}"
-                    );
+                    let has_pulses = !pulses.is_empty();
+                    assert!(is_steady && has_pulses == (width_before != 0), "{name}");
                 }
             }
             assert!(read_notes(&mut bench, line_count).is_empty(), "{name}");

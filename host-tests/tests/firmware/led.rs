@@ -12,11 +12,9 @@ fn the_led_is_lit_at_power_on_and_changes_every_32_frames() {
         let mut bench = FirmwareBench::power_on(fidelity);
         bench.run_ms(5000);
         let led_edges = led_edges(&bench);
-        assert!(
-            led_edges[0].is_rising && led_edges[0].cycle < 3 * FRAME_CYCLES,
-            "{:?}",
-            led_edges[0]
-        );
+        let first = led_edges[0];
+        assert!(first.is_rising, "{first:?}");
+        assert!(first.cycle < 3 * FRAME_CYCLES, "{first:?}");
         assert!(led_edges.len() >= 7, "{} changes in 5 s", led_edges.len());
         for (n, pair) in led_edges.windows(2).enumerate().skip(1) {
             assert_ne!(pair[0].is_rising, pair[1].is_rising);

@@ -10,6 +10,7 @@
 use std::collections::HashMap;
 use std::thread;
 
+use lizard_host::sim::analysis::compute_servo_frames;
 use lizard_host::sim::gait_choice;
 use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, Frame, robot};
 use lizard_robot::to_command;
@@ -105,11 +106,8 @@ fn boot_to_stand(fidelity: Fidelity) -> FirmwareBench {
 /// of these tests would run on a robot that only stands.
 fn first_moving_gait() -> String {
     let moving_gaits = gait_choice::list_moving_gaits(robot());
-    to_command(
-        moving_gaits
-            .first()
-            .expect("a robot under test has a gait that moves"),
-    )
+    let first_gait = moving_gaits.first();
+    to_command(first_gait.expect("a robot under test has a gait that moves"))
 }
 
 /// Returns the command for the pose at these angles from neutral, deg.
@@ -121,9 +119,8 @@ fn pose_command(sweeps_deg: [f64; 4]) -> String {
 
 /// Returns the pulse widths of the neutral pose, cycles.
 fn neutral_widths() -> [u64; 4] {
-    robot()
-        .servos()
-        .map(|servo| (servo.neutral_us * CYCLES_PER_US).round() as u64)
+    let servos = robot().servos();
+    servos.map(|servo| (servo.neutral_us * CYCLES_PER_US).round() as u64)
 }
 
 /// Ends a flood of serial input and waits until the robot has answered the lines in its buffer.
@@ -138,6 +135,13 @@ fn end_flood(bench: &mut FirmwareBench) {
 /// Returns the pulse widths of each frame, cycles.
 fn frame_widths(frames: &[Frame]) -> Vec<[u64; 4]> {
     frames.iter().map(Frame::expect_all_widths).collect()
+}
+
+/// Returns the servo angles of each frame, deg.
+fn frame_angles(frames: &[Frame]) -> Vec<[f64; 4]> {
+    let servo_frames = compute_servo_frames(robot(), frames).into_iter();
+    let angles = servo_frames.map(|frame| frame.angles.expect("each servo has a pulse"));
+    angles.collect()
 }
 
 /// The values of an answer to `status`, by key.
@@ -186,9 +190,7 @@ impl Status {
 
 /// Parses four comma-separated angles, deg, as the console writes them.
 fn parse_angles(list: &str) -> [f64; 4] {
-    let angles: Vec<f64> = list
-        .split(',')
-        .map(|angle| angle.parse().expect("an angle is a number"))
-        .collect();
+    let parse_angle = |angle: &str| angle.parse().expect("an angle is a number");
+    let angles: Vec<f64> = list.split(',').map(parse_angle).collect();
     angles.try_into().expect("a pose has four angles")
 }

@@ -38,10 +38,8 @@ pub fn power_cycle(bench: &mut FirmwareBench) {
             return;
         }
     }
-    panic!(
-        "no banner after power-on: {:?}",
-        &bench.lines()[lines_before..]
-    );
+    let lines = &bench.lines()[lines_before..];
+    panic!("no banner after power-on: {lines:?}");
 }
 
 /// Returns the lines in which `cal` prints the settings.
@@ -58,10 +56,8 @@ pub fn read_calibration(bench: &mut FirmwareBench) -> Vec<String> {
 
 /// Returns a servo's slew limit, which is the largest change in its pulse width from frame to frame, cycles.
 pub fn servo_slew_limit(servo: usize) -> u64 {
-    compute_slew_limit(
-        robot().servos()[servo].us_per_degree,
-        robot().speed_limits().slew,
-    )
+    let us_per_degree = robot().servos()[servo].us_per_degree;
+    compute_slew_limit(us_per_degree, robot().speed_limits().slew)
 }
 
 /// Returns the slew limit of a servo with this scale and speed limit, cycles per frame.

@@ -24,10 +24,8 @@ fn a_width_that_does_not_fit_into_a_slot_gives_no_pulse() {
             let start = run.run_to_next_frame();
             // By now, the frame's widths have been handed over, and A3's slot is not yet scheduled.
             run.run_to(start + 2_000);
-            for (address, index) in a3_width_addresses
-                .into_iter()
-                .flat_map(|address| [(address, 0), (address + 1, 1)])
-            {
+            let bytes = a3_width_addresses.map(|address| [(address, 0), (address + 1, 1)]);
+            for (address, index) in bytes.into_iter().flatten() {
                 let byte_before = u16::from(run.bench.uno.peek(address));
                 let neutral_byte = (neutral_widths()[2] as u16).to_le_bytes()[index];
                 assert_eq!(

@@ -13,11 +13,8 @@ use crate::measurements::{power_cycle, read_calibration};
 /// Loads the settings from an EEPROM with the core's code.
 fn load_settings(contents: &[u8; EEPROM_SIZE]) -> (Settings, SavedState) {
     let mut settings = Settings::for_robot(robot().firmware());
-    let saved_state = copies::load(
-        robot().firmware(),
-        &Eeprom::with_bytes(*contents),
-        &mut settings,
-    );
+    let eeprom = Eeprom::with_bytes(*contents);
+    let saved_state = copies::load(robot().firmware(), &eeprom, &mut settings);
     settings.set_save_number(0);
     (settings, saved_state)
 }
@@ -75,10 +72,8 @@ fn a_power_cut_at_any_byte_of_a_save_leaves_the_old_or_the_new_settings() {
     assert!(operations.len() > 10);
     let (mut outcome_counts, mut torn_count) = ([0, 0], 0u64);
     for operation in &operations {
-        assert_eq!(
-            contents[usize::from(operation.address)],
-            operation.old_value
-        );
+        let address = usize::from(operation.address);
+        assert_eq!(contents[address], operation.old_value);
         // In a torn byte, some bits are 1 that are 0 in the old or in the new value.
         for stuck_bits in 0..=255u8 {
             for torn_byte in [
@@ -86,7 +81,7 @@ fn a_power_cut_at_any_byte_of_a_save_leaves_the_old_or_the_new_settings() {
                 operation.new_value | stuck_bits,
             ] {
                 let mut contents = contents;
-                contents[usize::from(operation.address)] = torn_byte;
+                contents[address] = torn_byte;
                 let (settings, saved_state) = load_settings(&contents);
                 let is_new = settings == new;
                 assert!(
@@ -102,7 +97,7 @@ fn a_power_cut_at_any_byte_of_a_save_leaves_the_old_or_the_new_settings() {
                 }
             }
         }
-        contents[usize::from(operation.address)] = operation.new_value;
+        contents[address] = operation.new_value;
     }
     assert_eq!(contents, contents_after);
     println!("{torn_count} torn EEPROMs; old and new settings: {outcome_counts:?}");
@@ -134,22 +129,16 @@ fn a_power_cut_in_any_eeprom_operation_of_a_save_leaves_the_old_or_the_new_setti
             assert_eq!(*board.bench.uno.state(), simulated_uno::State::Off);
             power_cycle(&mut board.bench);
             let calibration = read_calibration(&mut board.bench);
-            let index = board
-                .calibrations
-                .iter()
-                .position(|known| *known == calibration);
+            let mut known_calibrations = board.calibrations.iter();
+            let index = known_calibrations.position(|known| *known == calibration);
             outcome_counts
                 [index.unwrap_or_else(|| panic!("{cut:?} {stuck_bits:02x}: {calibration:?}"))] += 1;
         }
     }
-    assert!(
-        outcome_counts[0] > 0 && outcome_counts[1] > 0,
-        "{outcome_counts:?}"
-    );
-    assert_ne!(
-        load_settings(&contents_before).0,
-        load_settings(&contents_after).0
-    );
+    let [old_count, new_count] = outcome_counts;
+    assert!(old_count > 0 && new_count > 0, "{outcome_counts:?}");
+    let [old, new] = [contents_before, contents_after].map(|contents| load_settings(&contents).0);
+    assert_ne!(old, new);
 }
 
 #[test]
@@ -166,9 +155,8 @@ fn after_any_bit_flip_the_latest_or_the_previous_settings_are_loaded() {
         let mut flipped_contents = contents;
         flipped_contents[bit / 8] ^= 1 << (bit % 8);
         let (settings, saved_state) = load_settings(&flipped_contents);
-        let index = [&latest, &previous, &defaults]
-            .iter()
-            .position(|known| **known == settings);
+        let mut known_settings = [&latest, &previous, &defaults].into_iter();
+        let index = known_settings.position(|known| *known == settings);
         let index = index.unwrap_or_else(|| panic!("bit {bit}: {saved_state:?} {settings:?}"));
         outcome_counts[index] += 1;
         if bit % 64 == 11 {

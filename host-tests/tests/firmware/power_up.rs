@@ -55,11 +55,8 @@ fn the_timer_is_stopped_during_its_setup_and_starts_at_zero() {
             |uno: &Uno, address| u16::from_le_bytes([uno.peek(address), uno.peek(address + 1)]);
         let is_top_set = |uno: &Uno| read_word(uno, OCR1A) == 63_999;
         assert!(bench.uno.run_until(100_000, 1, is_top_set));
-        assert_eq!(
-            bench.uno.peek(TCCR1B) & 7,
-            0,
-            "the timer counts during its setup"
-        );
+        let clock = bench.uno.peek(TCCR1B) & 7;
+        assert_eq!(clock, 0, "the timer counts during its setup");
         assert!(bench.uno.run_until(1_000, 1, |uno| uno.peek(TCCR1B) != 0));
         assert_eq!(read_word(&bench.uno, TCNT1), 0);
         // The mode is clear on compare match with OCR1A, without a prescaler.
@@ -97,11 +94,8 @@ fn pins_left_high_go_low_without_a_pulse() {
         let [port_b, port_c, port_d] = PORTS.map(|port| bench.uno.peek(port));
         // D0 and D1 belong to the serial line.
         assert_eq!([port_b, port_c, port_d & !0x03], [0; 3]);
-        let later_edges: Vec<Edge> = high_pin_edges
-            .iter()
-            .copied()
-            .filter(|edge| edge.cycle >= first_cycle)
-            .collect();
+        let mut later_edges = high_pin_edges.clone();
+        later_edges.retain(|edge| edge.cycle >= first_cycle);
         assert_eq!(later_edges, cold_edges);
     });
 }

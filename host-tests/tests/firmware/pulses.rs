@@ -14,13 +14,8 @@ use crate::{
 /// Returns the recorded edges of the servos' pins.
 pub fn servo_edges(bench: &FirmwareBench) -> Vec<Edge> {
     let pins = bench.pins();
-    let is_servo_edge = |edge: &Edge| pins.contains(&edge.pin);
-    bench
-        .uno
-        .edges()
-        .into_iter()
-        .filter(is_servo_edge)
-        .collect()
+    let edges = bench.uno.edges().into_iter();
+    edges.filter(|edge| pins.contains(&edge.pin)).collect()
 }
 
 /// Asserts that each servo has one pulse in each frame, exactly 20 ms apart, and that only one pin is high at a time.
@@ -29,11 +24,8 @@ fn assert_on_slot_grid(bench: &FirmwareBench, frames: &[Frame]) {
         for (servo, start) in frame.starts.into_iter().enumerate() {
             let start = start.unwrap_or_else(|| panic!("no pulse: {frame:?}"));
             // Each servo has a slot of 4 ms, counted from A1's slot.
-            assert_eq!(
-                start,
-                frame.start + servo as u64 * FRAME_CYCLES / 5,
-                "{frame:?}"
-            );
+            let expected = frame.start + servo as u64 * FRAME_CYCLES / 5;
+            assert_eq!(start, expected, "{frame:?}");
         }
     }
     let edges = servo_edges(bench);
@@ -51,16 +43,11 @@ pub fn compute_core_widths(
     frames: &[Frame],
 ) -> Vec<[u64; 4]> {
     let frames_before = ((frames[0].start - first_rise) / FRAME_CYCLES) as usize;
-    let host_run = core_run::play(
-        *robot.firmware(),
-        &bench.uno.received_by_uno()[..received_count],
-        first_rise,
-        frames_before + frames.len(),
-    );
-    host_run.widths[frames_before..]
-        .iter()
-        .map(|widths| widths.map(u64::from))
-        .collect()
+    let frame_count = frames_before + frames.len();
+    let received = &bench.uno.received_by_uno()[..received_count];
+    let host_run = core_run::play(*robot.firmware(), received, first_rise, frame_count);
+    let widths = host_run.widths[frames_before..].iter();
+    widths.map(|widths| widths.map(u64::from)).collect()
 }
 
 #[test]
@@ -91,12 +78,8 @@ fn every_width_matches_the_core() {
             let expected_widths =
                 compute_core_widths(robot(), &bench, first_rise, received_count, &frames);
             for (frame, expected) in frames.iter().zip(expected_widths) {
-                assert_eq!(
-                    frame.expect_all_widths(),
-                    expected,
-                    "{}: {frame:?}",
-                    gait.name()
-                );
+                let (widths, name) = (frame.expect_all_widths(), gait.name());
+                assert_eq!(widths, expected, "{name}: {frame:?}");
             }
         }
     });
@@ -148,11 +131,8 @@ fn a_serial_line_saturated_in_both_directions_moves_no_edge() {
             end_flood(&mut bench);
             let status = Status::read(&mut bench);
             assert_eq!(status.number("late"), 0.0, "{flood:?}");
-            assert_eq!(
-                bench.uno.overrun_count(),
-                0,
-                "the receiver was not read in time"
-            );
+            let overrun_count = bench.uno.overrun_count();
+            assert_eq!(overrun_count, 0, "the receiver was not read in time");
         }
     });
 }

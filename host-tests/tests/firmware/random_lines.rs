@@ -26,10 +26,8 @@ fn random_angle(rng: &mut Rng, servo: usize) -> String {
 
 /// Returns a random line that is valid except that its numbers may be out of range.
 fn random_line(rng: &mut Rng) -> String {
-    let random_gait = |rng: &mut Rng| {
-        let gait = &robot().gaits()[rng.usize(..robot().gaits().len())];
-        gait.command()
-    };
+    let gaits = robot().gaits();
+    let random_gait = |rng: &mut Rng| gaits[rng.usize(..gaits.len())].command();
     let index = rng.usize(..4);
     let servo = index + 1;
     match rng.u8(..24) {
@@ -64,14 +62,8 @@ fn random_line(rng: &mut Rng) -> String {
             .into(),
         20 if rng.u8(..4) == 0 => "save".into(),
         20 | 21 => ["load", "factory"][rng.usize(..2)].into(),
-        22 => format!(
-            "boot {}",
-            if rng.bool() {
-                random_gait(rng)
-            } else {
-                "rest".into()
-            }
-        ),
+        22 if rng.bool() => format!("boot {}", random_gait(rng)),
+        22 => "boot rest".into(),
         _ => format!("deadman {}", random_number(rng, 0.0, 60_000.0)),
     }
 }

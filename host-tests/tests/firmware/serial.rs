@@ -48,9 +48,8 @@ fn the_longest_line_waits_in_the_buffer_while_an_answer_is_being_sent() {
         let mut bench = boot_to_stand(fidelity);
         let line_count = bench.lines().len();
         bench.uno.send(b"help\n");
-        bench
-            .uno
-            .send(format!("stand{}\n", " ".repeat(57)).as_bytes());
+        let line = format!("stand{}\n", " ".repeat(57));
+        bench.uno.send(line.as_bytes());
         bench.run_ms(300);
         assert_eq!(bench.last_text(), "ok stand");
         assert!(bench.lines().len() > line_count + 2);
@@ -166,10 +165,8 @@ fn a_line_of_any_bytes_gets_one_answer_unless_it_is_blank() {
     let mut bench = boot_to_stand(Fidelity::DataSheet);
     for _ in 0..300 {
         // Excludes backspace and delete, which would remove bytes from the line.
-        let bytes: Vec<u8> = (0..rng.u64(..80))
-            .map(|_| rng.u8(..).max(32))
-            .filter(|byte| *byte != 0x7f)
-            .collect();
+        let bytes = (0..rng.u64(..80)).map(|_| rng.u8(..).max(32));
+        let bytes: Vec<u8> = bytes.filter(|byte| *byte != 0x7f).collect();
         let answers_before = bench.lines().iter().filter(|line| line.is_answer()).count();
         bench.uno.send(&bytes);
         bench.uno.send(b"\n");

@@ -39,10 +39,8 @@ fn a_byte_on_the_wire_takes_ten_bits_of_136_cycles() {
     let cycles: Vec<u64> = bench.bytes().iter().map(|byte| byte.cycle).collect();
     let intervals: Vec<u64> = cycles.windows(2).map(|pair| pair[1] - pair[0]).collect();
     assert_eq!(intervals.iter().min(), Some(&1360));
-    let back_to_back_count = intervals
-        .iter()
-        .filter(|interval| **interval == 1360)
-        .count();
+    let is_back_to_back = |interval: &&u64| **interval == 1360;
+    let back_to_back_count = intervals.iter().filter(is_back_to_back).count();
     assert!(
         back_to_back_count > intervals.len() * 9 / 10,
         "{back_to_back_count} of {} bytes follow without a gap",

@@ -3,7 +3,7 @@
 
 use lizard_host::sim::frame::{FRAME_CYCLES, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, gait_commands, robot};
-use simulated_uno::{CYCLES_PER_MS, Fidelity};
+use simulated_uno::{CYCLES_PER_MS, Fidelity, Uno};
 
 use crate::measurements::{assert_gait_within_slew_limits, recorded_pulses};
 use crate::reference_run::{ReferenceRun, SLOT_CYCLES};
@@ -42,9 +42,8 @@ fn a_frame_is_sent_completely_or_not_at_all_wherever_main_stops_in_the_hand_over
             let frame_start = start + frame_index * FRAME_CYCLES;
             run.run_to(frame_start - SLOT_CYCLES - 400);
             run_to_hand_over(&mut run.bench);
-            run.bench
-                .uno
-                .run_cycles(frame_index / 3 % MAX_HAND_OVER_CYCLES);
+            let delay_cycles = frame_index / 3 % MAX_HAND_OVER_CYCLES;
+            run.bench.uno.run_cycles(delay_cycles);
             let stall_cycles = frame_start + 2_000 - run.bench.uno.cycle();
             run.bench.uno.stall_main(stall_cycles);
             run.run_to(frame_start + 2_000);
@@ -53,10 +52,8 @@ fn a_frame_is_sent_completely_or_not_at_all_wherever_main_stops_in_the_hand_over
         let frames = run.frames_since(start);
         assert_eq!(frames.len() as u64, frame_count);
         // No frame is skipped: each sent frame is the previous frame or the next computed frame.
-        let commanded: Vec<_> = frames
-            .iter()
-            .map(|(_, commanded)| Some(*commanded))
-            .collect();
+        let commanded = frames.iter().map(|(_, commanded)| Some(*commanded));
+        let commanded: Vec<_> = commanded.collect();
         let mut next_index = 0;
         for (frame_index, (sent, _)) in frames.iter().enumerate() {
             let is_next = sent.all_widths() == commanded[next_index];
@@ -123,11 +120,8 @@ fn an_answer_is_the_same_wherever_main_stops_while_writing_it() {
         for delay_cycles in 0..4_500 {
             bench.send("stop");
             bench.uno.run_cycles(6_700);
-            assert!(
-                bench
-                    .uno
-                    .run_until(1_000, 1, |uno| uno.unsent_byte_count() == 0)
-            );
+            let has_received_all = |uno: &Uno| uno.unsent_byte_count() == 0;
+            assert!(bench.uno.run_until(1_000, 1, has_received_all));
             bench.uno.run_cycles(delay_cycles);
             bench.uno.stall_main(STOP_CYCLES);
             assert_eq!(
@@ -219,24 +213,17 @@ fn pulses_stay_within_the_slew_limit_after_any_stall_in_any_gait() {
         let lengths_ms = (0..6).flat_map(|_| 1..=25).chain(1..=300);
         for (stall_index, length_ms) in lengths_ms.enumerate() {
             // Spreads the stalls evenly over the frame, because 7 919 is prime.
-            bench
-                .uno
-                .run_cycles(FRAME_CYCLES + stall_index as u64 * 7_919 % FRAME_CYCLES);
+            let delay_cycles = stall_index as u64 * 7_919 % FRAME_CYCLES;
+            bench.uno.run_cycles(FRAME_CYCLES + delay_cycles);
             let resets_before = bench.uno.watchdog_resets();
             bench.uno.stall_main(length_ms * CYCLES_PER_MS);
             // Once the watchdog's first stage has ended the pulses, the reset is certain.
-            let wait_ms = if length_ms < POSSIBLE_RESET_MS {
-                length_ms
-            } else {
-                350
-            };
+            let may_reset = length_ms >= POSSIBLE_RESET_MS;
+            let wait_ms = if may_reset { 350 } else { length_ms };
             bench.uno.run_ms(wait_ms + 60);
             let was_reset = bench.uno.watchdog_resets() > resets_before;
             assert!(length_ms < CERTAIN_RESET_MS || was_reset, "{length_ms} ms");
-            assert!(
-                length_ms >= POSSIBLE_RESET_MS || !was_reset,
-                "{length_ms} ms"
-            );
+            assert!(may_reset || !was_reset, "{length_ms} ms");
             println!("{gait}, stalled for {length_ms} ms");
             assert_gait_within_slew_limits(&recorded_pulses(&bench));
             if was_reset {

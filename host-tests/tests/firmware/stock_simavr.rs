@@ -24,24 +24,18 @@ fn write_eeprom(folder: &Path) {
     let mut running_robot = RunningRobot::power_on(*robot().firmware());
     running_robot.run_frames(50);
     let boot_line = format!("boot {}", first_gait_command());
-    assert_eq!(
-        running_robot.send_line(&boot_line),
-        format!("ok {boot_line}")
-    );
+    let answer = running_robot.send_line(&boot_line);
+    assert_eq!(answer, format!("ok {boot_line}"));
     running_robot.board.send(b"save\r");
     running_robot.run_frames(200);
     let output_text = running_robot.read_lines().join("\n");
-    assert!(
-        output_text.is_empty() || output_text.contains("ok save"),
-        "{output_text}"
-    );
+    let is_saved = output_text.is_empty() || output_text.contains("ok save");
+    assert!(is_saved, "{output_text}");
     let bytes = *running_robot.board.memory.bytes();
     assert_eq!(bytes[0], 0xa5, "the first copy of the settings is invalid");
     fs::write(folder.join("eeprom.bin"), bytes).expect("the folder is writable");
-    objcopy(
-        "-I binary -O ihex --change-addresses 0x810000 eeprom.bin eeprom.hex",
-        folder,
-    );
+    let arguments = "-I binary -O ihex --change-addresses 0x810000 eeprom.bin eeprom.hex";
+    objcopy(arguments, folder);
 }
 
 /// Runs `avr-objcopy` in a folder.
@@ -121,11 +115,9 @@ fn parse_widths(vcd: &str) -> HashMap<String, Vec<f64>> {
         } else if let Some(code) = line.strip_prefix('0')
             && let Some(rise_us) = rises_us.remove(code.trim())
         {
-            let name = names
-                .get(code.trim())
-                .expect("the signal has a name")
-                .clone();
-            widths.entry(name).or_default().push(now_us - rise_us);
+            let name = names.get(code.trim()).expect("the signal has a name");
+            let widths = widths.entry(name.clone()).or_default();
+            widths.push(now_us - rise_us);
         }
     }
     widths
@@ -139,49 +131,35 @@ fn the_elf_file_walks_in_debians_simavr() {
     fs::copy(FirmwareBench::elf_path(), folder.join("lizard.elf"))
         .expect("`make firmware` has built the firmware");
     // `traced.elf` is the same file with trace tags for four pins added to its own tags.
-    objcopy(
-        "-O binary -j .mmcu --set-section-flags .mmcu=alloc lizard.elf mmcu.bin",
-        folder,
-    );
+    let arguments = "-O binary -j .mmcu --set-section-flags .mmcu=alloc lizard.elf mmcu.bin";
+    objcopy(arguments, folder);
     let mut mmcu = fs::read(folder.join("mmcu.bin")).expect("avr-objcopy has written the section");
     let end = mmcu.len() - 2;
     mmcu.splice(end..end, build_trace_tags(robot().firmware().pins()));
     fs::write(folder.join("mmcu.bin"), mmcu).expect("the folder is writable");
-    objcopy(
-        "--update-section .mmcu=mmcu.bin lizard.elf traced.elf",
-        folder,
-    );
+    let arguments = "--update-section .mmcu=mmcu.bin lizard.elf traced.elf";
+    objcopy(arguments, folder);
     let output_text = run_simavr(
         "-m atmega328p -f 16000000 traced.elf -ee eeprom.hex",
         folder,
         // 30 000 bytes, about 20 for each edge, cover the three seconds before the gait and two of its cycles.
         |_| fs::metadata(folder.join("pins.vcd")).is_ok_and(|file| file.len() > 30_000),
     );
-    assert!(
-        output_text.contains(&format!("# boot: {}", first_gait_command())),
-        "{output_text}"
-    );
-    assert!(
-        !output_text.contains("fault") && !output_text.contains("supply"),
-        "{output_text}"
-    );
+    let boot_note = format!("# boot: {}", first_gait_command());
+    assert!(output_text.contains(&boot_note), "{output_text}");
+    assert!(!output_text.contains("fault"), "{output_text}");
+    assert!(!output_text.contains("supply"), "{output_text}");
     let vcd = fs::read_to_string(folder.join("pins.vcd")).expect("simavr has written the trace");
     assert!(vcd.contains("$timescale 10ns $end"), "{}", &vcd[..80]);
     let widths_us = parse_widths(&vcd);
     for (servo, calibration) in robot().firmware().calibration().iter().enumerate() {
         let servo_widths_us = &widths_us[&format!("A{}", servo + 1)];
         let [min_us, max_us] = [f64::min, f64::max].map(|pick| {
-            servo_widths_us
-                .iter()
-                .copied()
-                .reduce(pick)
-                .expect("the servo has pulses")
+            let extreme = servo_widths_us.iter().copied().reduce(pick);
+            extreme.expect("the servo has pulses")
         });
-        assert!(
-            servo_widths_us.len() > 150,
-            "{} pulses",
-            servo_widths_us.len()
-        );
+        let pulse_count = servo_widths_us.len();
+        assert!(pulse_count > 150, "{pulse_count} pulses");
         assert!(
             max_us - min_us > 50.0,
             "A{} does not turn: pulses between {min_us} and {max_us} us",

@@ -3,7 +3,7 @@
 use lizard_host::sim::frame::{FRAME_CYCLES, Frame, group_frames, servo_pins};
 use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, gait_commands, robot};
 use lizard_robot::Servo;
-use simulated_uno::{CYCLES_PER_MS, Fidelity};
+use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity};
 
 use crate::{
     boot_and_command, boot_to_stand, first_moving_gait, for_each_in_parallel, frame_widths,
@@ -40,15 +40,12 @@ fn stop_freezes_the_robot_within_one_frame_in_any_phase_of_a_gait() {
                 let (mut bench, arrival_cycle) =
                     interrupt_gait(gait, "stop", n * INTERRUPTION_INTERVAL_CYCLES, fidelity);
                 let frames = bench.run_for_frames(20);
-                let later_frames = frames
-                    .iter()
-                    .filter(|frame| frame.start > arrival_cycle + FRAME_CYCLES);
+                let is_later = |frame: &&Frame| frame.start > arrival_cycle + FRAME_CYCLES;
+                let later_frames = frames.iter().filter(is_later);
                 let sent_widths: Vec<_> = later_frames.map(Frame::expect_all_widths).collect();
                 assert!(sent_widths.len() >= 18);
-                assert!(
-                    sent_widths.iter().all(|widths| *widths == sent_widths[0]),
-                    "{gait} {n}"
-                );
+                let are_equal = sent_widths.iter().all(|widths| *widths == sent_widths[0]);
+                assert!(are_equal, "{gait} {n}");
             }
         }
     });
@@ -72,34 +69,24 @@ fn rest_ends_the_pulses_within_two_frames_without_cutting_one_short() {
         let mut last_fall = 0;
         for (servo, pin) in robot().servos().iter().map(|servo| servo.pin).enumerate() {
             let pulses = bench.uno.pulses(simulated_uno::Pin::arduino(pin));
-            let rise_count = edges
-                .iter()
-                .filter(|edge| edge.pin.number() == pin && edge.is_rising)
-                .count();
+            let is_rise = |edge: &&Edge| edge.pin.number() == pin && edge.is_rising;
+            let rise_count = edges.iter().filter(is_rise).count();
             assert_eq!(pulses.len(), rise_count, "A{} is left high", servo + 1);
             for pulse in &pulses {
                 // Each pulse is complete and within the servo's travel.
                 let us = pulse.width as f64 / CYCLES_PER_US;
                 let Servo { min_us, max_us, .. } = robot().servos()[servo];
-                assert!(
-                    min_us - 1.0 <= us && us <= max_us + 1.0,
-                    "{us} us at {extra_cycles}"
-                );
+                let allowed_us = min_us - 1.0..=max_us + 1.0;
+                assert!(allowed_us.contains(&us), "{us} us at {extra_cycles}");
                 last_fall = last_fall.max(pulse.start + pulse.width);
             }
         }
         let received = bench.uno.received_by_uno();
-        let arrival_cycle = received
-            .last()
-            .expect("the robot has received a line")
-            .cycle;
+        let last_byte = received.last().expect("the robot has received a line");
+        let arrival_cycle = last_byte.cycle;
         assert!(last_fall < arrival_cycle + 2 * FRAME_CYCLES && last_fall > first_frame.start);
-        assert!(
-            bench
-                .run_for_frames(50)
-                .iter()
-                .all(|frame| frame.is_silent())
-        );
+        let frames = bench.run_for_frames(50);
+        assert!(frames.iter().all(Frame::is_silent));
     });
 }
 
@@ -107,18 +94,11 @@ fn rest_ends_the_pulses_within_two_frames_without_cutting_one_short() {
 fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
     let find_wake_frames = |frames: &[Frame]| -> [usize; 4] {
         std::array::from_fn(|servo| {
-            let first_index = frames
-                .iter()
-                .position(|frame| frame.widths[servo].is_some());
+            let is_awake = |frame: &Frame| frame.widths[servo].is_some();
+            let first_index = frames.iter().position(is_awake);
             let first_index = first_index.expect("the servo wakes");
-            let later_frames = &frames[first_index..];
-            assert!(
-                later_frames
-                    .iter()
-                    .all(|frame| frame.widths[servo].is_some()),
-                "A{}",
-                servo + 1
-            );
+            let mut later_frames = frames[first_index..].iter();
+            assert!(later_frames.all(is_awake), "A{}", servo + 1);
             first_index
         })
     };
@@ -173,11 +153,8 @@ fn all_servos_reach_a_pose_together_and_within_the_slew_limit() {
             .expect("one of the poses is safe");
         bench.say("stand");
         bench.run_ms(3000);
-        assert!(
-            bench
-                .say(&pose_command(scale_sweeps(size_deg)))
-                .starts_with("ok pose")
-        );
+        let answer = bench.say(&pose_command(scale_sweeps(size_deg)));
+        assert!(answer.starts_with("ok pose"));
         let sent_widths = frame_widths(&bench.run_for_frames(150));
         let goal_widths: [u64; 4] =
             std::array::from_fn(|i| compute_width(i, scale_sweeps(size_deg)[i]));
@@ -203,11 +180,8 @@ fn all_servos_reach_a_pose_together_and_within_the_slew_limit() {
                 let max_step =
                     robot().speed_limits().slew / 50.0 * CYCLES_PER_US * servo.us_per_degree.abs();
                 let step = pair[0][i].abs_diff(pair[1][i]) as f64;
-                assert!(
-                    step <= max_step + 2.0,
-                    "A{}: a step of {step} cycles",
-                    i + 1
-                );
+                let number = i + 1;
+                assert!(step <= max_step + 2.0, "A{number}: a step of {step} cycles");
             }
         }
     });

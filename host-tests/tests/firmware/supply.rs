@@ -20,13 +20,10 @@ fn read_supply_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<(Strin
         .iter()
         .filter_map(|line| line.text.strip_prefix("# supply: "));
     let notes = notes.map(|text| {
-        let (volts, reaction) = text
-            .split_once(" V, ")
-            .expect("a note has a voltage and a reaction");
-        (
-            reaction.to_owned(),
-            volts.parse().expect("the voltage is a number"),
-        )
+        let pieces = text.split_once(" V, ");
+        let (volts, reaction) = pieces.expect("a note has a voltage and a reaction");
+        let volts = volts.parse().expect("the voltage is a number");
+        (reaction.to_owned(), volts)
     });
     notes.collect()
 }
@@ -64,20 +61,16 @@ fn lower_supply_and_check_reactions(
         }
     }
     let printed_notes = read_supply_notes(bench, line_count);
-    let reactions: Vec<&str> = printed_notes
-        .iter()
-        .map(|(reaction, _)| reaction.as_str())
-        .collect();
+    let reactions = printed_notes.iter().map(|(reaction, _)| reaction.as_str());
+    let reactions: Vec<&str> = reactions.collect();
     let pace = robot().supplies().slow_pace_percent;
     let low_reaction = format!("low: no saving, speed at most {pace}");
-    assert_eq!(
-        reactions,
-        [
-            low_reaction.as_str(),
-            "too low to move: stopped",
-            "too low to hold: pulses off"
-        ]
-    );
+    let expected_reactions = [
+        low_reaction.as_str(),
+        "too low to move: stopped",
+        "too low to hold: pulses off",
+    ];
+    assert_eq!(reactions, expected_reactions);
     for ((actual, (_, printed_volts)), threshold) in
         true_volts.iter().zip(&printed_notes).zip(thresholds)
     {
@@ -95,26 +88,17 @@ fn lower_supply_and_check_reactions(
 #[test]
 fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
-    lower_supply_and_check_reactions(
-        &mut bench,
-        robot().supplies().board_thresholds,
-        MAX_BOARD_ERROR_V,
-        |bench, volts| {
-            bench.uno.set_supply_mv(1000.0 * volts);
-        },
-    );
+    let thresholds = robot().supplies().board_thresholds;
+    lower_supply_and_check_reactions(&mut bench, thresholds, MAX_BOARD_ERROR_V, |bench, volts| {
+        bench.uno.set_supply_mv(1000.0 * volts);
+    });
     let status = Status::read(&mut bench);
     assert_eq!(status.texts(["gait", "fault"]), ["rest", "supply"]);
-    assert!(
-        run_and_record_pulses(&mut bench, 200)
-            .iter()
-            .all(Vec::is_empty)
-    );
+    let pulses = run_and_record_pulses(&mut bench, 200);
+    assert!(pulses.iter().all(Vec::is_empty));
     let flashes = count_flashes(&mut bench, 10);
-    assert!(
-        flashes.len() >= 3 && flashes.iter().all(|count| *count == 2),
-        "{flashes:?}"
-    );
+    let are_two = flashes.iter().all(|count| *count == 2);
+    assert!(flashes.len() >= 3 && are_two, "{flashes:?}");
 }
 
 #[test]
@@ -131,10 +115,8 @@ fn a_low_supply_limits_the_pace_and_prevents_saving() {
     bench.run_ms(500);
     let operations_before = bench.uno.eeprom_operations().len();
     let refusal = bench.say("save");
-    assert!(
-        refusal.starts_with("err 8 the supply is too low"),
-        "{refusal}"
-    );
+    let is_refused = refusal.starts_with("err 8 the supply is too low");
+    assert!(is_refused, "{refusal}");
     let slow_pace = measure_pace(&mut bench);
     let expected = f64::from(robot().supplies().slow_pace_percent) / 100.0;
     assert!(full_pace > 0.0, "the robot does not walk");
@@ -144,11 +126,8 @@ fn a_low_supply_limits_the_pace_and_prevents_saving() {
     );
     bench.say("rest");
     bench.run_ms(400);
-    assert_eq!(
-        bench.uno.eeprom_operations().len(),
-        operations_before,
-        "`rest` saved the pose"
-    );
+    let operations = bench.uno.eeprom_operations().len();
+    assert_eq!(operations, operations_before, "`rest` saved the pose");
 }
 
 #[test]
@@ -166,11 +145,9 @@ fn a_recovered_supply_allows_commands_again_and_starts_nothing() {
     for mv in ((stop_volts * 1000.0) as i32..=5_000).step_by(10) {
         bench.uno.set_supply_mv(f64::from(mv));
         bench.run_ms(1_150);
-        if good_volts.is_none()
-            && read_supply_notes(&mut bench, line_count)
-                .iter()
-                .any(|(reaction, _)| reaction == "good")
-        {
+        let notes = read_supply_notes(&mut bench, line_count);
+        let is_good = notes.iter().any(|(reaction, _)| reaction == "good");
+        if good_volts.is_none() && is_good {
             good_volts = Some(f64::from(mv) / 1000.0);
         }
     }
@@ -206,9 +183,8 @@ fn short_dips_cause_no_note_and_a_wavering_supply_causes_one() {
     // The supply alternates around the threshold for half a minute.
     let slow_mv = robot().supplies().board_thresholds[0] * 1000.0;
     for n in 0..100 {
-        bench
-            .uno
-            .set_supply_mv(slow_mv + if n % 2 == 0 { -40.0 } else { 90.0 });
+        let offset_mv = if n % 2 == 0 { -40.0 } else { 90.0 };
+        bench.uno.set_supply_mv(slow_mv + offset_mv);
         bench.run_ms(300);
     }
     let printed_notes = read_supply_notes(&mut bench, line_count);
@@ -226,9 +202,8 @@ fn set_rail(bench: &mut FirmwareBench, rail: &Rail, volts: f64) {
 fn assert_no_rail() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     let servos = robot().servos().each_ref().map(|servo| servo.pin);
-    let free_pins: Vec<u8> = (FIRST_ANALOGUE_PIN..FIRST_ANALOGUE_PIN + 6)
-        .filter(|pin| !servos.contains(pin))
-        .collect();
+    let pins = FIRST_ANALOGUE_PIN..FIRST_ANALOGUE_PIN + 6;
+    let free_pins: Vec<u8> = pins.filter(|pin| !servos.contains(pin)).collect();
     assert!(free_pins.len() >= 2, "{free_pins:?}");
     for mv in [0, 2_500, 5_000] {
         for pin in &free_pins {
@@ -280,10 +255,7 @@ fn a_sinking_rail_slows_stops_and_rests_the_robot_with_a_good_board_supply() {
     lower_supply_and_check_reactions(&mut bench, rail.thresholds, tolerance, |bench, volts| {
         set_rail(bench, &rail, volts);
     });
-    assert!(
-        run_and_record_pulses(&mut bench, 200)
-            .iter()
-            .all(Vec::is_empty)
-    );
+    let pulses = run_and_record_pulses(&mut bench, 200);
+    assert!(pulses.iter().all(Vec::is_empty));
     assert!((Status::read(&mut bench).number("vcc") - 5.0).abs() <= MAX_BOARD_ERROR_V);
 }

@@ -82,13 +82,10 @@ fn ten_minutes_of_commands_give_the_same_widths_and_lines_on_the_avr_and_on_the_
         }
         assert_eq!(recording.state, State::Alive);
         let log = &recording.frames;
-        assert!(log.widths.len() > 29_900, "{} frames", log.widths.len());
-        let host_run = core_run::play(
-            *robot().firmware(),
-            &recording.received_by_uno,
-            log.first_start,
-            log.widths.len(),
-        );
+        let (received, frame_count) = (&recording.received_by_uno, log.widths.len());
+        assert!(frame_count > 29_900, "{frame_count} frames");
+        let firmware = *robot().firmware();
+        let host_run = core_run::play(firmware, received, log.first_start, frame_count);
         for (n, (avr_widths, host_widths)) in log.widths.iter().zip(&host_run.widths).enumerate() {
             assert_eq!(avr_widths, host_widths, "{fidelity:?}, frame {n}");
         }
@@ -100,11 +97,8 @@ fn ten_minutes_of_commands_give_the_same_widths_and_lines_on_the_avr_and_on_the_
         let lines: Vec<&str> = lines.filter(|line| !is_report(line)).collect();
         let to_comparable = |line: &str| to_comparable_line(line, fidelity);
         for (n, (host_line, avr_line)) in host_lines.iter().zip(&lines).enumerate() {
-            assert_eq!(
-                to_comparable(host_line),
-                to_comparable(avr_line),
-                "{fidelity:?}, line {n}"
-            );
+            let [expected, actual] = [host_line, avr_line].map(|line| to_comparable(line));
+            assert_eq!(expected, actual, "{fidelity:?}, line {n}");
         }
         // At the end of the run, the UNO has not yet sent everything (255 bytes in the ring buffer, two in the
         // transmitter, part of a line), and the core on the host has not run since the last complete frame.

@@ -35,10 +35,8 @@ fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
     let (start, resets_before) = (bench.uno.cycle(), bench.uno.watchdog_resets());
     let limit_cycles = MAX_TIMEOUT_MS * CYCLES_PER_MS;
     let was_reset = |uno: &Uno| uno.watchdog_resets() > resets_before;
-    assert!(
-        bench.uno.run_until(limit_cycles, 1_000, was_reset),
-        "no reset"
-    );
+    let is_in_time = bench.uno.run_until(limit_cycles, 1_000, was_reset);
+    assert!(is_in_time, "no reset");
     // The restarted program must not be stalled.
     bench.uno.stall_main(0);
     bench.uno.cycle() - start
@@ -89,11 +87,8 @@ fn a_hang_during_a_walk_holds_the_last_pose_until_a_command() {
             let first_width = pulses[servo][0].width;
             assert!(pulses[servo].iter().all(|pulse| pulse.width == first_width));
             // The last computed frame may not have been sent.
-            assert!(
-                first_width.abs_diff(widths_before[servo]) <= 2 * servo_slew_limit(servo),
-                "A{}",
-                servo + 1
-            );
+            let change = first_width.abs_diff(widths_before[servo]);
+            assert!(change <= 2 * servo_slew_limit(servo), "A{}", servo + 1);
         }
         assert_eq!(Status::read(&mut bench).text("gait"), "stop");
         let flashes = count_flashes(&mut bench, 12);
@@ -225,9 +220,8 @@ fn power_on_is_recognised_whatever_the_ram_contains() {
 
 /// Returns the servos' neutral angles as `status` prints them, deg.
 fn neutral_angles() -> [f64; 4] {
-    lizard_host_tests::robot()
-        .servos()
-        .map(|servo| (servo.neutral * 100.0).round() / 100.0)
+    let servos = lizard_host_tests::robot().servos();
+    servos.map(|servo| (servo.neutral * 100.0).round() / 100.0)
 }
 
 #[test]

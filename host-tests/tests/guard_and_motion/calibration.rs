@@ -10,18 +10,16 @@ use crate::reference::to_degrees;
 fn neutral_angle_scale_and_pin_of_each_servo_match_the_robot_file() {
     for NamedRobot { name, robot } in robots() {
         let firmware = robot.firmware();
-        assert_eq!(
-            firmware.pins(),
-            robot.servos().map(|servo| servo.pin),
-            "{name}"
-        );
+        let pins = robot.servos().map(|servo| servo.pin);
+        assert_eq!(firmware.pins(), pins, "{name}");
         for (index, servo) in robot.servos().iter().enumerate() {
             let calibration = firmware.calibration()[index];
             let neutral_deg = to_degrees(firmware.neutral_angles()[index]);
+            let error_deg = neutral_deg - servo.neutral % 360.0;
+            let number = index + 1;
             assert!(
-                (neutral_deg - servo.neutral % 360.0).abs() <= 0.5 / STEPS_PER_DEGREE,
-                "{name}: A{}",
-                index + 1
+                error_deg.abs() <= 0.5 / STEPS_PER_DEGREE,
+                "{name}: A{number}"
             );
             let mut pulse_count = 0;
             for sweep in (i16::MIN..=i16::MAX).step_by(17) {
@@ -34,16 +32,14 @@ fn neutral_angle_scale_and_pin_of_each_servo_match_the_robot_file() {
                 let error_cycles = f64::from(calibration.width(Sweep(sweep)).0) - exact_cycles;
                 assert!(
                     error_cycles.abs() <= 2.0,
-                    "{name}: A{} is {error_cycles} cycles off",
-                    index + 1
+                    "{name}: A{number} is {error_cycles} cycles off"
                 );
                 pulse_count += 1;
             }
             // Most sweeps must give a representable pulse width, or the loop would check almost nothing.
             assert!(
                 pulse_count > 65_536 / 17 / 2,
-                "{name}: A{}: {pulse_count} pulses",
-                index + 1
+                "{name}: A{number}: {pulse_count} pulses"
             );
         }
     }
@@ -54,6 +50,7 @@ fn each_servos_travel_ends_at_the_last_step_in_its_pulse_range() {
     for NamedRobot { name, robot } in robots() {
         for (index, servo) in robot.servos().iter().enumerate() {
             let calibration = robot.firmware().calibration()[index];
+            let number = index + 1;
             let width_us_at = |sweep: i32| {
                 servo.neutral_us + servo.us_per_degree * f64::from(sweep) / STEPS_PER_DEGREE
             };
@@ -63,29 +60,20 @@ fn each_servos_travel_ends_at_the_last_step_in_its_pulse_range() {
             };
             for (end, outward_step) in [(calibration.travel_min, -1), (calibration.travel_max, 1)] {
                 let end = i32::from(end.0);
-                assert!(is_in_range(end), "{name}: A{} at {end}", index + 1);
+                assert!(is_in_range(end), "{name}: A{number} at {end}");
                 let next_sweep = end + outward_step;
-                assert!(
-                    !is_in_range(next_sweep) || next_sweep.abs() > 32_767,
-                    "{name}: A{} at {next_sweep}",
-                    index + 1
-                );
+                let is_outside = !is_in_range(next_sweep) || next_sweep.abs() > 32_767;
+                assert!(is_outside, "{name}: A{number} at {next_sweep}");
             }
-            assert!(
-                calibration.reaches(calibration.travel_min)
-                    && calibration.reaches(calibration.travel_max),
-                "{name}"
-            );
+            assert!(calibration.reaches(calibration.travel_min), "{name}");
+            assert!(calibration.reaches(calibration.travel_max), "{name}");
             let sweeps_beyond = [
                 calibration.travel_min.0.checked_sub(1),
                 calibration.travel_max.0.checked_add(1),
             ];
             for sweep in sweeps_beyond.into_iter().flatten() {
-                assert!(
-                    !calibration.reaches(Sweep(sweep)),
-                    "{name}: A{} at {sweep}",
-                    index + 1
-                );
+                let is_reached = calibration.reaches(Sweep(sweep));
+                assert!(!is_reached, "{name}: A{number} at {sweep}");
             }
         }
     }
@@ -97,9 +85,7 @@ fn the_speed_limit_of_a_move_is_that_of_the_robot_file_rounded_down() {
         let step_speed = FRAMES_PER_SECOND / STEPS_PER_DEGREE;
         let max_speed = f64::from(robot.firmware().slew().per_frame) * step_speed;
         let limit = robot.speed_limits().slew;
-        assert!(
-            max_speed <= limit + 1e-6 && max_speed > limit - step_speed,
-            "{name}"
-        );
+        assert!(max_speed <= limit + 1e-6, "{name}");
+        assert!(max_speed > limit - step_speed, "{name}");
     }
 }

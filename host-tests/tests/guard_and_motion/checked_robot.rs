@@ -59,9 +59,8 @@ fn compute_max_speed_and_change(robot: &Robot, id: GaitId) -> (f64, f64) {
     let firmware = robot.firmware();
     let gait = firmware.gait(id);
     let sweeps_at = |phase: u32| {
-        gait.pose(firmware.waves(), phase % CYCLE)
-            .0
-            .map(|sweep| f64::from(sweep.0))
+        let pose = gait.pose(firmware.waves(), phase % CYCLE);
+        pose.0.map(|sweep| f64::from(sweep.0))
     };
     let frame_advance = gait.increment.unsigned_abs();
     let (mut max_speed, mut max_change) = (0.0f64, 0.0f64);
@@ -193,15 +192,10 @@ impl<'a> CheckedRobot<'a> {
             );
         }
         let chassis_angles = chassis_angles_deg(robot.firmware(), &pose);
-        assert!(
-            is_safe(robot.firmware(), &pose),
-            "{name}: {chassis_angles:?}"
-        );
-        assert_ne!(
-            Verdict::compute(robot, chassis_angles),
-            Verdict::Unsafe,
-            "{name}: {chassis_angles:?}"
-        );
+        let is_safe = is_safe(robot.firmware(), &pose);
+        assert!(is_safe, "{name}: {chassis_angles:?}");
+        let verdict = Verdict::compute(robot, chassis_angles);
+        assert_ne!(verdict, Verdict::Unsafe, "{name}: {chassis_angles:?}");
         self.check_pulses(&pose, pulses);
 
         // The phase is 0 during a move, and only once per cycle in a gait.
@@ -298,10 +292,8 @@ pub fn random_command(rng: &mut Rng, robot: &Robot) -> String {
 
 /// Returns the robot's activity after a command is complete; `None` for a command that selects no activity.
 pub fn final_activity(robot: &Robot, command: &str) -> Option<Activity> {
-    let gait_index = robot
-        .gaits()
-        .iter()
-        .position(|gait| gait.command() == command);
+    let mut gaits = robot.gaits().iter();
+    let gait_index = gaits.position(|gait| gait.command() == command);
     let to_activity = |index: usize| {
         GaitId::all(robot.gaits().len())
             .nth(index)

@@ -37,12 +37,9 @@ fn simulate_travel(named: &NamedRobot, gait: &CheckedGait, speed_percent: f64) -
     while phase_distance(&checked_robot) > phase_per_frame / 2 + 1 {
         checked_robot.run_frames(1);
     }
-    let mut path = vec![pulses_to_angles(
-        robot,
-        checked_robot
-            .pose()
-            .pulses(checked_robot.motion().calibration()),
-    )];
+    let calibration = checked_robot.motion().calibration();
+    let pulses = checked_robot.pose().pulses(calibration);
+    let mut path = vec![pulses_to_angles(robot, pulses)];
     for _ in 0..frames_per_cycle.ceil() as usize {
         path.push(pulses_to_angles(robot, checked_robot.run_frame()));
     }

@@ -60,11 +60,11 @@ fn the_tables_of_every_gait_are_accurate_and_safe_at_every_phase() {
     let mut max_error_deg = 0.0f64;
     for (gait_index, (NamedRobot { name, robot }, float_gait, gait)) in all_gaits().enumerate() {
         // Random robots are tested only at every 13th phase. The first phase depends on the gait.
-        let (first_phase, step) = if name.contains("random") {
-            (gait_index % 13, 13)
-        } else {
-            (0, 1)
+        let (first_phase, step) = match name.contains("random") {
+            true => (gait_index % 13, 13),
+            false => (0, 1),
         };
+        let gait_name = float_gait.name();
         for phase in all_phases().skip(first_phase).step_by(step) {
             let pose = gait.pose(robot.firmware().waves(), phase);
             let pose_with_low_bits = gait.pose(robot.firmware().waves(), phase | 0xff);
@@ -79,15 +79,11 @@ fn the_tables_of_every_gait_are_accurate_and_safe_at_every_phase() {
                 max_error_deg = max_error_deg.max(error_deg);
                 assert!(
                     error_deg <= TABLE_ERROR_DEG,
-                    "{name}: {} at {phase}: {error_deg} deg",
-                    float_gait.name()
+                    "{name}: {gait_name} at {phase}: {error_deg} deg"
                 );
             }
-            assert!(
-                is_safe(robot.firmware(), &pose),
-                "{name}: {} at {phase}",
-                float_gait.name()
-            );
+            let is_safe = is_safe(robot.firmware(), &pose);
+            assert!(is_safe, "{name}: {gait_name} at {phase}");
         }
     }
     println!("the largest table error is {max_error_deg:.4} deg");
@@ -182,10 +178,8 @@ fn a_path_moves_only_its_own_end_and_averages_to_its_centre() {
     // In the gaits `look` and `wag` of random robots, the path's centre is the end point's position in the neutral
     // pose.
     let mut path_count = 0;
-    for NamedRobot { name, robot } in robots()
-        .iter()
-        .filter(|named| named.name.contains("random"))
-    {
+    let is_random = |named: &&NamedRobot| named.name.contains("random");
+    for NamedRobot { name, robot } in robots().iter().filter(is_random) {
         for (gait_name, end, other_end) in [
             ("look", End::Head, End::Tail),
             ("wag", End::Tail, End::Head),
@@ -200,17 +194,11 @@ fn a_path_moves_only_its_own_end_and_averages_to_its_centre() {
                 let angles: [f64; 4] = std::array::from_fn(|servo| {
                     float_gait.neutral()[servo] + f64::from(sweeps[servo].0) / STEPS_PER_DEGREE
                 });
-                robot
-                    .lizard()
-                    .solve(&angles.into())
-                    .expect("the loops close")
-                    .end(end)
-                    .end_point
+                let solution = robot.lizard().solve(&angles.into());
+                solution.expect("the loops close").end(end).end_point
             };
-            let neutral = robot
-                .lizard()
-                .solve(&robot.neutral_pose())
-                .expect("the loops close");
+            let neutral = robot.lizard().solve(&robot.neutral_pose());
+            let neutral = neutral.expect("the loops close");
             let mut mean = [0.0; 2];
             for phase in 0..256 {
                 let end_point = end_point_at(phase, end);
@@ -244,10 +232,8 @@ fn a_reversed_gait_runs_backward_and_a_gait_reversed_twice_forward() {
             ("wander", "advance", 1),
             ("walk", "back", -1),
         ] {
-            let (Some(original), Some(reversed)) = (
-                core_gait(robot, original_name),
-                core_gait(robot, reversed_name),
-            ) else {
+            let gaits = [original_name, reversed_name].map(|gait| core_gait(robot, gait));
+            let [Some(original), Some(reversed)] = gaits else {
                 continue;
             };
             pair_count += 1;
@@ -272,10 +258,8 @@ fn a_mirrored_gait_matches_its_original_with_left_and_right_swapped() {
             ("left", "right"),
             ("arc-left", "arc-right"),
         ] {
-            let (Some(original), Some(mirrored)) = (
-                core_gait(robot, original_name),
-                core_gait(robot, mirrored_name),
-            ) else {
+            let gaits = [original_name, mirrored_name].map(|gait| core_gait(robot, gait));
+            let [Some(original), Some(mirrored)] = gaits else {
                 continue;
             };
             pair_count += 1;
@@ -298,15 +282,10 @@ fn phase_wraparound_is_as_smooth_as_the_rest_of_the_cycle() {
         // The largest turn of a servo from one phase to the next. After the last phase, the next phase is 0.
         let turn_from = |phase: u32| pose_at(phase).max_turn_to(&pose_at(phase + (1 << 8)));
         let largest_turn = all_phases().step_by(7).map(turn_from).max();
-        let largest_turn_at_wrap = all_phases()
-            .skip(PHASE_COUNT as usize - 4)
-            .map(turn_from)
-            .max();
-        assert!(
-            largest_turn_at_wrap <= largest_turn.map(|turn| turn + 1),
-            "{name}: {}",
-            float_gait.name()
-        );
+        let last_phases = all_phases().skip(PHASE_COUNT as usize - 4);
+        let largest_turn_at_wrap = last_phases.map(turn_from).max();
+        let is_smooth = largest_turn_at_wrap <= largest_turn.map(|turn| turn + 1);
+        assert!(is_smooth, "{name}: {}", float_gait.name());
     }
 }
 
@@ -314,16 +293,10 @@ fn phase_wraparound_is_as_smooth_as_the_rest_of_the_cycle() {
 fn the_papers_symmetric_gaits_equal_their_mirror_half_a_cycle_later() {
     for name in ["walk", "trot"] {
         let gait = core_gait(paper_robot(), name).expect("the paper's robot has this gait");
+        let pose_at = |phase: u32| gait.pose(paper_robot().firmware().waves(), phase);
         for phase in all_phases() {
-            let opposite_pose = gait.pose(
-                paper_robot().firmware().waves(),
-                (phase + CYCLE / 2) % CYCLE,
-            );
-            assert_eq!(
-                mirror(gait.pose(paper_robot().firmware().waves(), phase)),
-                opposite_pose,
-                "{name}"
-            );
+            let opposite_pose = pose_at((phase + CYCLE / 2) % CYCLE);
+            assert_eq!(mirror(pose_at(phase)), opposite_pose, "{name}");
         }
     }
 }
@@ -336,12 +309,8 @@ fn the_head_of_the_papers_look_follows_its_figure_of_eight() {
         let sweeps = gait.pose(paper_robot().firmware().waves(), phase << 8).0;
         let angles: [f64; 4] =
             std::array::from_fn(|n| neutral_angles[n] + f64::from(sweeps[n].0) / STEPS_PER_DEGREE);
-        let end_point = paper_robot()
-            .lizard()
-            .solve(&angles.into())
-            .expect("the loops close")
-            .head
-            .end_point;
+        let solution = paper_robot().lizard().solve(&angles.into());
+        let end_point = solution.expect("the loops close").head.end_point;
         let cycle_angle = std::f64::consts::TAU * f64::from(phase) / f64::from(PHASE_COUNT);
         let error_mm = (end_point.x - 10.0 * cycle_angle.sin())
             .hypot(end_point.y - 54.0 - 5.0 * (2.0 * cycle_angle).sin());

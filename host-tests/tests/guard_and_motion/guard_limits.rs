@@ -39,11 +39,8 @@ fn clearance_at_limit(robot: &Robot) -> Clearance {
 fn a_margin_at_its_limit_is_safe_and_the_next_smaller_margin_is_a_hazard() {
     for NamedRobot { name, robot } in robots() {
         let firmware = robot.firmware();
-        assert_eq!(
-            clearance_at_limit(robot).first_hazard(firmware),
-            None,
-            "{name}"
-        );
+        let hazard = clearance_at_limit(robot).first_hazard(firmware);
+        assert_eq!(hazard, None, "{name}");
         for (index, margin) in MARGINS.into_iter().enumerate() {
             let mut clearance = clearance_at_limit(robot);
             let value = Sine(clearance.margins[index].0 - 1);
@@ -114,22 +111,11 @@ fn the_guards_limits_match_the_robot_file_rounded_to_the_safe_side() {
             let length_mm = |steps: u16| f64::from(steps) / steps_per_mm(slider.scale);
             let [min_mm, max_mm] =
                 [file_limits.stroke_min, file_limits.stroke_max].map(|stroke| nominal_mm + stroke);
-            assert!(
-                length_mm(slider.stroke_min) >= min_mm - 1e-9,
-                "{name}: {side:?}"
-            );
-            assert!(
-                length_mm(slider.stroke_min - 1) < min_mm,
-                "{name}: {side:?}"
-            );
-            assert!(
-                length_mm(slider.stroke_max) <= max_mm + 1e-9,
-                "{name}: {side:?}"
-            );
-            assert!(
-                length_mm(slider.stroke_max + 1) > max_mm,
-                "{name}: {side:?}"
-            );
+            let (min, max) = (slider.stroke_min, slider.stroke_max);
+            assert!(length_mm(min) >= min_mm - 1e-9, "{name}: {side:?}");
+            assert!(length_mm(min - 1) < min_mm, "{name}: {side:?}");
+            assert!(length_mm(max) <= max_mm + 1e-9, "{name}: {side:?}");
+            assert!(length_mm(max + 1) > max_mm, "{name}: {side:?}");
         }
     }
 }

@@ -131,12 +131,9 @@ impl Findings {
             self.max_margin_errors[index] = self.max_margin_errors[index]
                 .max(error.abs() / reference.tolerances.margins[index]);
         }
-        for (side, (length_sq, stroke)) in Side::ALL.into_iter().zip(
-            clearance
-                .slider_lengths_sq
-                .into_iter()
-                .zip(reference.strokes_mm),
-        ) {
+        let lengths_sq = clearance.slider_lengths_sq.into_iter();
+        let pairs = lengths_sq.zip(reference.strokes_mm);
+        for (side, (length_sq, stroke)) in Side::ALL.into_iter().zip(pairs) {
             let slider = robot.firmware().slider(side);
             let steps = f64::from(length_sq).sqrt() - f64::from(slider.nominal_length);
             self.stroke.add(steps - stroke * steps_per_mm(slider.scale));
@@ -194,11 +191,8 @@ fn random_poses(rng: &mut Rng, robot: &Robot) -> impl Iterator<Item = Pose> {
     let calibration = robot.firmware().calibration();
     let travel_fractions = [1.0, 0.7, 0.4, 0.2];
     (0..POSE_COUNT).map(move |n| {
-        random_pose_within(
-            rng,
-            &calibration,
-            travel_fractions[n % travel_fractions.len()],
-        )
+        let fraction = travel_fractions[n % travel_fractions.len()];
+        random_pose_within(rng, &calibration, fraction)
     })
 }
 
@@ -215,10 +209,8 @@ fn the_guards_margins_and_decisions_match_floating_point() {
             *sum += count;
         }
     }
-    assert!(
-        hazard_counts.iter().all(|count| *count > 0),
-        "{hazard_counts:?}"
-    );
+    let do_all_occur = hazard_counts.iter().all(|count| *count > 0);
+    assert!(do_all_occur, "{hazard_counts:?}");
 }
 
 #[test]
@@ -244,20 +236,16 @@ fn the_guards_decision_changes_at_the_floating_point_limit() {
 /// Fractions of the path are in units of 1/65536.
 fn find_straddling_poses(robot: &Robot, unsafe_pose: Pose) -> [Pose; 2] {
     let pose_at = |fraction: u32| {
-        Pose(
-            unsafe_pose
-                .0
-                .map(|sweep| Sweep(((i64::from(sweep.0) * i64::from(fraction)) >> 16) as i16)),
-        )
+        let scale = |sweep: Sweep| (i64::from(sweep.0) * i64::from(fraction)) >> 16;
+        Pose(unsafe_pose.0.map(|sweep| Sweep(scale(sweep) as i16)))
     };
     let (mut safe_fraction, mut unsafe_fraction) = (0, 1 << 16);
     while unsafe_fraction - safe_fraction > 1 {
         let middle_fraction = (safe_fraction + unsafe_fraction) / 2;
-        *(if is_safe(robot.firmware(), &pose_at(middle_fraction)) {
-            &mut safe_fraction
-        } else {
-            &mut unsafe_fraction
-        }) = middle_fraction;
+        match is_safe(robot.firmware(), &pose_at(middle_fraction)) {
+            true => safe_fraction = middle_fraction,
+            false => unsafe_fraction = middle_fraction,
+        }
     }
     [pose_at(safe_fraction), pose_at(unsafe_fraction)]
 }
@@ -272,20 +260,14 @@ fn a_hazard_contains_the_value_that_violates_the_limit() {
                 None => {}
                 Some(Hazard::Margin { margin, value }) => {
                     let index = MARGINS.iter().position(|known| *known == margin);
-                    assert_eq!(
-                        value,
-                        clearance.margins[index.expect("the margin is one of the ten")],
-                        "{name}"
-                    );
+                    let index = index.expect("the margin is one of the ten");
+                    assert_eq!(value, clearance.margins[index], "{name}");
                     margin_count += 1;
                 }
                 Some(Hazard::Travel(_)) => unreachable!("a clearance ignores servo travel"),
                 Some(Hazard::Stroke { side, length }) => {
-                    assert_eq!(
-                        length,
-                        isqrt(clearance.slider_lengths_sq[side as usize]),
-                        "{name}"
-                    );
+                    let expected = isqrt(clearance.slider_lengths_sq[side as usize]);
+                    assert_eq!(length, expected, "{name}");
                     stroke_count += 1;
                 }
             }

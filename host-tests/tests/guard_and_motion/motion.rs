@@ -23,11 +23,10 @@ fn no_command_sequence_makes_a_frame_unsafe_too_fast_or_too_sudden() {
             let mut checked_robot = CheckedRobot::power_on(named);
             for _ in 0..12 {
                 let answer = checked_robot.say(&random_command(&mut rng, &named.robot));
-                *(if answer.starts_with("ok") {
-                    &mut accepted_count
-                } else {
-                    &mut refused_count
-                }) += 1;
+                match answer.starts_with("ok") {
+                    true => accepted_count += 1,
+                    false => refused_count += 1,
+                }
                 checked_robot.run_frames(rng.u32(..120));
             }
             largest_change = largest_change.max(checked_robot.largest_speed_change);
@@ -79,9 +78,8 @@ fn every_command_completes_unless_the_guard_reports_a_hazard() {
             }
             if let Activity::Gait(id) = activity {
                 let firmware = robot.firmware();
-                let pose = firmware
-                    .gait(id)
-                    .pose(firmware.waves(), checked_robot.motion().phase());
+                let phase = checked_robot.motion().phase();
+                let pose = firmware.gait(id).pose(firmware.waves(), phase);
                 assert_eq!(checked_robot.pose(), pose, "{name}: {last_command}");
             }
             completed_count += 1;
@@ -111,12 +109,10 @@ fn a_refused_command_changes_nothing() {
                     reference_robot.say(&command);
                 }
                 for _ in 0..frame_count {
-                    assert_eq!(
-                        tested_robot.run_frame(),
-                        reference_robot.run_frame(),
-                        "{}: {command}",
-                        named.name
-                    );
+                    let tested_pulses = tested_robot.run_frame();
+                    let expected_pulses = reference_robot.run_frame();
+                    let name = &named.name;
+                    assert_eq!(tested_pulses, expected_pulses, "{name}: {command}");
                     assert_eq!(
                         tested_robot.motion().activity(),
                         reference_robot.motion().activity()
@@ -161,11 +157,8 @@ fn in_a_move_all_servos_turn_by_the_same_fraction_and_arrive_together() {
                 let fraction = 1.0 - f64::from(pose.max_turn_to(&end_pose)) / longest_turn;
                 for (sweep, end_sweep) in pose.0.iter().zip(&end_pose.0) {
                     let error = f64::from(sweep.0) - fraction * f64::from(end_sweep.0);
-                    assert!(
-                        error.abs() <= 4.0,
-                        "{}: {pose:?} to {end_pose:?}",
-                        named.name
-                    );
+                    let name = &named.name;
+                    assert!(error.abs() <= 4.0, "{name}: {pose:?} to {end_pose:?}");
                 }
             }
         }
@@ -198,11 +191,8 @@ fn servos_wake_one_by_one_in_the_pose_before_the_rest() {
                     }
                     let expected_width = calibration[servo].width(held_pose.0[servo]);
                     assert!(width.0 == 0 || width == expected_width, "{}", named.name);
-                    assert_eq!(
-                        width.0 > 0,
-                        first_pulse_frames[servo] > 0,
-                        "a servo fell asleep again"
-                    );
+                    let has_woken = first_pulse_frames[servo] > 0;
+                    assert_eq!(width.0 > 0, has_woken, "a servo fell asleep again");
                 }
             }
             // The servos wake a tenth of a second apart.
@@ -242,12 +232,8 @@ fn stop_freezes_and_rest_silences_the_next_frame_and_the_gait_can_restart() {
                 checked_robot.run_frames(1);
                 checked_robot.motion().phase() == 0 && checked_robot.pose() == first_pose
             });
-            assert!(
-                has_begun,
-                "{}: {}",
-                named.name,
-                robot.gaits()[gait_index].name()
-            );
+            let gait_name = robot.gaits()[gait_index].name();
+            assert!(has_begun, "{}: {gait_name}", named.name);
         }
     }
 }

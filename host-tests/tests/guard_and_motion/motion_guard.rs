@@ -59,10 +59,8 @@ fn find_pairs_with_unsafe_path(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
 
 /// Returns a pose with every sweep multiplied by `fraction_256` / 256.
 fn scale_pose(pose: &Pose, fraction_256: i32) -> Pose {
-    Pose(
-        pose.0
-            .map(|sweep| Sweep((i32::from(sweep.0) * fraction_256 / 256) as i16)),
-    )
+    let scale = |sweep: Sweep| Sweep((i32::from(sweep.0) * fraction_256 / 256) as i16);
+    Pose(pose.0.map(scale))
 }
 
 #[test]
@@ -106,37 +104,27 @@ fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
                 "{printed_lines:?}"
             );
             // The reported hazard lies ahead on the path.
-            assert!(
-                violates_condition_ahead(
-                    robot.firmware(),
-                    start_pose,
-                    end_pose,
-                    checked_robot.pose(),
-                    hazard
-                ),
-                "{name}: {hazard:?}"
-            );
-            let held_pose = checked_robot.pose();
+            let (firmware, held_pose) = (robot.firmware(), checked_robot.pose());
+            let is_ahead =
+                violates_condition_ahead(firmware, start_pose, end_pose, held_pose, hazard);
+            assert!(is_ahead, "{name}: {hazard:?}");
             checked_robot.run_frames(20);
             assert_eq!(checked_robot.pose(), held_pose, "{name}");
+            let new_lines = checked_robot.take_output_lines();
             assert!(
-                checked_robot.take_output_lines().is_empty(),
+                new_lines.is_empty(),
                 "{name}: the hazard was reported again"
             );
-            assert!(
-                checked_robot.say("status").contains(" guard=held "),
-                "{name}"
-            );
+            let status = checked_robot.say("status");
+            assert!(status.contains(" guard=held "), "{name}");
             // The robot can move back, unless the guard stops it again.
             assert!(
                 checked_robot.move_to(&start_pose) || checked_robot.motion().hazard().is_some(),
                 "{name}"
             );
             if checked_robot.motion().hazard().is_none() {
-                assert!(
-                    checked_robot.say("status").contains(" guard=clear "),
-                    "{name}"
-                );
+                let status = checked_robot.say("status");
+                assert!(status.contains(" guard=clear "), "{name}");
             }
         }
     }
@@ -188,12 +176,8 @@ fn a_running_gait_is_never_stopped_by_the_guard() {
             walked_count += 1;
             checked_robot.run_frames((2.0 * gait.period() * 50.0) as u32);
             let hazard = checked_robot.motion().hazard();
-            assert!(
-                hazard.is_none(),
-                "{}: {}: {hazard:?}",
-                named.name,
-                gait.name()
-            );
+            let (robot_name, gait_name) = (&named.name, gait.name());
+            assert_eq!(hazard, None, "{robot_name}: {gait_name}");
         }
     }
     assert!(

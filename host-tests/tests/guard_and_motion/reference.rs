@@ -156,24 +156,17 @@ impl Reference {
     /// Returns how far each margin, then each stroke, is from its limit, in units of its tolerance. Positive distances
     /// are safe. As in the guard, crossed crank tips violate the type-2 limit.
     pub fn distances_from_limits(&self) -> [f64; 12] {
-        let Limits {
-            type2,
-            type1,
-            leg,
-            stroke_min,
-            stroke_max,
-        } = self.limits;
-        let tolerances = &self.tolerances;
+        let (limits, tolerances) = (&self.limits, &self.tolerances);
         std::array::from_fn(|index| match index {
             0..2 => {
-                let margin = (self.margins[index].abs() - type2) / tolerances.margins[index];
+                let margin = (self.margins[index].abs() - limits.type2) / tolerances.margins[index];
                 margin.min(self.k2_mm[index] / tolerances.k2_mm[index])
             }
-            2..6 => (self.margins[index] - type1) / tolerances.margins[index],
-            6..10 => (self.margins[index] - leg) / tolerances.margins[index],
+            2..6 => (self.margins[index] - limits.type1) / tolerances.margins[index],
+            6..10 => (self.margins[index] - limits.leg) / tolerances.margins[index],
             _ => {
                 let stroke = self.strokes_mm[index - 10];
-                let distance = (stroke - stroke_min).min(stroke_max - stroke);
+                let distance = (stroke - limits.stroke_min).min(limits.stroke_max - stroke);
                 distance / tolerances.strokes_mm[index - 10]
             }
         })
@@ -233,10 +226,8 @@ impl Verdict {
         let Ok(reference) = Reference::compute(robot, angles) else {
             return Self::Unsafe;
         };
-        let min_distance = reference
-            .distances_from_limits()
-            .into_iter()
-            .fold(f64::INFINITY, f64::min);
+        let distances = reference.distances_from_limits().into_iter();
+        let min_distance = distances.fold(f64::INFINITY, f64::min);
         if min_distance > 1.0 {
             Self::Safe
         } else if min_distance < -1.0 {
@@ -287,10 +278,8 @@ pub fn random_pose(rng: &mut Rng, calibration: &[Calibration; 4]) -> Pose {
 /// Returns a random pose in which every servo turns from neutral by at most this fraction of its travel.
 pub fn random_pose_within(rng: &mut Rng, calibration: &[Calibration; 4], fraction: f64) -> Pose {
     let pose = random_pose(rng, calibration);
-    Pose(
-        pose.0
-            .map(|sweep| Sweep((f64::from(sweep.0) * fraction) as i16)),
-    )
+    let scale = |sweep: Sweep| Sweep((f64::from(sweep.0) * fraction) as i16);
+    Pose(pose.0.map(scale))
 }
 
 /// Returns a random pose that the guard accepts.
@@ -306,7 +295,6 @@ pub fn random_safe_pose(rng: &mut Rng, firmware: &CoreRobot) -> Pose {
 
 /// True if the guard accepts a pose.
 pub fn is_safe(firmware: &CoreRobot, pose: &Pose) -> bool {
-    Clearance::measure(firmware, pose)
-        .first_hazard(firmware)
-        .is_none()
+    let clearance = Clearance::measure(firmware, pose);
+    clearance.first_hazard(firmware).is_none()
 }

@@ -80,10 +80,8 @@ fn every_speed_sets_its_percentage_of_a_gaits_full_pace() {
 fn a_gait_that_is_commanded_again_continues() {
     for named in robots() {
         for gait in named.robot.gaits() {
-            let (mut tested, mut reference) = (
-                CheckedRobot::power_on_and_stand(named),
-                CheckedRobot::power_on_and_stand(named),
-            );
+            let mut tested = CheckedRobot::power_on_and_stand(named);
+            let mut reference = CheckedRobot::power_on_and_stand(named);
             for frame in 0..150 {
                 if frame % 7 == 0 {
                     tested.expect_ok(&gait.command());
@@ -91,13 +89,8 @@ fn a_gait_that_is_commanded_again_continues() {
                 if frame == 0 {
                     reference.expect_ok(&gait.command());
                 }
-                assert_eq!(
-                    tested.run_frame(),
-                    reference.run_frame(),
-                    "{}: {}",
-                    named.name,
-                    gait.name()
-                );
+                let (pulses, expected) = (tested.run_frame(), reference.run_frame());
+                assert_eq!(pulses, expected, "{}: {}", named.name, gait.name());
             }
         }
     }
@@ -107,12 +100,8 @@ fn a_gait_that_is_commanded_again_continues() {
 fn every_frame_of_a_running_gait_is_a_pose_of_the_gait() {
     let (mut walked_count, mut blocked_count) = (0, 0);
     for named in robots() {
-        for (gait, id) in named
-            .robot
-            .gaits()
-            .iter()
-            .zip(GaitId::all(named.robot.gaits().len()))
-        {
+        let gaits = named.robot.gaits();
+        for (gait, id) in gaits.iter().zip(GaitId::all(gaits.len())) {
             let mut checked_robot = CheckedRobot::power_on_and_stand(named);
             checked_robot.expect_ok(&gait.command());
             let firmware = named.robot.firmware();
@@ -126,12 +115,8 @@ fn every_frame_of_a_running_gait_is_a_pose_of_the_gait() {
             for _ in 0..100 {
                 checked_robot.run_frames(1);
                 let phase = checked_robot.motion().phase();
-                assert_eq!(
-                    checked_robot.pose(),
-                    core_gait.pose(firmware.waves(), phase),
-                    "{}",
-                    named.name
-                );
+                let expected = core_gait.pose(firmware.waves(), phase);
+                assert_eq!(checked_robot.pose(), expected, "{}", named.name);
             }
         }
     }

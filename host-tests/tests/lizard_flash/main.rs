@@ -18,7 +18,7 @@ use lizard_core::memory::record::{MEMORY_BYTES, RECORD_BYTES};
 use lizard_core::numbers::section::START_ADDRESS;
 use lizard_host::firmware::format_robot_label;
 use lizard_host::sim::frame::servo_pins;
-use lizard_host_tests::{avr_gcc, decode_text, robot, root};
+use lizard_host_tests::{assert_contains, avr_gcc, decode_text, robot, root};
 use lizard_robot::Robot;
 use lizard_time_limit::TIME_LIMIT;
 use shell::Shell;
@@ -141,10 +141,8 @@ fn a_board_whose_program_sends_bytes_forever_is_flashed_and_keeps_its_eeprom() {
     board.wait_for_text(&shell, "written and verified");
     assert_eeprom_kept(&board, &eeprom);
     let screen = expect_success(&mut board, &shell);
-    let board_text = format!(
-        "the board has another program, of {} bytes\n",
-        program.len()
-    );
+    let byte_count = program.len();
+    let board_text = format!("the board has another program, of {byte_count} bytes\n");
     assert!(screen.contains(&board_text), "{screen}");
 }
 
@@ -179,11 +177,8 @@ fn a_board_unplugged_during_an_upload_does_nothing_until_it_is_flashed_again() {
     let shell = begin_upload(&mut board);
     replug(&mut board);
     let screen = board.run_until_exit(&shell);
-    assert!(screen.contains("the port is gone"), "{screen}");
-    assert!(
-        screen.contains("an incomplete program, which does nothing"),
-        "{screen}"
-    );
+    assert_contains(&screen, "the port is gone");
+    assert_contains(&screen, "an incomplete program, which does nothing");
     assert!(!board.find_differing_addresses(&firmware()).is_empty());
 
     // After the board is plugged in again, it has power, but no program calls its boot loader.
@@ -207,10 +202,7 @@ fn a_board_whose_reset_button_is_pressed_during_an_upload_is_reset_again_and_fla
     let shell = begin_upload(&mut board);
     board.uno.reset();
     let screen = expect_success(&mut board, &shell);
-    assert!(
-        screen.contains("resetting the board for another attempt"),
-        "{screen}"
-    );
+    assert_contains(&screen, "resetting the board for another attempt");
 }
 
 #[test]
@@ -245,13 +237,7 @@ fn a_board_whose_boot_loader_does_not_answer_gets_an_explanation() {
         .write_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
     let shell = start_lizard_flash(&board, &[]);
     let screen = board.run_until_exit(&shell);
-    assert!(
-        screen.contains("no boot loader answers. Is it a UNO or a Nano?"),
-        "{screen}"
-    );
-    assert!(
-        board.uno.flash()[..BOOT_LOADER_START]
-            .iter()
-            .all(|&byte| byte == 0xff)
-    );
+    assert_contains(&screen, "no boot loader answers. Is it a UNO or a Nano?");
+    let mut bytes = board.uno.flash()[..BOOT_LOADER_START].iter();
+    assert!(bytes.all(|&byte| byte == 0xff));
 }

@@ -16,10 +16,7 @@ fn an_old_nano_is_found_at_its_own_baud_rate_flashed_and_started() {
     let flash_before = board.uno.flash().to_vec();
     let shell = start_lizard_flash(&board, &["--robot", "large"]);
     let screen = board.run_until_exit(&shell);
-    assert!(
-        screen.contains("no answer at 115200 baud; retrying at 57600 baud"),
-        "{screen}"
-    );
+    assert_contains(&screen, "no answer at 115200 baud; retrying at 57600 baud");
     assert!(screen.contains("the board has no program\n"), "{screen}");
     assert!(screen.contains("\n# lizard "), "{screen}");
     assert!(screen.contains(" robot large "), "{screen}");
@@ -48,19 +45,15 @@ fn a_robot_too_large_for_an_old_nano_is_refused_and_its_boot_loader_kept() {
     let flash_before = board.uno.flash().to_vec();
     let shell = start_lizard_flash(&board, &["--robot", "own-gaits"]);
     let screen = board.run_until_exit(&shell);
-    assert!(
-        screen.contains("a Nano has only 30720 before its boot section"),
-        "{screen}"
-    );
+    assert_contains(&screen, "a Nano has only 30720 before its boot section");
     assert!(board.uno.flash() == flash_before);
 }
 
 #[test]
 fn after_a_hang_an_old_nano_moves_no_servo_until_its_power_is_cut() {
     let mut board = create_old_nano();
-    board
-        .uno
-        .write_flash(0, &firmware()[..NANO_BOOT_LOADER_START]);
+    let program = &firmware()[..NANO_BOOT_LOADER_START];
+    board.uno.write_flash(0, program);
     board.uno.run_ms(2500);
     let take_text = |uno: &mut Uno| decode_text(&uno.take_transmitted());
     let output_text = take_text(&mut board.uno);

@@ -28,10 +28,7 @@ fn only_the_robot_is_written_to_a_board_with_the_firmware_and_its_trims_are_kept
     let screen = board.run_until_exit(&shell);
     let [first_label, other_label] =
         [robot(), &other_robot].map(|robot| format_robot_label(robot.firmware()));
-    assert!(
-        screen.contains(&format!(" robot {first_label}\n")),
-        "{screen}"
-    );
+    assert_contains(&screen, &format!(" robot {first_label}\n"));
     let banner = screen.lines().find(|line| line.starts_with("# lizard "));
     assert!(
         banner.is_some_and(|line| line.contains(&format!(" robot {other_label}"))),
@@ -43,9 +40,8 @@ fn only_the_robot_is_written_to_a_board_with_the_firmware_and_its_trims_are_kept
     // Then the first robot is written again, with `--json`. Its trims are unchanged.
     let shell = start_lizard_flash(&board, &["--only-robot", "--json"]);
     let screen = board.run_until_exit(&shell);
-    let (first_name, first_hash) = first_label
-        .split_once(' ')
-        .expect("the label has a name and a hash");
+    let pieces = first_label.split_once(' ');
+    let (first_name, first_hash) = pieces.expect("the label has a name and a hash");
     let version = env!("CARGO_PKG_VERSION");
     let expected_end = format!(
         r#","firmware":"{version}","robot":{{"name":"{first_name}","hash":"{first_hash}"}}}}"#
@@ -83,31 +79,21 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     board.uno.power_cycle();
     board.uno.take_edges();
     let output_text = send_line(&mut board, "", 2500);
-    assert!(
-        output_text.contains("no robot in the flash"),
-        "{output_text}"
-    );
+    assert_contains(&output_text, "no robot in the flash");
     let output_text = send_line(&mut board, "walk\n", 300);
     assert!(output_text.contains("err "), "{output_text}");
     assert!(send_line(&mut board, "status\n", 300).contains("fault=robot"));
     let edges = board.uno.take_edges();
     let pins = servo_pins(&other_robot);
-    assert!(
-        !edges.iter().any(|edge| pins.contains(&edge.pin)),
-        "{edges:?}"
-    );
+    let has_pulse = edges.iter().any(|edge| pins.contains(&edge.pin));
+    assert!(!has_pulse, "{edges:?}");
     replug(&mut board);
 
     let shell = start_lizard_flash(&board, &arguments);
     let screen = board.run_until_exit(&shell);
     assert!(screen.contains(" without a robot\n"), "{screen}");
-    assert!(
-        screen.contains(&format!(
-            " robot {}",
-            format_robot_label(other_robot.firmware())
-        )),
-        "{screen}"
-    );
+    let other_label = format_robot_label(other_robot.firmware());
+    assert_contains(&screen, &format!(" robot {other_label}"));
     let robot_end = usize::from(START_ADDRESS) + section.len();
     assert!(board.uno.flash()[..robot_end] == firmware_with(&other_robot)[..robot_end]);
 }

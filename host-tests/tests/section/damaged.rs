@@ -12,7 +12,7 @@ use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::limits::Limits;
 use lizard_core::numbers::robot::Robot;
 use lizard_core::numbers::section::{
-    Header, MAGIC, Numbers, REGION_BYTES, Region, SectionError, write_checksum,
+    FORMAT, Header, MAGIC, Numbers, REGION_BYTES, Region, SectionError, write_checksum,
 };
 use lizard_core::numbers::units::{CYCLES_PER_US, PulseWidth, Sine, Sweep};
 use lizard_core::virtual_board::RunningRobot;
@@ -68,12 +68,8 @@ fn a_section_with_any_flipped_bit_is_refused() {
                 index if FORMAT_BYTES.contains(&index) => SectionError::OtherFormat,
                 _ => SectionError::Damaged,
             };
-            assert_eq!(
-                find_damage(&section),
-                Some(expected),
-                "{} bit {bit}",
-                named.name
-            );
+            let damage = find_damage(&section);
+            assert_eq!(damage, Some(expected), "{} bit {bit}", named.name);
             section[bit / 8] ^= 1 << (bit % 8);
         }
     }
@@ -85,19 +81,13 @@ fn a_section_cut_at_any_byte_is_refused() {
     for (named, section) in sections() {
         for length in 0..section.len() {
             let cut_section = &section[..length];
-            assert!(
-                find_damage(cut_section).is_some(),
-                "{} cut at {length}",
-                named.name
-            );
+            let damage = find_damage(cut_section);
+            assert!(damage.is_some(), "{} cut at {length}", named.name);
             // The missing bytes may be the same as erased flash.
             if section[length..].iter().any(|byte| *byte != 0xff) {
                 let cut_section = build_partly_written_flash(cut_section);
-                assert!(
-                    find_damage(&cut_section).is_some(),
-                    "{} erased at {length}",
-                    named.name
-                );
+                let damage = find_damage(&cut_section);
+                assert!(damage.is_some(), "{} erased at {length}", named.name);
             }
         }
     }
@@ -111,11 +101,8 @@ fn a_section_of_any_other_format_is_reported_as_such() {
         u16::from_le_bytes([section[FORMAT_BYTES.start], section[FORMAT_BYTES.start + 1]]);
     for format in (0..=u16::MAX).filter(|format| *format != own_format) {
         section[FORMAT_BYTES].copy_from_slice(&format.to_le_bytes());
-        assert_eq!(
-            find_damage(&section),
-            Some(SectionError::OtherFormat),
-            "{format}"
-        );
+        let damage = find_damage(&section);
+        assert_eq!(damage, Some(SectionError::OtherFormat), "{format}");
     }
 }
 
@@ -139,11 +126,7 @@ fn a_hundred_thousand_random_sections_are_refused() {
             put_bytes(&mut section, 0, &MAGIC.to_le_bytes());
         }
         if index % 4 > 1 {
-            put_bytes(
-                &mut section,
-                FORMAT_BYTES.start,
-                &lizard_core::numbers::section::FORMAT.to_le_bytes(),
-            );
+            put_bytes(&mut section, FORMAT_BYTES.start, &FORMAT.to_le_bytes());
         }
         if index % 4 > 2 {
             let length = section.len() as u16;
@@ -225,10 +208,8 @@ fn a_gait_that_would_leave_the_travel_is_held() {
         for wave in &mut content.waves {
             wave.fill_with(|| rng.i16(..));
         }
-        for channel in content.gaits[1..]
-            .iter_mut()
-            .flat_map(|gait| &mut gait.channels)
-        {
+        let gaits = content.gaits[1..].iter_mut();
+        for channel in gaits.flat_map(|gait| &mut gait.channels) {
             channel.gain = rng.i16(..);
         }
         let robot = Robot::open(flash(&content.section_bytes())).expect("every number is in range");
@@ -338,11 +319,8 @@ fn run_frames(running_robot: &mut RunningRobot, count: u32) {
     for _ in 0..count {
         let pulses = running_robot.run_frame();
         running_robot.board.transmitter.text.clear();
-        for (pulse, servo) in pulses
-            .0
-            .into_iter()
-            .zip(running_robot.motion().calibration())
-        {
+        let calibration = running_robot.motion().calibration();
+        for (pulse, servo) in pulses.0.into_iter().zip(calibration) {
             check_pulse(pulse, servo);
         }
     }

@@ -45,17 +45,11 @@ fn the_name_the_pins_and_the_supplies_are_read_back() {
     for_each_robot(|name, robot, file_robot, _| {
         let label: String = robot.robot_name().map(char::from).collect();
         assert_eq!(label, file_robot.name(), "{name}");
-        assert_eq!(
-            robot.pins(),
-            file_robot.servos().map(|servo| servo.pin),
-            "{name}"
-        );
+        let pins = file_robot.servos().map(|servo| servo.pin);
+        assert_eq!(robot.pins(), pins, "{name}");
         let supplies = file_robot.supplies();
-        assert_eq!(
-            robot.rail_pin(),
-            supplies.rail.map(|rail| rail.pin),
-            "{name}"
-        );
+        let rail_pin = supplies.rail.map(|rail| rail.pin);
+        assert_eq!(robot.rail_pin(), rail_pin, "{name}");
         assert_eq!(robot.slow_pace(), supplies.slow_pace_percent, "{name}");
         let stored = robot.supplies();
         let is_close = |mv: u16, volts: f64| (f64::from(mv) - 1000.0 * volts).abs() <= 0.501;
@@ -92,15 +86,10 @@ fn the_servos_are_read_back() {
     for_each_robot(|name, robot, file_robot, _| {
         for (index, servo) in file_robot.servos().iter().enumerate() {
             let servo_id = Servo::ALL[index];
-            let neutral_deg = f64::from(robot.servo_neutral_angle(servo_id).0) / STEPS_PER_DEGREE;
-            assert!(
-                (neutral_deg - servo.neutral).abs() <= 0.501 / STEPS_PER_DEGREE,
-                "{name}"
-            );
-            assert_eq!(
-                robot.neutral_angles()[index],
-                robot.servo_neutral_angle(servo_id)
-            );
+            let neutral_angle = robot.servo_neutral_angle(servo_id);
+            let error_deg = f64::from(neutral_angle.0) / STEPS_PER_DEGREE - servo.neutral;
+            assert!(error_deg.abs() <= 0.501 / STEPS_PER_DEGREE, "{name}");
+            assert_eq!(robot.neutral_angles()[index], neutral_angle);
             let calibration = robot.servo_calibration(servo_id);
             assert_eq!(robot.calibration()[index], calibration);
             let pulse_us =
@@ -117,17 +106,10 @@ fn the_servos_are_read_back() {
             }
             let is_in_range =
                 |sweep: i32| (servo.min_us - 1e-6..=servo.max_us + 1e-6).contains(&pulse_us(sweep));
-            let (min, max) = (
-                i32::from(calibration.travel_min.0),
-                i32::from(calibration.travel_max.0),
-            );
-            assert!(
-                is_in_range(min)
-                    && !is_in_range(min - 1)
-                    && is_in_range(max)
-                    && !is_in_range(max + 1),
-                "{name}"
-            );
+            let min = i32::from(calibration.travel_min.0);
+            let max = i32::from(calibration.travel_max.0);
+            assert!(is_in_range(min) && !is_in_range(min - 1), "{name}");
+            assert!(is_in_range(max) && !is_in_range(max + 1), "{name}");
         }
     });
 }
@@ -149,10 +131,8 @@ fn the_limits_the_slew_limit_and_the_gaits_travel_are_read_back() {
         }
         let steps_per_frame = file_robot.speed_limits().slew * STEPS_PER_DEGREE / 50.0;
         let rounding_down = steps_per_frame - f64::from(robot.slew().per_frame);
-        assert!(
-            (-1e-5..1.0).contains(&rounding_down),
-            "{name}: {rounding_down}"
-        );
+        let is_rounded_down = (-1e-5..1.0).contains(&rounding_down);
+        assert!(is_rounded_down, "{name}: {rounding_down}");
         // The smallest and largest sweeps of all gaits in floating point, for each servo.
         let mut sweep_ranges = [[0.0f64; 2]; 4];
         for gait in file_robot.gaits() {
@@ -185,16 +165,9 @@ fn the_limits_the_slew_limit_and_the_gaits_travel_are_read_back() {
 fn the_link_lengths_and_the_sliders_are_read_back() {
     for_each_robot(|name, robot, file_robot, _| {
         let links = file_robot.lizard().links;
-        for (end, [base, left, right, a, b]) in [
-            (
-                End::Head,
-                [links.l0, links.l1, links.l4, links.l2, links.l3],
-            ),
-            (
-                End::Tail,
-                [links.l5, links.l6, links.l9, links.l7, links.l8],
-            ),
-        ] {
+        let head_links = [links.l0, links.l1, links.l4, links.l2, links.l3];
+        let tail_links = [links.l5, links.l6, links.l9, links.l7, links.l8];
+        for (end, [base, left, right, a, b]) in [(End::Head, head_links), (End::Tail, tail_links)] {
             let lengths = robot.link_lengths(end);
             let scale = lengths.scale();
             let length = |mm: f64| mm_to_steps(mm, scale) as i16;
@@ -209,27 +182,11 @@ fn the_link_lengths_and_the_sliders_are_read_back() {
         }
         let side_offset = (links.l5 - links.l0) / 2.0;
         let limits = file_robot.limits();
-        for (side, [offset, base, front, rear, nominal]) in [
-            (
-                Side::Left,
-                [
-                    side_offset,
-                    links.l10,
-                    links.l14,
-                    links.l11,
-                    links.l12 + links.l13,
-                ],
-            ),
-            (
-                Side::Right,
-                [
-                    -side_offset,
-                    links.l15,
-                    links.l19,
-                    links.l16,
-                    links.l17 + links.l18,
-                ],
-            ),
+        let left_links = [side_offset, links.l10, links.l14, links.l11];
+        let right_links = [-side_offset, links.l15, links.l19, links.l16];
+        for (side, [offset, base, front, rear], nominal) in [
+            (Side::Left, left_links, links.l12 + links.l13),
+            (Side::Right, right_links, links.l17 + links.l18),
         ] {
             let slider = robot.slider(side);
             let length = |mm: f64| mm_to_steps(mm, slider.scale);
@@ -268,17 +225,10 @@ enum CurveKind {
 fn the_curves_are_read_back_at_every_point_of_their_tables() {
     for_each_robot(|name, robot, file_robot, flash| {
         let links = file_robot.lizard().links;
+        let [head_curves, tail_curves] = read_numbers(flash).curves;
         for (end, [a, b], curves) in [
-            (
-                End::Head,
-                [links.l2, links.l3],
-                read_numbers(flash).curves[0],
-            ),
-            (
-                End::Tail,
-                [links.l7, links.l8],
-                read_numbers(flash).curves[1],
-            ),
+            (End::Head, [links.l2, links.l3], head_curves),
+            (End::Tail, [links.l7, links.l8], tail_curves),
         ] {
             let scale = robot.link_lengths(end).scale();
             let [a, b] = [a, b].map(|mm| mm_to_steps(mm, scale));
@@ -295,16 +245,10 @@ fn the_curves_are_read_back_at_every_point_of_their_tables() {
                 curves[0] != 0 && (curves[3] != 0) == (a != b),
                 "{name} {end:?}"
             );
-            for (kind, address) in kinds
-                .into_iter()
-                .zip(curves)
-                .filter(|(_, address)| *address != 0)
-            {
-                let table = flash
-                    .values::<Table>(address, 1)
-                    .get(0)
-                    .expect("a curve is at the address")
-                    .load();
+            let addresses = kinds.into_iter().zip(curves);
+            for (kind, address) in addresses.filter(|(_, address)| *address != 0) {
+                let table = flash.values::<Table>(address, 1).get(0);
+                let table = table.expect("a curve is at the address").load();
                 for (index, entry) in table.into_iter().enumerate().take(ENTRY_COUNT) {
                     let max_argument = match kind {
                         CurveKind::Rise | CurveKind::Skew => stretched_sq,
@@ -360,10 +304,8 @@ fn the_gaits_their_names_and_their_waveforms_are_read_back() {
             if gait.is_reversed() {
                 expected_increment = -expected_increment;
             }
-            assert!(
-                (f64::from(core_gait.increment) - expected_increment).abs() <= 0.51,
-                "{gait_label}"
-            );
+            let error = f64::from(core_gait.increment) - expected_increment;
+            assert!(error.abs() <= 0.51, "{gait_label}");
             for step in 0..8192 {
                 let pose = core_gait.pose(robot.waves(), step << 11);
                 let exact = gait.angles(f64::from(step) / 8192.0);
@@ -392,27 +334,17 @@ fn read_maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] 
     let rows_part = numbers.parts[SectionPart::Rows as usize];
     let rows = flash.values::<[i8; 2]>(rows_part.address, rows_part.count);
     let mut next_row = 0;
-    numbers.maps.map(
-        |MapHeader {
-             first_row,
-             row_count,
-         }| {
-            let map = (0..i32::from(row_count)).map(|row| {
-                let [first_column, last_column] = rows
-                    .get(next_row)
-                    .expect("the maps have this row")
-                    .load()
-                    .map(i32::from);
-                next_row += 1;
-                let row = 256 * (i32::from(first_row) + row);
-                [
-                    row..=row + 255,
-                    128 * first_column..=128 * last_column + 127,
-                ]
-            });
-            map.collect()
-        },
-    )
+    numbers.maps.map(|header: MapHeader| {
+        let map = (0..i32::from(header.row_count)).map(|row| {
+            let columns = rows.get(next_row).expect("the maps have this row").load();
+            let [first_column, last_column] = columns.map(i32::from);
+            next_row += 1;
+            let row = 256 * (i32::from(header.first_row) + row);
+            let columns = 128 * first_column..=128 * last_column + 127;
+            [row..=row + 255, columns]
+        });
+        map.collect()
+    })
 }
 
 /// True if the exact guard accepts every condition that depends on a map's servos.
@@ -507,12 +439,8 @@ fn a_pose_in_all_four_maps_is_certified_and_accepted_by_the_guard() {
                 map.iter()
                     .any(|[rows, columns]| rows.contains(&row) && columns.contains(&column))
             });
-            assert_eq!(
-                robot.is_certified(&pose),
-                is_in_maps,
-                "{} {pose:?}",
-                named.name
-            );
+            let is_certified = robot.is_certified(&pose);
+            assert_eq!(is_certified, is_in_maps, "{} {pose:?}", named.name);
             if is_in_maps {
                 certified_count += 1;
                 let hazard = Clearance::measure(&robot, &pose).first_hazard(&robot);
@@ -536,19 +464,12 @@ fn different_robots_have_different_hashes_independent_of_the_maps() {
         assert_eq!(robot.hash(), file_robot.firmware().hash(), "{name}");
     });
     for (named, section) in sections() {
-        let hash = Robot::open(Region::new(section))
-            .expect("the section is valid")
-            .hash();
-        let previous = hashes.insert(hash, (named, named.robot.content()));
+        let robot = Robot::open(Region::new(section)).expect("the section is valid");
+        let previous = hashes.insert(robot.hash(), (named, named.robot.content()));
         // robot.toml may be equal to a file in robots/.
         if let Some((previous, content)) = previous {
-            assert_eq!(
-                content,
-                named.robot.content(),
-                "{} {}",
-                previous.name,
-                named.name
-            );
+            let (first, second) = (&previous.name, &named.name);
+            assert_eq!(content, named.robot.content(), "{first} {second}");
         }
     }
 }

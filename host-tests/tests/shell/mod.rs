@@ -84,10 +84,9 @@ impl Shell {
 
     pub fn has_ended(&self) -> bool {
         let mut child = self.child.lock().expect("no thread has panicked");
-        child
-            .try_wait()
-            .expect("the command is a child of this process")
-            .is_some()
+        let status = child.try_wait();
+        let status = status.expect("the command is a child of this process");
+        status.is_some()
     }
 
     /// Presses Ctrl-C repeatedly until the command ends. The test fails if the command never ends.

@@ -17,8 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     bindgen.input_path(module).out_name(name).web(true)?;
     // The page loads the module itself and passes it to each worker, so the JavaScript needs no path.
     bindgen.typescript(true).omit_default_module_path(true);
-    bindgen
-        .remove_name_section(true)
-        .remove_producers_section(true);
+    bindgen.remove_name_section(true);
+    bindgen.remove_producers_section(true);
     Ok(bindgen.generate(folder)?)
 }

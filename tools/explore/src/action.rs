@@ -115,9 +115,7 @@ impl fmt::Display for Action {
         match self {
             Self::Line(line) => write!(f, "send `{line}`"),
             Self::MainStep => f.write_str("main performs one step"),
-            Self::SenderRate(rate) => {
-                write!(f, "the sender changes to {} baud", rate.baud())
-            }
+            Self::SenderRate(rate) => write!(f, "the sender changes to {} baud", rate.baud()),
             Self::GarbledLine => f.write_str("noise changes a byte of `walk`"),
             Self::Frames(1) => f.write_str("a frame passes"),
             Self::Frames(count) => write!(f, "{count} frames pass"),
@@ -132,10 +130,8 @@ impl fmt::Display for Action {
             Self::Reset(cause) => write!(f, "reset: {cause:?}"),
             Self::PowerLoss(None) => f.write_str("power is lost and comes back"),
             Self::PowerLoss(Some(byte)) => {
-                write!(
-                    f,
-                    "power is lost during a write, the byte becomes {byte:#04x}"
-                )
+                f.write_str("power is lost during a write, ")?;
+                write!(f, "the byte becomes {byte:#04x}")
             }
             Self::Contact(pin, is_closed) => {
                 let contact = if *pin == BUTTON_PIN { "button" } else { "nose" };

@@ -188,10 +188,8 @@ impl Write for DebugReader {
             }
             ", " => {
                 self.end_field();
-                self.is_field_name_next = self
-                    .enclosing_hashes
-                    .last()
-                    .is_some_and(|struct_hash| *struct_hash != 0);
+                let enclosing_hash = self.enclosing_hashes.last();
+                self.is_field_name_next = enclosing_hash.is_some_and(|hash| *hash != 0);
             }
             ": " => {}
             _ if self.is_field_name_next => {
@@ -214,26 +212,19 @@ impl DebugReader {
     /// Ends the rounding or skipping of the field at the current depth.
     fn end_field(&mut self) {
         let depth = self.enclosing_hashes.len();
-        self.skipped_depth = self
-            .skipped_depth
-            .filter(|skipped_depth| *skipped_depth != depth);
-        self.rounding = self
-            .rounding
-            .filter(|(_, field_depth)| *field_depth != depth);
+        self.skipped_depth.take_if(|skipped| *skipped == depth);
+        self.rounding.take_if(|(_, rounded)| *rounded == depth);
     }
 
     fn begin_field(&mut self, field: &str) {
         self.fingerprint.add(hash(field));
+        let depth = self.enclosing_hashes.len();
         let struct_hash = *self.enclosing_hashes.last().unwrap_or(&0);
-        let rule = self
-            .rules
-            .iter()
-            .find(|(name, field_name, _)| *field_name == field && hash(name) == struct_hash);
-        match rule {
-            Some((_, _, Skip)) => self.skipped_depth = Some(self.enclosing_hashes.len()),
-            Some((_, _, Round(round))) => {
-                self.rounding = Some((*round, self.enclosing_hashes.len()))
-            }
+        let mut rules = self.rules.iter();
+        match rules.find(|(name, field_name, _)| *field_name == field && hash(name) == struct_hash)
+        {
+            Some((_, _, Skip)) => self.skipped_depth = Some(depth),
+            Some((_, _, Round(round))) => self.rounding = Some((*round, depth)),
             None => {}
         }
     }
@@ -300,10 +291,9 @@ mod tests {
             assert_eq!(has_same_fingerprint, is_equal, "{motion:?}");
         }
         let exact_fingerprint = fingerprint_without_line_arrival(&MOTION);
-        assert_ne!(
-            fingerprint_without_line_arrival(&motion_with(|motion| motion.frame_count = 8)),
-            exact_fingerprint
-        );
+        let changed_motion = motion_with(|motion| motion.frame_count = 8);
+        let changed_fingerprint = fingerprint_without_line_arrival(&changed_motion);
+        assert_ne!(changed_fingerprint, exact_fingerprint);
     }
 
     #[test]
@@ -318,11 +308,8 @@ mod tests {
             ] {
                 let mut world = initial_state.world.clone();
                 _ = world.apply(action);
-                let ram = world
-                    .running_robot
-                    .board
-                    .ram
-                    .peek_restart(Default::default());
+                let ram = &world.running_robot.board.ram;
+                let ram = ram.peek_restart(Default::default());
                 _ = write!(text, "{:?} {ram:?}", world.running_robot.main);
             }
         }

@@ -118,10 +118,8 @@ pub fn prepare_all(robot: Robot<'static>) -> Vec<InitialState> {
             for action in *actions {
                 _ = world.apply(*action);
             }
-            (
-                *name,
-                Eeprom::with_bytes(*world.running_robot.board.memory.bytes()),
-            )
+            let memory = &world.running_robot.board.memory;
+            (*name, Eeprom::with_bytes(*memory.bytes()))
         })
         .collect();
     let (_, saved_memory) = memories[1].clone();
@@ -129,15 +127,14 @@ pub fn prepare_all(robot: Robot<'static>) -> Vec<InitialState> {
     foreign_memory.bytes_mut().rotate_left(1);
     let mut worn_memory = saved_memory;
     worn_memory.is_worn = true;
+    let short_travel_memory = build_short_travel_memory(&robot);
+    let short_travel_conditions = "saved settings with too little travel for the gaits";
     memories.extend([
         ("foreign bytes in the memory", foreign_memory),
         ("a worn memory", worn_memory),
-        (
-            "saved settings with too little travel for the gaits",
-            build_short_travel_memory(&robot),
-        ),
+        (short_travel_conditions, short_travel_memory),
+        (BOOT_LOADER_CONDITIONS, Eeprom::blank()),
     ]);
-    memories.push((BOOT_LOADER_CONDITIONS, Eeprom::blank()));
     let mut states = Vec::new();
     for (conditions, memory) in memories {
         for actions in ACTIVITIES {
@@ -164,9 +161,7 @@ mod tests {
     #[test]
     fn no_initial_state_violates_a_rule() {
         let memory_count = PREPARED_MEMORIES.len() + 4;
-        assert_eq!(
-            prepare_all(small_robot()).len(),
-            memory_count * ACTIVITIES.len()
-        );
+        let states = prepare_all(small_robot());
+        assert_eq!(states.len(), memory_count * ACTIVITIES.len());
     }
 }

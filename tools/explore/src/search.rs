@@ -99,13 +99,11 @@ pub fn search(robot: Robot<'static>, max_states: usize) -> SearchResult {
             });
             *count += 1;
         }
-        frontier = next_frontier
-            .into_iter()
-            .map(|(world, step)| {
-                steps.push(step);
-                (world, steps.len() as u32 - 1)
-            })
-            .collect();
+        let number_step = |(world, step)| {
+            steps.push(step);
+            (world, steps.len() as u32 - 1)
+        };
+        frontier = next_frontier.into_iter().map(number_step).collect();
     }
     panic::set_hook(panic_hook);
     result.is_complete = frontier.is_empty();
@@ -123,11 +121,8 @@ struct ThreadResult {
 
 /// Inserts a fingerprint. Returns true if it was not known before.
 fn insert_if_new(known_states: &[Mutex<Fingerprints>], fingerprint: u64) -> bool {
-    let shard = &known_states[(fingerprint >> 58) as usize];
-    shard
-        .lock()
-        .expect("no thread has failed")
-        .insert(fingerprint)
+    let shard = known_states[(fingerprint >> 58) as usize].lock();
+    shard.expect("no thread has failed").insert(fingerprint)
 }
 
 fn explore_queue(
@@ -191,10 +186,8 @@ fn apply_catching_panics(world: &mut World, action: Action) -> Verdict {
     result.unwrap_or_else(|payload| {
         let message = payload.downcast_ref::<String>().cloned();
         let message = message.or_else(|| payload.downcast_ref::<&str>().map(ToString::to_string));
-        Err(Violation::new(
-            Rule::KeepsRunning,
-            message.unwrap_or_default(),
-        ))
+        let message = message.unwrap_or_default();
+        Err(Violation::new(Rule::KeepsRunning, message))
     })
 }
 
@@ -213,12 +206,7 @@ fn describe_sequence(
     }
     let initial_state = &initial_states[step_index as usize];
     let mut text = format!("  power on with {}", initial_state.conditions);
-    let all_actions = initial_state
-        .actions
-        .iter()
-        .copied()
-        .chain(sequence.into_iter().rev());
-    for action in all_actions {
+    for action in initial_state.actions.iter().chain(sequence.iter().rev()) {
         _ = write!(text, "; {action}");
     }
     text

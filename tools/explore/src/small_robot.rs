@@ -50,31 +50,16 @@ pub fn small_robot() -> Robot<'static> {
     // A cycle takes sixteen frames.
     let increment = (1 << 24) / 16;
     add_gait(&mut content, "stand", increment, 0, [0; 4]);
-    add_gait(
-        &mut content,
-        "walk",
-        increment,
-        0,
-        [7_000, -6_000, 5_000, 4_000],
-    );
-    add_gait(
-        &mut content,
-        "trot",
-        -increment,
-        0,
-        [-5_000, 6_000, 4_000, 7_000],
-    );
+    let walk_gains = [7_000, -6_000, 5_000, 4_000];
+    add_gait(&mut content, "walk", increment, 0, walk_gains);
+    let trot_gains = [-5_000, 6_000, 4_000, 7_000];
+    add_gait(&mut content, "trot", -increment, 0, trot_gains);
     add_gait(&mut content, "stray", increment / 12, 1, [16_384, 0, 0, 0]);
     let (walk, trot) = (1, 2);
-    add_routine(
-        &mut content,
-        "round",
-        &[(Step::CYCLES, walk, 1), (Step::FRAMES, 0, 10)],
-    );
-    let (button, nose) = (
-        Input::button(BUTTON_PIN).byte(),
-        Input::nose(NOSE_PIN).byte(),
-    );
+    let round = [(Step::CYCLES, walk, 1), (Step::FRAMES, 0, 10)];
+    add_routine(&mut content, "round", &round);
+    let button = Input::button(BUTTON_PIN).byte();
+    let nose = Input::nose(NOSE_PIN).byte();
     let patrol = [
         (Step::UNTIL, button, 0),
         (Step::WAIT, 0, Step::ENDLESS),

@@ -84,10 +84,9 @@ impl World {
         for address in COPY_ADDRESSES.into_iter().chain([REST_POSE_ADDRESS]) {
             let record = &memory[usize::from(address.0)..][..usize::from(RECORD_BYTES)];
             // The firmware never uses the content of an invalid record.
-            let used_bytes = if record[0] == VALID_MARK {
-                record
-            } else {
-                &record[..2]
+            let used_bytes = match record[0] {
+                VALID_MARK => record,
+                _ => &record[..2],
             };
             for byte in used_bytes {
                 fingerprint.add(u64::from(*byte));
@@ -333,10 +332,8 @@ impl World {
         if !log.is_empty() {
             log.clear();
             if !self.running_robot.board.adc.is_complete() {
-                return report_violation(
-                    Rule::SafeWrites,
-                    "a byte is written before the supply is measured",
-                );
+                let observation = "a byte is written before the supply is measured";
+                return report_violation(Rule::SafeWrites, observation);
             }
             self.observe(Event::ByteWritten);
         }

@@ -6,16 +6,11 @@ const MAX_STATES: usize = 100_000;
 
 #[test]
 fn no_short_sequence_of_actions_violates_a_rule() {
-    let robot = small_robot();
-    let result = search(robot, MAX_STATES);
-    assert!(
-        result.state_count >= MAX_STATES || result.is_complete,
-        "{} states",
-        result.state_count
-    );
-    let violations: Vec<String> = result
-        .violations
-        .iter()
+    let result = search(small_robot(), MAX_STATES);
+    let count = result.state_count;
+    assert!(count >= MAX_STATES || result.is_complete, "{count} states");
+    let violations = result.violations.iter();
+    let violations: Vec<String> = violations
         .map(|(rule, (count, sequence))| {
             format!("violated {count} times: {}\n{sequence}", rule.sentence())
         })

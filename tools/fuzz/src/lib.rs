@@ -72,22 +72,17 @@ pub fn check_memory(data: &[u8]) {
     let memory_before = memory.clone();
     let mut board = ObservedBoard::power_on(robot, memory);
     // After 3.5 s, the `boot` action has started, too.
-    for _ in 0..175 {
-        board.run_frame();
-    }
-    let bytes_after = board.memory().bytes();
-    let settings_range = 0..usize::from(REST_POSE_ADDRESS.0);
+    board.run_frames(175);
+    let settings_size = usize::from(REST_POSE_ADDRESS.0);
     assert_eq!(
-        bytes_after[settings_range.clone()],
-        memory_before.bytes()[settings_range],
+        board.memory().bytes()[..settings_size],
+        memory_before.bytes()[..settings_size],
         "the saved settings changed without a save command"
     );
     for byte in b"status\nstand\n" {
         board.send_byte(*byte);
     }
-    for _ in 0..50 {
-        board.run_frame();
-    }
+    board.run_frames(50);
 }
 
 /// Writes a record as the core does.

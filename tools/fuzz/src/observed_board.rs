@@ -29,10 +29,8 @@ fn observer_limits(robot: &Robot) -> Limits {
     let servos = robot.servos().each_ref();
     Limits {
         width_ranges: servos.map(|servo| {
-            (
-                us_to_cycles(servo.min_us) - 3,
-                us_to_cycles(servo.max_us) + 3,
-            )
+            let [min, max] = [servo.min_us, servo.max_us].map(us_to_cycles);
+            (min - 3, max + 3)
         }),
         ..Limits::default()
     }
@@ -55,9 +53,7 @@ impl ObservedBoard {
         };
         board.observe(Event::ProgramStart(Cause::Power));
         // Runs until the supplies have been measured, because `save` waits for the measurement.
-        for _ in 0..30 {
-            board.run_frame();
-        }
+        board.run_frames(30);
         board
     }
 
@@ -77,13 +73,9 @@ impl ObservedBoard {
     }
 
     fn assert_rules_hold(&mut self) {
-        let verdict = self.observer.take_verdict();
-        assert!(
-            verdict.is_ok(),
-            "{}: {:?}",
-            verdict.unwrap_err(),
-            self.output
-        );
+        if let Err(violation) = self.observer.take_verdict() {
+            panic!("{violation}: {:?}", self.output);
+        }
     }
 
     /// Returns the output since the last sent byte.
@@ -133,18 +125,13 @@ impl ObservedBoard {
 
     /// Passes the answer to a line to the observer.
     fn observe_answer(&mut self, line: &str) {
-        assert!(
-            !self.observer.has_unanswered_lines(),
-            "{}: {line:?}",
-            Rule::OneAnswer.sentence()
-        );
+        let rule = Rule::OneAnswer.sentence();
+        let is_answered = !self.observer.has_unanswered_lines();
+        assert!(is_answered, "{rule}: {line:?}");
         let effect = effect(line, self.robot.firmware());
         let output = std::mem::take(&mut self.output);
-        let is_answer = |line: &&str| !line.starts_with('#');
-        let answer = output
-            .lines()
-            .find(is_answer)
-            .expect("the observer has counted an answer");
+        let answer = output.lines().find(|line| !line.starts_with('#'));
+        let answer = answer.expect("the observer has counted an answer");
         if matches!(effect, Effect::Motion | Effect::Freeze | Effect::Rest) {
             let is_accepted = Some(answer.starts_with("ok "));
             self.observe(Event::MotionCommand {
@@ -175,6 +162,16 @@ impl ObservedBoard {
         self.assert_rules_hold();
     }
 
+    /// Runs the robot for a number of frames.
+    ///
+    /// # Panics
+    /// If the robot violates a rule.
+    pub fn run_frames(&mut self, count: usize) {
+        for _ in 0..count {
+            self.run_frame();
+        }
+    }
+
     /// Checks that the EEPROM holds valid settings or none, a valid rest pose or none, and nothing else.
     ///
     /// # Panics
@@ -190,9 +187,7 @@ impl ObservedBoard {
         let has_rest_pose = copies::read_rest_pose(robot, self.memory()).is_some();
         assert!(is_rest_pose_blank || has_rest_pose, "{rule}: the rest pose");
         // No record reaches these addresses.
-        assert!(
-            (192..1024).all(|address| self.memory().read(address) == 0xff),
-            "{rule}"
-        );
+        let is_rest_blank = (192..1024).all(|address| self.memory().read(address) == 0xff);
+        assert!(is_rest_blank, "{rule}");
     }
 }

@@ -23,36 +23,33 @@ pub fn find_edit(
     targets: &[u64],
     find_offset: &dyn Fn(&Reference) -> Option<u64>,
 ) -> Option<Edit> {
-    code.instructions
-        .windows(2)
-        .enumerate()
-        .find_map(|(index, pair)| {
-            let [branch, jump] = pair else { return None };
-            let may_be_skipped =
-                index > 0 && may_skip_next(code.instructions[index - 1].first_word);
-            if may_be_skipped || !is_branch(branch.first_word) || !is_rjmp(jump.first_word) {
-                return None;
-            }
-            let next_offset = jump.offset + 2;
-            let branch_target = find_offset(code.reference_at(branch.offset)?)?;
-            let reference = code.reference_at(jump.offset)?;
-            let jump_target = find_offset(reference)?;
-            if branch_target != next_offset
-                || jump_target.abs_diff(branch.offset) > REACH_BYTES
-                || targets.contains(&jump.offset)
-            {
-                return None;
-            }
-            Some(Edit {
-                offset: branch.offset,
-                removed_size: 4,
-                // brbs and brbc differ in one bit. The linker inserts the distance.
-                new_words: vec![(branch.first_word ^ 0x0400) & 0xfc07],
-                references: vec![Reference {
-                    offset: 0,
-                    kind: elf::R_AVR_7_PCREL,
-                    ..*reference
-                }],
-            })
+    let mut pairs = code.instructions.windows(2).enumerate();
+    pairs.find_map(|(index, pair)| {
+        let [branch, jump] = pair else { return None };
+        let may_be_skipped = index > 0 && may_skip_next(code.instructions[index - 1].first_word);
+        if may_be_skipped || !is_branch(branch.first_word) || !is_rjmp(jump.first_word) {
+            return None;
+        }
+        let next_offset = jump.offset + 2;
+        let branch_target = find_offset(code.reference_at(branch.offset)?)?;
+        let reference = code.reference_at(jump.offset)?;
+        let jump_target = find_offset(reference)?;
+        if branch_target != next_offset
+            || jump_target.abs_diff(branch.offset) > REACH_BYTES
+            || targets.contains(&jump.offset)
+        {
+            return None;
+        }
+        Some(Edit {
+            offset: branch.offset,
+            removed_size: 4,
+            // brbs and brbc differ in one bit. The linker inserts the distance.
+            new_words: vec![(branch.first_word ^ 0x0400) & 0xfc07],
+            references: vec![Reference {
+                offset: 0,
+                kind: elf::R_AVR_7_PCREL,
+                ..*reference
+            }],
         })
+    })
 }

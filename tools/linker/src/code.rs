@@ -51,23 +51,20 @@ impl Code {
 
     /// Returns the reference of the instruction at an offset in bytes; `None` if the instruction has no reference.
     pub fn reference_at(&self, offset: u64) -> Option<&Reference> {
-        self.references
-            .iter()
-            .find(|reference| reference.offset == offset)
+        let mut references = self.references.iter();
+        references.find(|reference| reference.offset == offset)
     }
 
     /// Returns the first words of the instructions, from the instruction with this index to the last.
     pub fn words_from(&self, index: usize) -> impl Iterator<Item = u16> {
-        self.instructions[index..]
-            .iter()
-            .map(|instruction| instruction.first_word)
+        let instructions = self.instructions[index..].iter();
+        instructions.map(|instruction| instruction.first_word)
     }
 
     /// Returns the offset of the instruction with this index in bytes, or the size of the code if the index is beyond
     /// the last instruction.
     pub fn instruction_offset(&self, index: usize) -> u64 {
-        self.instructions
-            .get(index)
-            .map_or(self.size, |instruction| instruction.offset)
+        let instruction = self.instructions.get(index);
+        instruction.map_or(self.size, |instruction| instruction.offset)
     }
 }

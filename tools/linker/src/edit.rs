@@ -63,9 +63,8 @@ impl Edits {
     pub fn new(mut edits: Vec<Edit>, targets: &[u64]) -> Option<Self> {
         edits.sort_by_key(|edit| edit.offset);
         let are_apart = edits.windows(2).all(|pair| pair[0].end() <= pair[1].offset);
-        let are_targets_kept = !targets
-            .iter()
-            .any(|target| edits.iter().any(|edit| edit.splits_at(*target)));
+        let is_kept = |target: &u64| !edits.iter().any(|edit| edit.splits_at(*target));
+        let are_targets_kept = targets.iter().all(is_kept);
         (are_apart && are_targets_kept).then_some(Self(edits))
     }
 
@@ -76,10 +75,8 @@ impl Edits {
 
     /// Returns the new offset of the code that was at `offset` before the edits.
     pub fn new_offset(&self, offset: u64) -> u64 {
-        let earlier_edits = self
-            .0
-            .iter()
-            .filter(|edit| edit.offset < offset && edit.end() <= offset);
+        let is_earlier = |edit: &&Edit| edit.offset < offset && edit.end() <= offset;
+        let earlier_edits = self.0.iter().filter(is_earlier);
         offset.wrapping_add_signed(-earlier_edits.map(Edit::saved_bytes).sum::<i64>())
     }
 
@@ -99,9 +96,8 @@ impl Edits {
     /// Returns the references after the edits, with new offsets but old addends.
     pub fn apply_to_references(&self, old_references: &[Reference]) -> Vec<Reference> {
         let is_replaced = |offset: u64| self.0.iter().any(|edit| edit.replaces(offset));
-        let kept_references = old_references
-            .iter()
-            .filter(|reference| !is_replaced(reference.offset));
+        let old_references = old_references.iter();
+        let kept_references = old_references.filter(|reference| !is_replaced(reference.offset));
         let kept_references = kept_references.map(|reference| Reference {
             offset: self.new_offset(reference.offset),
             ..*reference

@@ -80,11 +80,8 @@ impl Frame {
         let registers: Vec<u8> = code.words_from(0).map_while(pushed_register).collect();
         let is_ascending = registers.windows(2).all(|pair| pair[0] < pair[1]);
         let lowest = *registers.first()?;
-        if !is_ascending
-            || !registers
-                .iter()
-                .all(|register| CALL_SAVED.contains(register))
-        {
+        let is_call_saved = |register: &u8| CALL_SAVED.contains(register);
+        if !is_ascending || !registers.iter().all(is_call_saved) {
             return None;
         }
         let (local_bytes, reserving_count) =
@@ -94,13 +91,11 @@ impl Frame {
             return None;
         }
         let lowest = lowest.min(18);
-        let routine_index = LOWEST_REGISTERS
-            .iter()
-            .rposition(|register| *register <= lowest)?;
-        let is_saved_by_routine = |register: &u8| *register >= LOWEST_REGISTERS[routine_index];
-        let has_same_registers = registers.iter().eq(CALL_SAVED
-            .iter()
-            .filter(|register| is_saved_by_routine(register)));
+        let mut lowest_registers = LOWEST_REGISTERS.iter();
+        let routine_index = lowest_registers.rposition(|register| *register <= lowest)?;
+        let is_saved_by_routine = |register: &&u8| **register >= LOWEST_REGISTERS[routine_index];
+        let saved_registers = CALL_SAVED.iter().filter(is_saved_by_routine);
+        let has_same_registers = registers.iter().eq(saved_registers);
         let body_start = registers.len() + reserving_count;
         let mut epilogues = Vec::new();
         let mut index = body_start;

@@ -37,10 +37,9 @@ fn run() -> Result<ExitCode, String> {
     let status = status.map_err(|error| {
         format!("avr-gcc, which links the firmware, could not be started: {error}")
     })?;
-    Ok(if status.success() {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
+    Ok(match status.success() {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::FAILURE,
     })
 }
 
@@ -51,9 +50,8 @@ fn write_shrunk_files(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
     let (true, Ok(file)) = (path.extension() == Some(OsStr::new("o")), fs::read(path)) else {
         return Ok(None);
     };
-    let Some((new_object, _)) =
-        shrink(&file).map_err(|error| format!("{}: {error}", path.display()))?
-    else {
+    let result = shrink(&file).map_err(|error| format!("{}: {error}", path.display()));
+    let Some((new_object, _)) = result? else {
         return Ok(None);
     };
     let write = |extension, bytes: &[u8]| {

@@ -119,12 +119,8 @@ impl Object<'_> {
             }
             function_count == 1 && section.name.starts_with(b".text.")
         };
-        self.0
-            .sections
-            .iter()
-            .filter(is_function)
-            .map(Section::id)
-            .collect()
+        let functions = self.0.sections.iter().filter(is_function);
+        functions.map(Section::id).collect()
     }
 
     /// Returns the references in a section's bytes.
@@ -184,10 +180,8 @@ impl Object<'_> {
             let edits = Edits::new(edits, &self.find_targets(section, None))?;
             (edits.saved_bytes() > 0).then_some((section, edits))
         };
-        self.find_function_sections()
-            .into_iter()
-            .filter_map(build_edits)
-            .collect()
+        let sections = self.find_function_sections().into_iter();
+        sections.filter_map(build_edits).collect()
     }
 
     /// Returns the next edit that `find_edit` finds in a section; `None` if there is no edit.
@@ -208,21 +202,16 @@ impl Object<'_> {
     fn apply_edits(&mut self, section: SectionId, edits: &Edits) {
         let bytes = edits.apply_to_bytes(&self.read_bytes(section));
         let mut references = edits.apply_to_references(&self.read_references(section));
-        let symbol_values: Vec<(SymbolId, u64)> = self
-            .0
-            .symbols
-            .iter()
-            .filter(|symbol| symbol.section == Some(section))
-            .map(|symbol| (symbol.id(), symbol.st_value))
-            .collect();
+        let symbols = self.0.symbols.iter();
+        let own_symbols = symbols.filter(|symbol| symbol.section == Some(section));
+        let symbol_values = own_symbols.map(|symbol| (symbol.id(), symbol.st_value));
+        let symbol_values: Vec<(SymbolId, u64)> = symbol_values.collect();
         // An addend changes by the difference between the shifts of its target and its symbol.
         let new_addend = |symbol: SymbolId, addend: i64| {
             let value = symbol_values.iter().find(|(id, _)| *id == symbol);
             value.map_or(addend, |(_, value)| {
-                let target = value.wrapping_add_signed(addend);
-                edits
-                    .new_offset(target)
-                    .wrapping_sub(edits.new_offset(*value)) as i64
+                let new_target = edits.new_offset(value.wrapping_add_signed(addend));
+                new_target.wrapping_sub(edits.new_offset(*value)) as i64
             })
         };
         for reference in &mut references {

@@ -113,10 +113,8 @@ fn parse_paper_with(old_line: &str, new_lines: &str) -> Robot {
     let text = std::fs::read_to_string(crate_dir().join("../../robots/paper.toml"));
     let text = text.expect("robots/paper.toml is readable");
     let old_text = format!("\n{old_line}");
-    assert!(
-        text.contains(&old_text),
-        "robots/paper.toml has no line {old_line:?}"
-    );
+    let has_line = text.contains(&old_text);
+    assert!(has_line, "robots/paper.toml has no line {old_line:?}");
     Robot::parse(&text.replacen(&old_text, &format!("\n{new_lines}"), 1)).expect(new_lines)
 }
 
@@ -152,24 +150,17 @@ pub fn format_table(
         (description.to_owned(), displacements)
     });
     let compute_percent_changes = |displacements: [Displacement; GAITS.len()]| {
-        let mut changes = displacements
-            .into_iter()
-            .zip(GAITS)
-            .map(|(displacement, gait)| {
-                let level = surface::find_level_displacement(walk_results, gait);
-                let component = match level.0[0].abs() > level.0[2].abs() {
-                    true => Component::Forward,
-                    false => Component::Turn,
-                };
-                100.0 * (component.value(displacement) / component.value(level) - 1.0)
-            });
-        std::array::from_fn(|_| changes.next().expect("every gait has a change"))
+        std::array::from_fn(|i| {
+            let level = surface::find_level_displacement(walk_results, GAITS[i]);
+            let component = match level.0[0].abs() > level.0[2].abs() {
+                true => Component::Forward,
+                false => Component::Turn,
+            };
+            100.0 * (component.value(displacements[i]) / component.value(level) - 1.0)
+        })
     };
-    let find_largest_change = |changes: &[f64; GAITS.len()]| {
-        changes
-            .iter()
-            .fold(0.0, |largest: f64, change| largest.max(change.abs()))
-    };
+    let find_largest_change =
+        |changes: &[f64; GAITS.len()]| changes.map(f64::abs).into_iter().fold(0.0, f64::max);
     let mut rows: Vec<(String, [f64; GAITS.len()])> = surface_rows
         .into_iter()
         .chain(assumption_rows)

@@ -5,7 +5,7 @@ use std::fmt;
 use lizard_robot::{Drive, DriveKind, GroundContact, Robot, Stance};
 
 /// The parts that drive the legs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LegDrive {
     /// Bars with two holes.
     Rigid,
@@ -25,9 +25,6 @@ pub enum FootSetup {
 }
 
 impl FootSetup {
-    /// All setups, in the order of the tables.
-    pub const ALL: [Self; 3] = [Self::Level, Self::Stiff, Self::Soft];
-
     /// Returns the excess length of the front left foot, mm.
     pub fn excess_length_mm(self) -> f64 {
         match self {

@@ -45,26 +45,20 @@ impl Crossing {
         };
         let measurement_start =
             (0..unmeasured_cycles).fold(BodyPose::START, |pose, _| pose.moved_by_travel(cycle));
-        let turns_on_the_spot = !matches!(
-            list_gait_purposes(cycle_displacement)[..],
-            [Component::Forward, ..]
-        );
+        let purposes = list_gait_purposes(cycle_displacement);
+        let turns_on_the_spot = !matches!(purposes[..], [Component::Forward, ..]);
         let mut end = measurement_start;
         for cycle_count in 1.. {
             end = end.moved_by_travel(cycle);
-            let heading_deg = if turns_on_the_spot {
-                0.0
-            } else {
-                compute_direction(measurement_start, end)
+            let heading_deg = match turns_on_the_spot {
+                true => 0.0,
+                false => compute_direction(measurement_start, end),
             };
             // All feet are compared, because their order along the heading may change on an arc.
-            let distance_mm = project_feet(measurement_start, heading_deg)
-                .into_iter()
-                .fold(f64::MIN, f64::max)
-                + CLEARANCE_MM;
-            let nearest_mm = project_feet(end, heading_deg)
-                .into_iter()
-                .fold(f64::MAX, f64::min);
+            let start_feet = project_feet(measurement_start, heading_deg).into_iter();
+            let distance_mm = start_feet.fold(f64::MIN, f64::max) + CLEARANCE_MM;
+            let end_feet = project_feet(end, heading_deg).into_iter();
+            let nearest_mm = end_feet.fold(f64::MAX, f64::min);
             let has_passed = nearest_mm > distance_mm + CLEARANCE_MM;
             if has_passed || end.travel_from(measurement_start).turn.abs() >= MAX_TURN_DEG {
                 return Self {

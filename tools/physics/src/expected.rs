@@ -7,12 +7,15 @@ use lizard_robot::{CheckedGait, Effort, GRAVITY, HIGH_UTILISATION, Robot, ServoT
 /// Returns the table of expected results for `docs/measure.md`.
 pub fn format_expected_table(robot: &Robot) -> String {
     let ground = robot.ground();
-    let load = ground.body.mean_load();
+    let (mass, load) = (ground.body.mass, ground.body.mean_load());
     let grams = |newton: f64| 1000.0 * newton / GRAVITY;
-    let stiffness = ground.stance.stiffness;
+    let (stiffness, twist_error) = (ground.stance.stiffness, ground.stance.twist_error);
+    let friction_grams = 100.0 * ground.friction_coefficient;
     let reach = ground.feet.reach;
+    let mm_per_deg = reach * 1f64.to_radians();
     let strut = robot.strut_with_coil(&robot.parts().spring);
-    let (servo, hardest_gait) = (*robot.servo_type(), HardestGait::find(robot));
+    let us_per_degree = robot.servos()[0].us_per_degree.abs();
+    let (servo, hardest_gait) = (robot.servo_type(), HardestGait::find(robot));
     let rows = [
         (
             "1",
@@ -28,10 +31,7 @@ pub fn format_expected_table(robot: &Robot) -> String {
         (
             "1",
             "pull along the floor at which a pad loaded with 100 g slides",
-            format!(
-                "{:.0} g; acceptable: 40 to 100 g",
-                100.0 * ground.friction_coefficient
-            ),
+            format!("{friction_grams:.0} g; acceptable: 40 to 100 g"),
             "[ground] friction",
         ),
         (
@@ -52,10 +52,7 @@ pub fn format_expected_table(robot: &Robot) -> String {
         (
             "2",
             "free play of the foot to either side, with the link held still",
-            format!(
-                "{:.1} mm per deg; acceptable: 0 to 1 deg",
-                reach * 1f64.to_radians()
-            ),
+            format!("{mm_per_deg:.1} mm per deg; acceptable: 0 to 1 deg"),
             "[leg.drive] play",
         ),
         (
@@ -67,10 +64,7 @@ pub fn format_expected_table(robot: &Robot) -> String {
         (
             "3",
             "pulse width per deg of the horn's rotation, us, measured over at least 60 deg",
-            format!(
-                "{:.1}; acceptable: 9 to 11",
-                robot.servos()[0].us_per_degree.abs()
-            ),
+            format!("{us_per_degree:.1}; acceptable: 9 to 11"),
             "[servo.A1] us_per_degree",
         ),
         (
@@ -79,10 +73,7 @@ pub fn format_expected_table(robot: &Robot) -> String {
             format!(
                 "{} s; acceptable: at most {:.2} s, with the torque of the next row",
                 servo.s_per_60_deg,
-                hardest_gait.find_limit(servo.s_per_60_deg, |s_per_60_deg| ServoType {
-                    s_per_60_deg,
-                    ..servo
-                })
+                hardest_gait.find_limit(|servo| &mut servo.s_per_60_deg)
             ),
             "[servo] s_per_60_deg",
         ),
@@ -92,10 +83,7 @@ pub fn format_expected_table(robot: &Robot) -> String {
             format!(
                 "{} kg cm; acceptable: at least {:.1}, with the time of the row above",
                 servo.stall_torque_kg_cm,
-                hardest_gait.find_limit(servo.stall_torque_kg_cm, |stall_torque_kg_cm| ServoType {
-                    stall_torque_kg_cm,
-                    ..servo
-                })
+                hardest_gait.find_limit(|servo| &mut servo.stall_torque_kg_cm)
             ),
             "[servo] stall_kg_cm",
         ),
@@ -118,20 +106,13 @@ pub fn format_expected_table(robot: &Robot) -> String {
         (
             "built",
             "weight with wires",
-            format!(
-                "{:.0} g, {:.0} g on each foot",
-                ground.body.mass,
-                grams(load)
-            ),
+            format!("{mass:.0} g, {:.0} g on each foot", grams(load)),
             "[body] mass",
         ),
         (
             "built",
             "load of LF and RH minus load of RF and LH, divided by the g per mm of the first row",
-            format!(
-                "0 mm; acceptable: at most {:.1} mm either way",
-                ground.stance.twist_error
-            ),
+            format!("0 mm; acceptable: at most {twist_error:.1} mm either way"),
             "[feet] twist",
         ),
     ];
@@ -173,17 +154,19 @@ impl<'a> HardestGait<'a> {
     }
 
     /// Finds the limit of a servo key: the value with which the gait uses [`HIGH_UTILISATION`] of the torque-speed
-    /// line. The search stays within a factor of four of `own_value`, the value of the robot's servo. `make_servo`
-    /// returns the servo with another value.
-    fn find_limit(&self, own_value: f64, make_servo: impl Fn(f64) -> ServoType) -> f64 {
-        let is_enough = |value: f64| {
-            Self::compute_utilisation(self.robot, self.gait, &make_servo(value)) <= HIGH_UTILISATION
+    /// line. The search stays within a factor of four of the value of the robot's servo. `field` returns the key's
+    /// field.
+    fn find_limit(&self, field: fn(&mut ServoType) -> &mut f64) -> f64 {
+        let mut servo = *self.robot.servo_type();
+        let own_value = *field(&mut servo);
+        let mut is_enough = |value: f64| {
+            *field(&mut servo) = value;
+            Self::compute_utilisation(self.robot, self.gait, &servo) <= HIGH_UTILISATION
         };
         let mut good_value = own_value;
-        let mut bad_value = if is_enough(2.0 * own_value) {
-            own_value / 4.0
-        } else {
-            4.0 * own_value
+        let mut bad_value = match is_enough(2.0 * own_value) {
+            true => own_value / 4.0,
+            false => 4.0 * own_value,
         };
         for _ in 0..10 {
             let middle = f64::midpoint(good_value, bad_value);

@@ -94,13 +94,11 @@ pub fn simulate_all(robot: &Robot) -> Result<GrainResults, MujocoError> {
     batch.add(&assembly, scenes.map(|scene| (LegDrive::Rigid, scene)))?;
     let mujoco_displacements = batch.start()?.wait()?;
     let grains = gaits.iter().map(|gait| {
-        let results = RATIOS
-            .into_iter()
-            .enumerate()
-            .map(|(index, ratio)| DisplacementPair {
-                model: simulate_model(robot, gait, ratio),
-                mujoco: mujoco_displacements[&make_name(gait.name(), index)],
-            });
+        let ratios = RATIOS.into_iter().enumerate();
+        let results = ratios.map(|(index, ratio)| DisplacementPair {
+            model: simulate_model(robot, gait, ratio),
+            mujoco: mujoco_displacements[&make_name(gait.name(), index)],
+        });
         (gait.name().to_owned(), results.collect())
     });
     Ok(grains.collect())

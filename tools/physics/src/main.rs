@@ -95,20 +95,17 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     }
     for (index, walk) in surface_walks.iter().enumerate() {
         let assembly = Assembly::new(&load_robot(walk.robot));
-        let scene = walk.surface.make_scene(
-            &make_walk_name(SURFACE_PREFIX, index),
-            &assembly,
-            &walk.gait,
-            walk.level_displacement,
-        );
-        batch.add(&assembly, std::iter::once((LegDrive::Rigid, scene)))?;
+        let name = make_walk_name(SURFACE_PREFIX, index);
+        let (surface, level) = (walk.surface, walk.level_displacement);
+        let scene = surface.make_scene(&name, &assembly, &walk.gait, level);
+        batch.add(&assembly, [(LegDrive::Rigid, scene)])?;
     }
     let servo_walks = Variant::ALL.map(|variant| servos::GAITS.map(|(gait, _)| (variant, gait)));
     let servo_walks = choice.choose(servo_walks.concat());
     for (index, (variant, gait)) in servo_walks.iter().enumerate() {
         let assembly = Assembly::new(&variant.load_robot());
         let scene = variant.make_scene(&make_walk_name(SERVOS_PREFIX, index), &assembly, gait);
-        batch.add(&assembly, std::iter::once((LegDrive::Rigid, scene)))?;
+        batch.add(&assembly, [(LegDrive::Rigid, scene)])?;
     }
     let assumption_walks =
         Assumption::ALL.map(|assumption| assumptions::GAITS.map(|gait| (assumption, gait)));
@@ -116,32 +113,23 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     for (index, (assumption, gait)) in assumption_walks.iter().enumerate() {
         let assembly = Assembly::new(&assumption.load_robot());
         let level = surface::find_level_displacement(&stored_results, gait);
-        let scene = assumption.make_scene(
-            &make_walk_name(ASSUMPTIONS_PREFIX, index),
-            &assembly,
-            gait,
-            level,
-        );
-        batch.add(&assembly, std::iter::once((LegDrive::Rigid, scene)))?;
+        let name = make_walk_name(ASSUMPTIONS_PREFIX, index);
+        let scene = assumption.make_scene(&name, &assembly, gait, level);
+        batch.add(&assembly, [(LegDrive::Rigid, scene)])?;
     }
     let pad_walks = PadShape::ALL.map(|shape| SURFACES.map(|surface| (shape, surface)));
     let pad_walks = choice.choose(pad_walks.concat());
     let paper = Assembly::new(&load_robot("paper"));
-    let scenes = pad_walks
-        .iter()
-        .enumerate()
-        .map(|(index, (shape, surface))| {
-            let level = surface::find_level_displacement(&stored_results, pads::GAIT);
-            (
-                LegDrive::Rigid,
-                shape.make_scene(&make_walk_name(PADS_PREFIX, index), &paper, *surface, level),
-            )
-        });
+    let level = surface::find_level_displacement(&stored_results, pads::GAIT);
+    let indexed_pad_walks = pad_walks.iter().enumerate();
+    let scenes = indexed_pad_walks.map(|(index, (shape, surface))| {
+        let name = make_walk_name(PADS_PREFIX, index);
+        let scene = shape.make_scene(&name, &paper, *surface, level);
+        (LegDrive::Rigid, scene)
+    });
     batch.add(&paper, scenes)?;
-    println!(
-        "physics: MuJoCo simulates {} walks, which takes some minutes",
-        batch.walk_count()
-    );
+    let walk_count = batch.walk_count();
+    println!("physics: MuJoCo simulates {walk_count} walks, which takes some minutes");
     let mujoco_displacements = batch.start()?.wait()?;
 
     let (mut walk_results, mut faults) = (WalkResults::default(), Vec::new());
@@ -165,42 +153,27 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     }
     let (stored_surfaces, mut surfaces) = (surface::load_stored(), SurfaceDisplacements::new());
     for (index, walk) in surface_walks.iter().enumerate() {
-        let SurfaceWalk {
-            robot,
-            gait,
-            level_displacement,
-            surface,
-        } = walk;
+        let (robot, gait, surface) = (walk.robot, &walk.gait, walk.surface);
         let displacement = mujoco_displacements[&make_walk_name(SURFACE_PREFIX, index)];
-        let mut messages =
-            surface::describe_excess_losses(*surface, *level_displacement, displacement);
-        if surface::is_known_shortfall(robot, gait, *surface) {
+        let level = walk.level_displacement;
+        let mut messages = surface::describe_excess_losses(surface, level, displacement);
+        if surface::is_known_shortfall(robot, gait, surface) {
             messages.clear();
         }
+        let surface_name = surface.to_string();
         if !is_writing {
-            let stored_by_gait = stored_surfaces
-                .get(*robot)
-                .and_then(|by_gait| by_gait.get(gait));
-            let stored_displacement =
-                stored_by_gait.and_then(|by_surface| by_surface.get(&surface.to_string()));
-            messages.extend(match stored_displacement {
-                Some(stored_displacement) => {
-                    describe_difference("MuJoCo", *stored_displacement, displacement)
-                }
-                None => Some(NOT_STORED.to_owned()),
-            });
+            let find_stored = || stored_surfaces.get(robot)?.get(gait)?.get(&surface_name);
+            messages.extend(describe_mujoco_change(find_stored(), displacement));
         }
         let describe = |message| format!("{robot}: {gait} ({surface}): {message}");
         faults.extend(messages.into_iter().map(describe));
-        let by_gait = surfaces.entry((*robot).to_owned()).or_default();
+        let by_gait = surfaces.entry(robot.to_owned()).or_default();
         let by_surface = by_gait.entry(gait.clone()).or_default();
-        by_surface.insert(surface.to_string(), displacement);
+        by_surface.insert(surface_name, displacement);
     }
     for robot in surface::ROBOT_NAMES {
-        println!(
-            "\nrobots/{robot}.toml\n{}",
-            format_surfaces_table(robot, &stored_results, &surfaces)
-        );
+        let table = format_surfaces_table(robot, &stored_results, &surfaces);
+        println!("\nrobots/{robot}.toml\n{table}");
     }
     let (stored_servos, mut servo_results) = (servos::load_stored(), ServoResults::new());
     for (index, (variant, gait)) in servo_walks.iter().enumerate() {
@@ -210,10 +183,8 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         };
         let mut messages = Vec::from_iter(variant.describe_disagreement(gait, &results));
         if !is_writing {
-            let stored_variant_results = stored_servos
-                .get(variant.name)
-                .and_then(|by_gait| by_gait.get(*gait));
-            messages.extend(describe_changes(stored_variant_results, &results));
+            let find_stored = || stored_servos.get(variant.name)?.get(*gait);
+            messages.extend(describe_changes(find_stored(), &results));
         }
         let describe = |message| format!("paper, {}: {gait}: {message}", variant.name);
         faults.extend(messages.into_iter().map(describe));
@@ -224,9 +195,8 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     let mut by_assumption = AssumptionDisplacements::new();
     for (index, (assumption, gait)) in assumption_walks.iter().enumerate() {
         let displacement = mujoco_displacements[&make_walk_name(ASSUMPTIONS_PREFIX, index)];
-        let by_gait = by_assumption
-            .entry(assumption.description.to_owned())
-            .or_default();
+        let description = assumption.description.to_owned();
+        let by_gait = by_assumption.entry(description).or_default();
         by_gait.insert((*gait).to_owned(), displacement);
     }
     let mut by_shape = ShapeDisplacements::new();
@@ -248,10 +218,8 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     // A shortened run (`--one-in`) omits the pads with a grain.
     if one_in == 1 {
         let grain_results = grains::simulate_all(&grain_robot)?;
-        println!(
-            "\nrobots/grain.toml\n{}",
-            grains::format_table(&grain_robot, &grain_results)
-        );
+        let table = grains::format_table(&grain_robot, &grain_results);
+        println!("\nrobots/grain.toml\n{table}");
         faults.extend(grains::describe_disagreements(&grain_results));
         match is_writing {
             true => grains::store(&grain_results)?,
@@ -346,21 +314,23 @@ fn describe_displacement_changes(
     stored: &GroupedDisplacements,
     current: &GroupedDisplacements,
 ) -> Vec<String> {
-    let displacements = current.iter().flat_map(|(group, by_name)| {
-        by_name
-            .iter()
-            .map(move |(name, displacement)| (group, name, displacement))
-    });
-    let messages = displacements.filter_map(|(group, name, displacement)| {
-        let message = match stored.get(group).and_then(|by_name| by_name.get(name)) {
-            Some(stored_displacement) => {
-                describe_difference("MuJoCo", *stored_displacement, *displacement)?
-            }
-            None => NOT_STORED.to_owned(),
-        };
-        Some(format!("paper, {group}: {name}: {message}"))
-    });
-    messages.collect()
+    let mut messages = Vec::new();
+    for (group, by_name) in current {
+        for (name, displacement) in by_name {
+            let find_stored = || stored.get(group)?.get(name);
+            let change = describe_mujoco_change(find_stored(), *displacement);
+            messages.extend(change.map(|change| format!("paper, {group}: {name}: {change}")));
+        }
+    }
+    messages
+}
+
+/// Returns a message if MuJoCo's displacement differs from the stored one, or if none is stored.
+fn describe_mujoco_change(stored: Option<&Displacement>, current: Displacement) -> Option<String> {
+    match stored {
+        Some(stored) => describe_difference("MuJoCo", *stored, current),
+        None => Some(NOT_STORED.to_owned()),
+    }
 }
 
 /// Returns a message for each of the model's and MuJoCo's displacements that differs from the stored one.
@@ -372,14 +342,9 @@ fn describe_changes(stored: Option<&DisplacementPair>, current: &DisplacementPai
     let (Some(stored_model), Some(current_model)) = (stored.model, current.model) else {
         return Vec::new();
     };
-    let pairs = [
-        ("the model", stored_model, current_model),
-        ("MuJoCo", stored.mujoco, current.mujoco),
-    ];
-    pairs
-        .into_iter()
-        .filter_map(|(source, stored, current)| describe_difference(source, stored, current))
-        .collect()
+    let model_change = describe_difference("the model", stored_model, current_model);
+    let mujoco_change = describe_difference("MuJoCo", stored.mujoco, current.mujoco);
+    model_change.into_iter().chain(mujoco_change).collect()
 }
 
 /// Returns a message if a displacement differs from the stored one by more than the tolerance.

@@ -1,6 +1,7 @@
 //! Interface to MuJoCo's Python package. The judge, `tools/physics/judge.py`, simulates the walks in a folder's files.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::io;
 use std::process::{Child, Command, Stdio};
 
@@ -84,27 +85,20 @@ impl WalkBatch {
     pub fn add(
         &mut self,
         assembly: &Assembly,
-        walks: impl Iterator<Item = (LegDrive, Scene)>,
+        walks: impl IntoIterator<Item = (LegDrive, Scene)>,
     ) -> Result<(), MujocoError> {
         let robot = assembly.robot();
         let neutral = robot.lizard().solve(&robot.neutral_pose());
         let neutral = neutral.expect("every loop closes in the neutral pose");
-        let mut known_pieces: Vec<(LegDrive, Pieces)> = Vec::new();
+        let mut known_pieces: BTreeMap<LegDrive, Pieces> = BTreeMap::new();
         for (legs, scene) in walks {
-            if known_pieces
-                .iter()
-                .all(|(known_legs, _)| *known_legs != legs)
-            {
-                known_pieces.push((legs, Pieces::compute(assembly, &scene)?));
-            }
-            for (_, pieces) in known_pieces
-                .iter()
-                .filter(|(known_legs, _)| *known_legs == legs)
-            {
-                let file = self.folder.path().join(format!("{}.xml", scene.name));
-                std::fs::write(file, pieces.format_mjcf(&neutral, &scene))?;
-                self.walk_count += 1;
-            }
+            let pieces = match known_pieces.entry(legs) {
+                Entry::Vacant(entry) => entry.insert(Pieces::compute(assembly, &scene)?),
+                Entry::Occupied(entry) => entry.into_mut(),
+            };
+            let file = self.folder.path().join(format!("{}.xml", scene.name));
+            std::fs::write(file, pieces.format_mjcf(&neutral, &scene))?;
+            self.walk_count += 1;
         }
         Ok(())
     }

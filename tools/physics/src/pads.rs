@@ -78,17 +78,15 @@ pub fn load_stored() -> ShapeDisplacements {
 /// Returns the table in Markdown: mm forward per cycle, or a dash if a walk is missing.
 pub fn format_table(shapes: &ShapeDisplacements) -> String {
     let headings = SURFACES.map(|surface| format!(" {surface} |")).concat();
-    let mut text = format!(
-        "| radius, mm |{headings}\n|---|{}\n",
-        "---|".repeat(SURFACES.len())
-    );
+    let lines = "---|".repeat(SURFACES.len());
+    let mut text = format!("| radius, mm |{headings}\n|---|{lines}\n");
     for shape in PadShape::ALL {
         let by_surface = shapes.get(&shape.name());
         let cells = SURFACES.map(|surface| {
-            let displacement =
-                by_surface.and_then(|by_surface| by_surface.get(&surface.to_string()));
+            let find_displacement = || by_surface?.get(&surface.to_string());
             // Adding 0 turns -0 into 0.
-            let forward_mm = displacement.map(|displacement| displacement.0[0].round() + 0.0);
+            let forward_mm =
+                find_displacement().map(|displacement| displacement.0[0].round() + 0.0);
             forward_mm.map_or(" - |".to_owned(), |forward_mm| format!(" {forward_mm} |"))
         });
         _ = writeln!(text, "| {} |{}", shape.name(), cells.concat());

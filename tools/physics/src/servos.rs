@@ -100,21 +100,15 @@ impl Variant {
             assert!(text.contains(old), "robots/paper.toml has no {old:?}");
             text = text.replacen(old, new, 1);
         };
-        replace(
-            "[servo.A1]",
-            &format!(
-                "[joints]\n{}\n[servo]\n{}\ndead_band_us = 0.0\n[servo.A1]",
-                self.joint_lines, self.servo_lines
-            ),
+        let servo_tables = format!(
+            "[joints]\n{}\n[servo]\n{}\ndead_band_us = 0.0\n[servo.A1]",
+            self.joint_lines, self.servo_lines
         );
-        replace(
-            "[ground]",
-            &format!("[ground]\nfriction = {}", self.friction),
-        );
-        replace(
-            &format!("mass = {own_mass:.1}"),
-            &format!("mass = {:.1}", own_mass + self.extra_mass_g),
-        );
+        replace("[servo.A1]", &servo_tables);
+        let ground_table = format!("[ground]\nfriction = {}", self.friction);
+        replace("[ground]", &ground_table);
+        let mass_line = format!("mass = {:.1}", own_mass + self.extra_mass_g);
+        replace(&format!("mass = {own_mass:.1}"), &mass_line);
         Robot::parse(&text).expect(self.name)
     }
 
@@ -123,13 +117,11 @@ impl Variant {
     /// # Panics
     /// If the robot has no such gait.
     pub fn make_scene(&self, name: &str, assembly: &Assembly, gait: &str) -> Scene {
-        let gait = assembly
-            .robot()
-            .gait(gait)
-            .expect("the robot has this gait");
+        let robot = assembly.robot();
+        let gait = robot.gait(gait).expect("the robot has this gait");
         let mut scene = Scene {
             name: name.to_owned(),
-            trajectory: Some(Trajectory::for_gait(assembly.robot(), gait, 2, 1)),
+            trajectory: Some(Trajectory::for_gait(robot, gait, 2, 1)),
             has_shapes: false,
             ..Scene::for_assembly(assembly)
         };
@@ -146,8 +138,8 @@ impl Variant {
     pub fn simulate_model(&self, gait: &str) -> Displacement {
         let robot = self.load_robot();
         let gait = robot.gait(gait).expect("the robot has this gait");
-        gait.simulate_driven_cycle(robot.ground(), &robot.motors(), 1.0)
-            .into()
+        let travel = gait.simulate_driven_cycle(robot.ground(), &robot.motors(), 1.0);
+        travel.into()
     }
 
     /// Returns a message if the model differs too much from MuJoCo in a gait.
@@ -188,13 +180,11 @@ pub fn format_servos_table(servos: &ServoResults) -> String {
     for variant in Variant::ALL {
         _ = write!(table, "| {} |", variant.name);
         for (gait, component) in GAITS {
-            let results = servos
-                .get(variant.name)
-                .and_then(|by_gait| by_gait.get(gait));
-            let pair = results.and_then(|results| {
+            let find_pair = || {
+                let results = servos.get(variant.name)?.get(gait)?;
                 Some((results.model?.0[component], results.mujoco.0[component]))
-            });
-            _ = match pair {
+            };
+            _ = match find_pair() {
                 Some((model, mujoco)) => write!(table, " {model:.1}, {mujoco:.1} |"),
                 None => write!(table, " - |"),
             };

@@ -31,11 +31,8 @@ pub(crate) fn list_gait_purposes(Displacement([forward, _, turn]): Displacement)
         (Component::Forward, forward.abs() > MIN_DISTANCE_MM),
         (Component::Turn, turn.abs() > MIN_TURN_DEG),
     ];
-    purposes
-        .into_iter()
-        .filter(|(_, is_purpose)| *is_purpose)
-        .map(|(component, _)| component)
-        .collect()
+    let components = purposes.map(|(component, is_purpose)| is_purpose.then_some(component));
+    components.into_iter().flatten().collect()
 }
 
 /// Returns a robot's walking gaits, each with MuJoCo's displacement on a level floor.
@@ -45,26 +42,19 @@ pub(crate) fn list_gait_purposes(Displacement([forward, _, turn]): Displacement)
 pub fn list_walking_gaits(walk_results: &WalkResults, robot: &str) -> Vec<(String, Displacement)> {
     if robot == grains::ROBOT {
         let stored = grains::load_stored();
-        return grains::GAITS
-            .map(|(gait, _)| {
-                (
-                    gait.to_owned(),
-                    grains::find_results_at_own_ratio(&stored[gait]).mujoco,
-                )
-            })
-            .into();
+        let find_level = |(gait, _): (&str, bool)| {
+            let results = grains::find_results_at_own_ratio(&stored[gait]);
+            (gait.to_owned(), results.mujoco)
+        };
+        return grains::GAITS.map(find_level).into();
     }
     let loaded_robot = crate::load_robot(robot);
-    let moving = loaded_robot
-        .gaits()
-        .iter()
-        .filter(|gait| gait.has_movement());
+    let gaits = loaded_robot.gaits().iter();
+    let moving = gaits.filter(|gait| gait.has_movement());
     let level_results = moving.map(|gait| {
         let results = walk_results.get(robot, gait.name(), Case::ALL[0]);
-        (
-            gait.name().to_owned(),
-            *results.expect("figures.json has the result"),
-        )
+        let results = results.expect("figures.json has the result");
+        (gait.name().to_owned(), *results)
     });
     // If two feet pull against the other two, the contact model has no result, and the gait has no definite path.
     level_results
@@ -156,10 +146,9 @@ impl Surface {
         level_displacement: Displacement,
     ) -> Scene {
         let robot = assembly.robot();
-        let direction = if level_displacement.0[0] < -MIN_DISTANCE_MM {
-            -1.0
-        } else {
-            1.0
+        let direction = match level_displacement.0[0] < -MIN_DISTANCE_MM {
+            true => -1.0,
+            false => 1.0,
         };
         let mut scene = make_two_cycle_scene(name, assembly, gait, Case::ALL[0]);
         scene.friction_ratio = robot.ground().friction_ratio;
@@ -211,12 +200,10 @@ fn scatter_blocks(robot: &Robot, height_mm: f64) -> Vec<Block> {
             let distance =
                 |[forward, left]: [f64; 2]| (centre[0] + left).hypot(centre[1] - forward);
             if feet.into_iter().map(distance).fold(f64::INFINITY, f64::min) > SQUARE_MM {
-                let size = [width, length, height_mm];
-                let rotation = 0.0;
                 blocks.push(Block {
                     centre,
-                    size,
-                    rotation,
+                    size: [width, length, height_mm],
+                    rotation: 0.0,
                 });
             }
         }
@@ -288,10 +275,8 @@ pub fn describe_excess_losses(
             )
         })
     };
-    list_gait_purposes(level_displacement)
-        .into_iter()
-        .filter_map(describe_loss)
-        .collect()
+    let purposes = list_gait_purposes(level_displacement).into_iter();
+    purposes.filter_map(describe_loss).collect()
 }
 
 /// Returns the table of a robot's gaits on its surfaces in Markdown.
@@ -302,19 +287,16 @@ pub fn format_surfaces_table(
 ) -> String {
     let robot_surfaces = Surface::for_robot(robot);
     let headings = robot_surfaces.iter().map(|surface| format!(" {surface} |"));
+    let headings = headings.collect::<String>();
     let lines = "---|".repeat(robot_surfaces.len());
-    let mut text = format!(
-        "| gait | level |{}\n|---|---|{lines}\n",
-        headings.collect::<String>()
-    );
+    let mut text = format!("| gait | level |{headings}\n|---|---|{lines}\n");
     for (gait, level) in list_walking_gaits(walk_results, robot) {
         let stored = surfaces.get(robot).and_then(|by_gait| by_gait.get(&gait));
         for component in list_gait_purposes(level) {
             let format_cell = |displacement| format!(" {:+.1}", component.value(displacement));
             let displacements = robot_surfaces.iter().map(|surface| {
-                let displacement =
-                    stored.and_then(|by_surface| by_surface.get(&surface.to_string()));
-                let Some(displacement) = displacement else {
+                let find_displacement = || stored?.get(&surface.to_string());
+                let Some(displacement) = find_displacement() else {
                     return " - |".to_owned();
                 };
                 let fraction = component.value(*displacement) / component.value(level);
@@ -323,26 +305,20 @@ pub fn format_surfaces_table(
                 let mark = if is_shortfall { "!" } else { "" };
                 format!("{}{mark} |", format_cell(*displacement))
             });
-            let (level_cell, displacements) =
-                (format_cell(level), displacements.collect::<String>());
-            _ = writeln!(
-                text,
-                "| {gait}, {} |{level_cell} |{displacements}",
-                component.unit()
-            );
+            let displacements = displacements.collect::<String>();
+            let (unit, level_cell) = (component.unit(), format_cell(level));
+            _ = writeln!(text, "| {gait}, {unit} |{level_cell} |{displacements}");
         }
     }
     for (name, component) in [
         ("a displacement", Component::Forward),
         ("a turn", Component::Turn),
     ] {
-        let cells = robot_surfaces
-            .iter()
-            .map(|surface| match surface.min_fraction(component) {
-                Some(fraction) => format!(" {:.0} % |", 100.0 * fraction),
-                None => " - |".to_owned(),
-            });
-        let cells = cells.collect::<String>();
+        let format_cell = |surface: &Surface| match surface.min_fraction(component) {
+            Some(fraction) => format!(" {:.0} % |", 100.0 * fraction),
+            None => " - |".to_owned(),
+        };
+        let cells: String = robot_surfaces.iter().map(format_cell).collect();
         _ = writeln!(text, "| at least, of {name} | 100 % |{cells}");
     }
     text

@@ -58,11 +58,8 @@ pub fn format_table(name: &str, robot: &Robot, walk_results: &WalkResults) -> St
             LegDrive::Strut => "struts with springs",
         };
         _ = writeln!(text, "robots/{name}.toml, {title}");
-        let cases = FootSetup::ALL.map(|feet| Case { legs, feet });
-        let cases: Vec<Case> = cases
-            .into_iter()
-            .filter(|case| Case::ALL.contains(case))
-            .collect();
+        let cases = Case::ALL.into_iter().filter(|case| case.legs == legs);
+        let cases: Vec<Case> = cases.collect();
         let width = list_moving_gaits(robot).map(str::len).max().unwrap_or(0);
         _ = write!(text, "{:width$}    ", "");
         let headings = cases.iter().map(|case| match case.feet {
@@ -83,23 +80,15 @@ pub fn format_table(name: &str, robot: &Robot, walk_results: &WalkResults) -> St
             let Some(first_results) = walk_results.get(name, gait, cases[0]) else {
                 continue;
             };
-            for component in
-                Component::for_displacement(first_results.model.unwrap_or(first_results.mujoco))
-            {
+            let first_displacement = first_results.model.unwrap_or(first_results.mujoco);
+            for component in Component::for_displacement(first_displacement) {
                 _ = write!(text, "{gait:<width$} {:>3}", component.unit());
-                for results in cases
-                    .iter()
-                    .filter_map(|case| walk_results.get(name, gait, *case))
-                {
-                    for displacement in [results.model, Some(results.mujoco)] {
-                        _ = match displacement {
-                            Some(displacement) => {
-                                write!(text, "  {:>+6.1}", component.value(displacement))
-                            }
-                            None => write!(text, "  {:>6}", "-"),
-                        };
-                    }
-                    text.push_str("      ");
+                let format_value = |displacement| format!("{:+.1}", component.value(displacement));
+                let case_results = cases.iter().map(|case| walk_results.get(name, gait, *case));
+                for results in case_results.flatten() {
+                    let model = results.model.map_or("-".to_owned(), format_value);
+                    let mujoco = format_value(results.mujoco);
+                    _ = write!(text, "  {model:>6}  {mujoco:>6}      ");
                 }
                 text = text.trim_end().to_owned() + "\n";
             }
@@ -125,30 +114,26 @@ pub fn format_displacement_table(name: &str, robot: &Robot, walk_results: &WalkR
             let legs = LegDrive::Rigid;
             walk_results.get(name, gait.name(), Case { legs, feet })
         };
-        let (Some(level), Some(long_foot)) = (
-            find_results(FootSetup::Level),
-            find_results(FootSetup::Soft),
-        ) else {
+        let results = [FootSetup::Level, FootSetup::Soft].map(find_results);
+        let [Some(level), Some(long_foot)] = results else {
             continue;
         };
         let (Some(model), Some(long_model)) = (level.model, long_foot.model) else {
             continue;
         };
         let format_cell = |displacements: &[Displacement]| {
-            let components = Component::for_displacement(model)
-                .into_iter()
-                .map(|component| format_range(component, displacements));
-            components.collect::<Vec<_>>().join(", ")
+            let components = Component::for_displacement(model).into_iter();
+            let ranges = components.map(|component| format_range(component, displacements));
+            ranges.collect::<Vec<_>>().join(", ")
         };
+        let driven = gait.simulate_driven_cycle(robot.ground(), &robot.motors(), 1.0);
         _ = writeln!(
             text,
             "| {} | {} | {} | {} | {} | {} |",
             gait.name(),
             gait.period(),
             format_cell(&[model]),
-            format_cell(&[gait
-                .simulate_driven_cycle(robot.ground(), &robot.motors(), 1.0)
-                .into()]),
+            format_cell(&[driven.into()]),
             format_cell(&[level.mujoco]),
             format_cell(&[long_model, long_foot.mujoco])
         );
@@ -157,15 +142,12 @@ pub fn format_displacement_table(name: &str, robot: &Robot, walk_results: &WalkR
 }
 
 fn format_range(component: Component, displacements: &[Displacement]) -> String {
-    let values = displacements
-        .iter()
-        .map(|displacement| component.value(*displacement));
+    let unit = component.unit();
+    let displacements = displacements.iter().copied();
+    let values = displacements.map(|displacement| component.value(displacement));
     let smallest = values.clone().fold(f64::INFINITY, f64::min);
     let largest = values.fold(f64::NEG_INFINITY, f64::max);
-    let ([smallest, largest], unit) = (
-        [smallest, largest].map(|value| format!("{value:+.1}")),
-        component.unit(),
-    );
+    let [smallest, largest] = [smallest, largest].map(|value| format!("{value:+.1}"));
     match smallest == largest {
         true => format!("{smallest} {unit}"),
         false => format!("{smallest} to {largest} {unit}"),

@@ -32,10 +32,9 @@ pub(crate) fn format_object<T>(
     map: &BTreeMap<String, T>,
     format_value: impl Fn(&T) -> String,
 ) -> String {
-    let lines = map
-        .iter()
-        .map(|(key, value)| format!("{key:?}: {}", format_value(value)));
-    format!("{{\n{}\n}}", lines.collect::<Vec<_>>().join(",\n"))
+    let format_line = |(key, value): (&String, &T)| format!("{key:?}: {}", format_value(value));
+    let lines: Vec<String> = map.iter().map(format_line).collect();
+    format!("{{\n{}\n}}", lines.join(",\n"))
 }
 
 pub(crate) fn to_json<T: Serialize>(value: &T) -> String {

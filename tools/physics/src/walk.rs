@@ -40,17 +40,15 @@ impl Walk {
 /// only in the first case.
 pub fn list_walks(robot: &Robot) -> Vec<Walk> {
     let gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
-    gaits
-        .flat_map(|gait| list_gait_walks(robot, gait))
-        .collect()
+    let walks = gaits.flat_map(|gait| list_gait_walks(robot, gait));
+    walks.collect()
 }
 
 fn list_gait_walks(robot: &Robot, gait: &CheckedGait) -> Vec<Walk> {
     let [first_case, ..] = Case::ALL;
     let is_determined = gait.predict(&first_case.ground(robot)).is_determined();
-    let cases = Case::ALL
-        .into_iter()
-        .filter(|case| is_determined || *case == first_case);
+    let cases = Case::ALL.into_iter();
+    let cases = cases.filter(|case| is_determined || *case == first_case);
     let make_walk = |case| Walk {
         gait: gait.name().to_owned(),
         case,

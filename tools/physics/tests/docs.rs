@@ -25,15 +25,10 @@ fn the_documentation_has_the_stored_displacements() {
     let walk_results = WalkResults::load_stored();
     for name in ROBOT_NAMES {
         let robot = load_robot(name);
-        let fenced_table = format!(
-            "```text\n{}```\n",
-            format_table(name, &robot, &walk_results)
-        );
-        check_page(
-            "docs/judges.md",
-            &format!("physics of robots/{name}.toml"),
-            &fenced_table,
-        );
+        let table = format_table(name, &robot, &walk_results);
+        let fenced_table = format!("```text\n{table}```\n");
+        let marker = format!("physics of robots/{name}.toml");
+        check_page("docs/judges.md", &marker, &fenced_table);
         if name == "paper" {
             let displacements = format_displacement_table(name, &robot, &walk_results);
             for page in ["README.md", "docs/gaits.md", "docs/twin.md"] {
@@ -47,20 +42,13 @@ fn the_documentation_has_the_stored_displacements() {
         let marker = format!("surfaces of robots/{name}.toml");
         check_page("docs/judges.md", &marker, &table);
     }
-    check_page(
-        "docs/judges.md",
-        "pads",
-        &pads::format_table(&pads::load_stored()),
-    );
+    let table = pads::format_table(&pads::load_stored());
+    check_page("docs/judges.md", "pads", &table);
     let changes = assumptions::format_table(&walk_results, &surfaces, &assumptions::load_stored());
     let fenced = format!("```text\n{changes}```\n");
     check_page("docs/limits.md", "assumptions by MuJoCo", &fenced);
-    let robot = load_robot("paper");
-    check_page(
-        "docs/measure.md",
-        "expected of robots/paper.toml",
-        &format_expected_table(&robot),
-    );
+    let table = format_expected_table(&load_robot("paper"));
+    check_page("docs/measure.md", "expected of robots/paper.toml", &table);
 }
 
 #[test]
@@ -85,22 +73,15 @@ fn every_gait_keeps_its_distance_over_edges_and_blocks_and_its_turn_on_every_flo
                 let displacement = stored_surfaces[name][&gait][&surface.to_string()];
                 let losses = surface::describe_excess_losses(surface, level, displacement);
                 let is_known_shortfall = surface::is_known_shortfall(name, &gait, surface);
-                assert_eq!(
-                    !losses.is_empty(),
-                    is_known_shortfall,
-                    "{name}: {gait}, {surface}: {losses:?}"
-                );
+                let label = format!("{name}: {gait}, {surface}: {losses:?}");
+                assert_eq!(!losses.is_empty(), is_known_shortfall, "{label}");
                 walk_count += 1;
             }
         }
     }
-    let stored_counts = stored_surfaces.values().flat_map(|gaits| gaits.values());
-    let stored_counts = stored_counts.map(std::collections::BTreeMap::len);
-    assert_eq!(
-        stored_counts.sum::<usize>(),
-        walk_count,
-        "no other walks may be stored"
-    );
+    let stored_gaits = stored_surfaces.values().flat_map(|gaits| gaits.values());
+    let stored_count: usize = stored_gaits.map(|surfaces| surfaces.len()).sum();
+    assert_eq!(stored_count, walk_count, "no other walks may be stored");
     assert!(walk_count > 100, "{walk_count} walks");
     // The check reports robots that cannot move or turn at an edge, and a robot that turns in the wrong direction.
     let no_displacement = Displacement([0.0; 3]);
@@ -111,12 +92,10 @@ fn every_gait_keeps_its_distance_over_edges_and_blocks_and_its_turn_on_every_flo
     }
     let [left, right] =
         ["left", "right"].map(|gait| surface::find_level_displacement(&walk_results, gait));
-    assert_eq!(
-        surface::describe_excess_losses(Surface::Slope(8), left, right),
-        [
-            "-14.9 deg per cycle, 14.9 deg on a level floor; the fraction -1.00 must be at least 0.75"
-        ]
-    );
+    let messages = surface::describe_excess_losses(Surface::Slope(8), left, right);
+    let expected =
+        "-14.9 deg per cycle, 14.9 deg on a level floor; the fraction -1.00 must be at least 0.75";
+    assert_eq!(messages, [expected]);
 }
 
 #[test]
@@ -136,28 +115,22 @@ fn gaits_that_do_not_turn_on_the_spot_take_every_foot_across_the_edge() {
             // a wrong block.
             let (sin, cos) = block.rotation.to_radians().sin_cos();
             let half_length = block.size[1] / 2.0;
-            let edge = [
-                block.centre[0] + half_length * sin,
-                block.centre[1] - half_length * cos,
-            ];
+            let [x, y] = block.centre;
+            let edge = [x + half_length * sin, y - half_length * cos];
             let compute_distance_beyond =
                 |[right, forward]: [f64; 2]| (forward - edge[1]) * cos - (right - edge[0]) * sin;
             let mut pose = [0.0; 3];
             for [forward, left] in feet {
-                assert!(
-                    compute_distance_beyond([-left, forward]) < -20.0,
-                    "{name}: {gait} does not start before the edge"
-                );
+                let is_before = compute_distance_beyond([-left, forward]) < -20.0;
+                assert!(is_before, "{name}: {gait} does not start before the edge");
             }
             for _ in 0..crossing.cycle_count {
                 pose = move_pose(pose, level.0);
             }
             for [forward, left] in feet {
                 let [forward, left, _] = move_pose(pose, [forward, left, 0.0]);
-                assert!(
-                    compute_distance_beyond([-left, forward]) > 20.0,
-                    "{name}: {gait} does not end beyond the edge"
-                );
+                let is_beyond = compute_distance_beyond([-left, forward]) > 20.0;
+                assert!(is_beyond, "{name}: {gait} does not end beyond the edge");
             }
         }
     }
@@ -186,11 +159,8 @@ fn move_pose([x, y, heading]: [f64; 3], [forward, left, turn]: [f64; 3]) -> [f64
 fn results_of_all_assumptions_and_pad_shapes_are_stored_as_they_are_formatted() {
     let (stored_assumptions, shapes) = (assumptions::load_stored(), pads::load_stored());
     for Assumption { description, .. } in Assumption::ALL {
-        assert_eq!(
-            stored_assumptions[description].len(),
-            assumptions::GAITS.len(),
-            "{description}"
-        );
+        let gait_count = stored_assumptions[description].len();
+        assert_eq!(gait_count, assumptions::GAITS.len(), "{description}");
     }
     assert_eq!(stored_assumptions.len(), Assumption::ALL.len());
     for shape in PadShape::ALL {
@@ -202,17 +172,14 @@ fn results_of_all_assumptions_and_pad_shapes_are_stored_as_they_are_formatted() 
         ("pads.json", map_to_json(&shapes)),
         ("surfaces.json", nested_map_to_json(&surface::load_stored())),
     ] {
-        assert_eq!(
-            std::fs::read_to_string(crate_dir().join(file)).expect(file),
-            text
-        );
+        let stored_text = std::fs::read_to_string(crate_dir().join(file));
+        assert_eq!(stored_text.expect(file), text);
     }
     // The pads in robot.toml have the shape `30`; therefore surfaces.json must have the same displacements for `walk`.
-    let default_displacements = &shapes["30"];
     for surface in SURFACES {
         let name = surface.to_string();
-        let (mm, _) = default_displacements[&name]
-            .compute_difference(surface::load_stored()["paper"]["walk"][&name]);
+        let displacement = surface::load_stored()["paper"]["walk"][&name];
+        let (mm, _) = shapes["30"][&name].compute_difference(displacement);
         assert!(mm < 0.05, "{name}: {mm} mm");
     }
 }
@@ -224,39 +191,25 @@ fn every_walk_is_stored_and_agrees_with_the_model() {
     for name in ROBOT_NAMES {
         let robot = load_robot(name);
         for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
-            let find_results = |case| walk_results.get(name, gait.name(), case);
+            let gait = gait.name();
+            let find_results = |case| walk_results.get(name, gait, case);
             let is_determined =
                 find_results(Case::ALL[0]).is_some_and(|results| results.model.is_some());
             for case in Case::ALL {
                 let Some(results) = find_results(case) else {
-                    assert!(
-                        !is_determined && case != Case::ALL[0],
-                        "{name}: {}",
-                        gait.name()
-                    );
+                    let may_be_missing = !is_determined && case != Case::ALL[0];
+                    assert!(may_be_missing, "{name}: {gait}");
                     continue;
                 };
-                assert_eq!(
-                    results.describe_disagreement(case),
-                    None,
-                    "{name}: {}",
-                    gait.name()
-                );
-                assert_eq!(
-                    results.model.is_some(),
-                    is_determined,
-                    "{name}: {}",
-                    gait.name()
-                );
+                let disagreement = results.describe_disagreement(case);
+                assert_eq!(disagreement, None, "{name}: {gait}");
+                assert_eq!(results.model.is_some(), is_determined, "{name}: {gait}");
                 count += 1;
             }
         }
     }
-    assert_eq!(
-        walk_results.walk_count(),
-        count,
-        "no other walks may be stored"
-    );
+    let walk_count = walk_results.walk_count();
+    assert_eq!(walk_count, count, "no other walks may be stored");
 }
 
 #[test]
@@ -264,19 +217,15 @@ fn the_stored_results_of_the_model_are_up_to_date() {
     let (walk_results, robot) = (WalkResults::load_stored(), load_robot("paper"));
     let mut count = 0;
     for walk in list_walks(&robot) {
-        let results = walk_results
-            .get("paper", &walk.gait, walk.case)
-            .expect("the walk is stored");
+        let results = walk_results.get("paper", &walk.gait, walk.case);
+        let results = results.expect("the walk is stored");
         assert_eq!(results.model.is_some(), walk.is_determined, "{}", walk.gait);
         let (Some(stored), Some(computed)) = (results.model, walk.simulate_model(&robot)) else {
             continue;
         };
         let (mm, deg) = stored.compute_difference(computed);
-        assert!(
-            mm < 0.05 && deg < 0.05,
-            "{}: stored {stored:?}, computed {computed:?}",
-            walk.gait
-        );
+        let values = format!("stored {stored:?}, computed {computed:?}");
+        assert!(mm < 0.05 && deg < 0.05, "{}: {values}", walk.gait);
         count += 1;
     }
     assert!(count >= 40, "{count} walks");
@@ -288,22 +237,16 @@ fn a_foot_1_mm_too_long_costs_less_than_a_tenth_of_the_distance() {
     let legs = LegDrive::Rigid;
     let mut count = 0;
     for name in ROBOT_NAMES {
-        for gait in load_robot(name)
-            .gaits()
-            .iter()
-            .filter(|gait| gait.has_movement())
-        {
+        let robot = load_robot(name);
+        for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
             let find_results = |feet| walk_results.get(name, gait.name(), Case { legs, feet });
-            let (Some(level), Some(long)) = (
-                find_results(FootSetup::Level),
-                find_results(FootSetup::Soft),
-            ) else {
+            let results = [FootSetup::Level, FootSetup::Soft].map(find_results);
+            let [Some(level), Some(long)] = results else {
                 continue;
             };
-            let model = level.model.zip(long.model);
-            for (level_displacement, long_displacement) in
-                model.into_iter().chain([(level.mujoco, long.mujoco)])
-            {
+            let model = level.model.zip(long.model).into_iter();
+            let pairs = model.chain([(level.mujoco, long.mujoco)]);
+            for (level_displacement, long_displacement) in pairs {
                 let [(level_distance, level_turn), (long_distance, long_turn)] =
                     [level_displacement, long_displacement]
                         .map(|Displacement([x, y, turn])| (x.hypot(y), turn.abs()));
@@ -327,8 +270,8 @@ fn a_foot_1_mm_too_long_costs_less_than_a_tenth_of_the_distance() {
 
 #[test]
 fn robot_toml_accepts_every_key_of_the_trials() {
-    let text = std::fs::read_to_string(crate_dir().join("../../robots/paper.toml"))
-        .expect("robots/paper.toml is readable");
+    let text = std::fs::read_to_string(crate_dir().join("../../robots/paper.toml"));
+    let text = text.expect("robots/paper.toml is readable");
     let table = format_expected_table(&load_robot("paper"));
     let keys = table.lines().skip(2).map(|line| {
         let cell = line.rsplit(" | ").next().expect("a row has cells");
@@ -342,25 +285,15 @@ fn robot_toml_accepts_every_key_of_the_trials() {
         // is unknown.
         let invalid_text = match text.contains(&header) {
             true => {
-                let header_start = text.find(&header).expect("the text contains the header") + 1;
-                let body_start = header_start
-                    + text[header_start..]
-                        .find('\n')
-                        .expect("the header's line ends")
-                    + 1;
-                let end = text[body_start..]
-                    .find("\n[")
-                    .map_or(text.len(), |end| body_start + end);
-                let other_lines = text[body_start..end]
-                    .lines()
-                    .filter(|line| !line.starts_with(&format!("{name} ")));
-                let other_lines: Vec<&str> = other_lines.collect();
-                format!(
-                    "{}{name} = []\n{}{}",
-                    &text[..body_start],
-                    other_lines.join("\n"),
-                    &text[end..]
-                )
+                let (start, rest) = text
+                    .split_once(&header)
+                    .expect("the text contains the header");
+                let (comment, rest) = rest.split_once('\n').expect("the header's line ends");
+                let (body, end) = rest.split_at(rest.find("\n[").unwrap_or(rest.len()));
+                let is_other_line = |line: &&str| !line.starts_with(&format!("{name} "));
+                let other_lines: Vec<&str> = body.lines().filter(is_other_line).collect();
+                let other_lines = other_lines.join("\n");
+                format!("{start}{header}{comment}\n{name} = []\n{other_lines}{end}")
             }
             false if name == "force" => {
                 format!("{text}\n{section}]\nkind = \"strut\"\nrate = 0.4\n{name} = []\n")
@@ -369,10 +302,8 @@ fn robot_toml_accepts_every_key_of_the_trials() {
         };
         let message = Robot::parse(&invalid_text).expect_err(key).to_string();
         let path = format!("{}.{name}", section.trim_start_matches('['));
-        assert!(
-            message.contains(&path) && !message.contains("not a known key"),
-            "{message}"
-        );
+        let is_type_error = message.contains(&path) && !message.contains("not a known key");
+        assert!(is_type_error, "{message}");
         count += 1;
     }
     assert!(count >= 10, "{count} keys");

@@ -9,16 +9,18 @@ use lizard_physics::{crate_dir, load_robot};
 /// Returns a gait's speeds at a friction ratio: the model's, if the model has a result, and MuJoCo's. `component` is
 /// the index in the displacement: 0 for mm/s forward, 2 for deg/s of turn.
 fn compute_speeds(stored: &GrainResults, gait: &str, ratio: f64, component: usize) -> Vec<f64> {
-    let period = load_robot(grains::ROBOT)
-        .gait(gait)
-        .expect("the robot has this gait")
-        .period();
+    let robot = load_robot(grains::ROBOT);
+    let period = robot.gait(gait).expect("the robot has this gait").period();
     let index = RATIOS.iter().position(|known_ratio| *known_ratio == ratio);
     let results = stored[gait][index.expect("the table has the ratio")];
     let displacements = results.model.into_iter().chain([results.mujoco]);
-    displacements
-        .map(|displacement| displacement.0[component] / period)
-        .collect()
+    let speeds = displacements.map(|displacement| displacement.0[component] / period);
+    speeds.collect()
+}
+
+/// True if the model's and MuJoCo's speeds both exceed a minimum.
+fn are_both_above(speeds: &[f64], min_speed: f64) -> bool {
+    speeds.len() == 2 && speeds.iter().all(|speed| *speed > min_speed)
 }
 
 #[test]
@@ -34,13 +36,11 @@ fn the_documentation_and_the_robot_file_have_the_stored_speeds() {
 #[test]
 fn every_result_is_stored_as_it_is_formatted_and_agrees_with_the_model() {
     let stored = grains::load_stored();
-    let text =
-        std::fs::read_to_string(crate_dir().join("grains.json")).expect("grains.json is readable");
+    let text = std::fs::read_to_string(crate_dir().join("grains.json"));
+    let text = text.expect("grains.json is readable");
     assert_eq!(text, grains::to_json(&stored));
-    assert_eq!(
-        grains::describe_disagreements(&stored),
-        Vec::<String>::new()
-    );
+    let disagreements = grains::describe_disagreements(&stored);
+    assert_eq!(disagreements, Vec::<String>::new());
     for (gait, _) in GAITS {
         assert_eq!(stored[gait].len(), RATIOS.len(), "{gait}");
     }
@@ -58,10 +58,8 @@ fn the_stored_results_of_the_model_are_up_to_date() {
                 continue;
             };
             let (mm, deg) = stored_model.compute_difference(current_model);
-            assert!(
-                mm < 0.05 && deg < 0.05,
-                "{name} {ratio}: stored {stored_model:?}, computed {current_model:?}"
-            );
+            let values = format!("stored {stored_model:?}, computed {current_model:?}");
+            assert!(mm < 0.05 && deg < 0.05, "{name} {ratio}: {values}");
         }
     }
 }
@@ -69,29 +67,17 @@ fn the_stored_results_of_the_model_are_up_to_date() {
 #[test]
 fn the_robot_runs_at_90_mm_per_second_and_turns_on_pads_with_a_grain() {
     let stored = grains::load_stored();
-    assert_eq!(
-        load_robot(grains::ROBOT).ground().friction_ratio,
-        1.5,
-        "the friction ratio in robots/grain.toml"
-    );
-    let run_speeds = compute_speeds(&stored, "run", 1.5, 0);
-    assert!(
-        run_speeds.len() == 2 && run_speeds.iter().all(|mm| *mm > 90.0),
-        "run: {run_speeds:?} mm/s"
-    );
+    let ratio = load_robot(grains::ROBOT).ground().friction_ratio;
+    assert_eq!(ratio, 1.5, "the friction ratio in robots/grain.toml");
+    let speeds = compute_speeds(&stored, "run", 1.5, 0);
+    assert!(are_both_above(&speeds, 90.0), "run: {speeds:?} mm/s");
     for ratio in RATIOS {
-        let turn_speeds = compute_speeds(&stored, "arc-left", ratio, 2);
-        assert!(
-            turn_speeds.len() == 2 && turn_speeds.iter().all(|deg| *deg > 14.0),
-            "arc-left: {turn_speeds:?} deg/s"
-        );
+        let speeds = compute_speeds(&stored, "arc-left", ratio, 2);
+        assert!(are_both_above(&speeds, 14.0), "arc-left: {speeds:?} deg/s");
     }
     for (gait, component, min_speed) in [("left", 2, 14.0), ("back", 0, 30.0)] {
-        let gait_speeds = compute_speeds(&stored, gait, 1.5, component);
-        let is_fast = |speed: &f64| speed.abs() > min_speed;
-        assert!(
-            gait_speeds.len() == 2 && gait_speeds.iter().all(is_fast),
-            "{gait}: {gait_speeds:?}"
-        );
+        let speeds = compute_speeds(&stored, gait, 1.5, component);
+        let sizes: Vec<f64> = speeds.iter().map(|speed| speed.abs()).collect();
+        assert!(are_both_above(&sizes, min_speed), "{gait}: {speeds:?}");
     }
 }

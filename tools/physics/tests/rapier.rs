@@ -29,13 +29,8 @@ fn ground_with_280_g() -> GroundContact {
 fn assert_agreement(ground: &GroundContact, expected: &Displacements, max_mm: f64, max_deg: f64) {
     let paper = load_robot("paper");
     for (name, displacement) in GAITS.into_iter().zip(expected) {
-        let model_displacement = Displacement::from(
-            paper
-                .gait(name)
-                .expect("the robot has this gait")
-                .simulate_cycle(ground)
-                .travel,
-        );
+        let gait = paper.gait(name).expect("the robot has this gait");
+        let model_displacement = Displacement::from(gait.simulate_cycle(ground).travel);
         let (distance, turn) = model_displacement.compute_difference(Displacement(*displacement));
         assert!(
             distance <= max_mm && turn <= max_deg,
@@ -63,12 +58,8 @@ fn legs_mounted_outward_match_the_engine() {
         mount_angle: 45.0,
         ..ground.feet
     };
-    assert_agreement(
-        &GroundContact { feet, ..ground },
-        &MOUNTED_OUTWARD,
-        0.5,
-        0.3,
-    );
+    let ground = GroundContact { feet, ..ground };
+    assert_agreement(&ground, &MOUNTED_OUTWARD, 0.5, 0.3);
 }
 
 #[test]
@@ -86,10 +77,9 @@ fn the_tuned_gait_matches_rapier_and_is_faster_than_walk_in_mujoco() {
     };
     let walk_speed = compute_speed("paper", "walk", walk.period());
     let stride_speed = compute_speed("own-gaits", "stride", stride.period());
-    assert!(
-        stride_speed > 1.25 * walk_speed,
-        "walk {walk_speed:.1} mm/s, stride {stride_speed:.1} mm/s"
-    );
+    let is_faster = stride_speed > 1.25 * walk_speed;
+    let speeds = format!("walk {walk_speed:.1} mm/s, stride {stride_speed:.1} mm/s");
+    assert!(is_faster, "{speeds}");
 }
 
 /// The engine's displacements on rigid legs at a friction of 0.4.

@@ -12,29 +12,20 @@ fn the_model_matches_mujoco_for_lagging_servos() {
     let mut result_count = 0;
     for variant in Variant::ALL {
         for (gait, component) in GAITS {
-            let results = stored[variant.name][gait];
             let name = variant.name;
-            assert_eq!(
-                variant.describe_disagreement(gait, &results),
-                None,
-                "{name}, {gait}"
-            );
+            let results = stored[name][gait];
+            let disagreement = variant.describe_disagreement(gait, &results);
+            assert_eq!(disagreement, None, "{name}, {gait}");
             let stored_displacement = results.model.expect("the model has a displacement");
             let displacement = variant.simulate_model(gait);
             let error = (stored_displacement.0[component] - displacement.0[component]).abs();
-            assert!(
-                error < 0.05,
-                "{name}, {gait}: stored {stored_displacement:?}, computed {displacement:?}"
-            );
+            let values = format!("stored {stored_displacement:?}, computed {displacement:?}");
+            assert!(error < 0.05, "{name}, {gait}: {values}");
             // A halved displacement of MuJoCo must count as a disagreement.
             let mut halved_results = results;
             halved_results.mujoco.0[component] /= 2.0;
-            assert!(
-                variant
-                    .describe_disagreement(gait, &halved_results)
-                    .is_some(),
-                "{name}, {gait}"
-            );
+            let disagreement = variant.describe_disagreement(gait, &halved_results);
+            assert!(disagreement.is_some(), "{name}, {gait}");
             result_count += 1;
         }
     }

@@ -10,7 +10,7 @@ use crate::rule::Rule;
 const MAX_WAKE_TIME: Time = 600 * MS;
 
 /// Time during which no pulse may begin after an answer that promises no pulses.
-pub(crate) const NO_PULSES_TIME: Time = 140 * MS;
+const NO_PULSES_TIME: Time = 140 * MS;
 
 /// Longest time from `rest` until the complete record of the rest pose is in the EEPROM.
 const MAX_SAVE_TIME: Time = 400 * MS;
@@ -46,16 +46,9 @@ impl Observer {
             }
             Effect::Rest => {
                 if self.disturbed_until <= sent_at {
-                    self.pending_promises.no_pulses = Some((
-                        now + self.limits.max_frame_remainder,
-                        now + NO_PULSES_TIME,
-                        Rule::RestEndsPulses,
-                    ));
+                    self.forbid_pulses(Rule::RestEndsPulses);
                 }
-                let min_good_mv = self.limits.min_good_mv();
-                let is_good = self
-                    .supply
-                    .has_been_good_since(self.first_rest_at, min_good_mv);
+                let is_good = self.has_supply_been_good_since(self.first_rest_at);
                 let is_repeated = self.first_rest_at > self.started_at
                     && sent_at > self.first_rest_at + MAX_SAVE_TIME;
                 if is_repeated && is_good && self.limits.is_memory_reliable {
@@ -68,6 +61,17 @@ impl Observer {
         }
     }
 
+    /// Forbids pulses from the end of the frame on.
+    pub(crate) fn forbid_pulses(&mut self, rule: Rule) {
+        let from = self.now + self.limits.max_frame_remainder;
+        self.pending_promises.no_pulses = Some((from, self.now + NO_PULSES_TIME, rule));
+    }
+
+    fn has_supply_been_good_since(&self, time: Time) -> bool {
+        let min_good_mv = self.limits.min_good_mv();
+        self.supply.has_been_good_since(time, min_good_mv)
+    }
+
     /// Checks the promises whose time has ended.
     pub(crate) fn check_expired_promises(&mut self) {
         if let Some((from, until, has_pulses)) = self.pending_promises.motion
@@ -78,23 +82,18 @@ impl Observer {
             if let Some(servo) = missing_servo
                 && !self.was_disturbed_since(from)
             {
-                self.record_violation(
-                    Rule::MotionHasPulses,
-                    format!("A{} has no pulses", servo + 1),
-                );
+                let observation = format!("A{} has no pulses", servo + 1);
+                self.record_violation(Rule::MotionHasPulses, observation);
             }
         }
-        if let Some((until, answer)) = self
-            .pending_promises
-            .pulses_after_status
-            .take_if(|(until, _)| self.now > *until)
+        let promises = &mut self.pending_promises;
+        promises.no_writes_until.take_if(|until| self.now > *until);
+        let is_due = |(until, _): &mut (Time, String)| self.now > *until;
+        if let Some((until, answer)) = promises.pulses_after_status.take_if(is_due)
             && !self.was_disturbed_since(until - 600 * MS)
         {
             self.record_violation(Rule::StatusNamesCause, answer);
         }
-        self.pending_promises
-            .no_writes_until
-            .take_if(|until| self.now > *until);
     }
 
     /// Checks the promises about pulses at the start of a pulse.
@@ -119,10 +118,9 @@ impl Observer {
     /// been good, and main has been undisturbed for long enough to save the pose.
     pub(crate) fn must_keep_rest_pose(&self, servo: usize) -> bool {
         let pulse_start = self.servos[servo].last_complete_pulse_start;
-        let min_good_mv = self.limits.min_good_mv();
         self.limits.is_memory_reliable
             && self.now - pulse_start > MAX_SAVE_TIME
-            && self.supply.has_been_good_since(pulse_start, min_good_mv)
+            && self.has_supply_been_good_since(pulse_start)
             && self.disturbed_until <= pulse_start
             && !self.has_unsaved_settings
     }

@@ -20,12 +20,9 @@ impl Observer {
     /// Returns a value whose `Debug` output is the same for equivalent states.
     pub fn coarse_state(&self) -> impl fmt::Debug + use<> {
         let rounded_age = |time: Time| rounded_age_frames(self.now.saturating_sub(time));
-        let rounded_signed_age = |age: i64| {
-            if age > 0 {
-                i16::from(rounded_age_frames(age))
-            } else {
-                -i16::from(rounded_age_frames(-age)) - 1
-            }
+        let rounded_signed_age = |age: i64| match age > 0 {
+            true => i16::from(rounded_age_frames(age)),
+            false => -i16::from(rounded_age_frames(-age)) - 1,
         };
         let servos = self.servos.map(|servo| {
             let has_pulses = self.now - servo.last_start < 30 * MS;
@@ -39,10 +36,9 @@ impl Observer {
         });
         let last_pulse_at = self.servos.iter().map(|servo| servo.last_start).max();
         let last_pulse_age = last_pulse_at.map(rounded_age);
-        let frames_since_command = if self.deadman_time > 0 {
-            (self.now - self.last_command_at) / (20 * MS)
-        } else {
-            0
+        let frames_since_command = match self.deadman_time > 0 {
+            true => (self.now - self.last_command_at) / (20 * MS),
+            false => 0,
         };
         let is_within_ms = |time: Time, ms: Time| self.now - time < ms * MS;
         let recent_brown_outs = self

@@ -48,9 +48,8 @@ pub fn check_pattern(edges: &[(Time, bool)], from: Time, to: Time, code: u8) -> 
             if let Some(count) = flash_count
                 && count != code
             {
-                return Err(format!(
-                    "fault {code}: expected {code} flashes, got {count}"
-                ));
+                let message = format!("fault {code}: expected {code} flashes, got {count}");
+                return Err(message);
             }
             flash_count = Some(0);
         } else if code > 0 || !BLINK_MS.contains(&ms) {

@@ -161,11 +161,8 @@ impl Observer {
     /// Observes the pulses of a frame and the frame's end. `widths` are the pulse widths of A1 to A4 in cycles, 0 for
     /// no pulse.
     pub fn observe_frame(&mut self, start: Time, widths: [u16; 4]) {
-        for (servo, width) in widths
-            .into_iter()
-            .enumerate()
-            .filter(|(_, width)| *width > 0)
-        {
+        let servo_widths = widths.into_iter().enumerate();
+        for (servo, width) in servo_widths.filter(|(_, width)| *width > 0) {
             let pulse = Pulse {
                 servo,
                 width: width.into(),
@@ -184,10 +181,8 @@ impl Observer {
     /// # Errors
     /// Returns the first violation.
     pub fn take_verdict(&mut self) -> Result<(), Violation> {
-        self.take_violations()
-            .into_iter()
-            .next()
-            .map_or(Ok(()), Err)
+        let mut violations = self.take_violations().into_iter();
+        violations.next().map_or(Ok(()), Err)
     }
 
     /// Returns all violations since the last call, and forgets them.
@@ -224,21 +219,18 @@ impl Observer {
     /// [`Limits::levels_mv`].
     pub fn was_supply_low(&self, level_index: usize, duration: Time) -> bool {
         let mv = self.limits.levels_mv[level_index];
-        self.supply
-            .time_below(mv, self.now - duration, self.now + 1)
-            > 0
+        let since = self.now - duration;
+        self.supply.time_below(mv, since, self.now + 1) > 0
     }
 
     /// The time until the last pending promise is due; `None` if no promise is pending.
     pub fn time_until_promises_due(&self) -> Option<Time> {
         let promises = &self.pending_promises;
+        let pulses_after_status = promises.pulses_after_status.as_ref();
         let ends = [
             promises.motion.map(|(_, until, _)| until),
             promises.no_pulses.map(|(_, until, _)| until),
-            promises
-                .pulses_after_status
-                .as_ref()
-                .map(|(until, _)| *until),
+            pulses_after_status.map(|(until, _)| *until),
             promises.no_writes_until,
         ];
         ends.into_iter().flatten().max().map(|end| end - self.now)
@@ -354,10 +346,9 @@ impl Observer {
         let now = self.now;
         // A brown-out may last a long time, so the program hung if a disturbance came shortly before the brown-out
         // began.
-        let ran_until = if cause == Cause::BrownOut {
-            self.cut_at.max(self.started_at)
-        } else {
-            now
+        let ran_until = match cause {
+            Cause::BrownOut => self.cut_at.max(self.started_at),
+            _ => now,
         };
         let has_hung = cause == Cause::Watchdog || self.disturbed_until > ran_until - 300 * MS;
         self.check_reset(cause);
@@ -386,16 +377,11 @@ impl Observer {
         self.unfinished_motion_count = 0;
         self.permission
             .record_start(cause, now, self.limits.can_boot_to_rest);
-        let is_rest_promised = matches!(
-            self.pending_promises.no_pulses,
-            Some((.., Rule::RestEndsPulses))
-        );
-        let no_pulses = self
-            .pending_promises
-            .no_pulses
-            .filter(|_| is_rest_promised && cause != Cause::Power);
+        let survives = |(.., rule): &(Time, Time, Rule)| {
+            *rule == Rule::RestEndsPulses && cause != Cause::Power
+        };
         self.pending_promises = PendingPromises {
-            no_pulses,
+            no_pulses: self.pending_promises.no_pulses.filter(survives),
             ..PendingPromises::default()
         };
         self.reports.record_start(cause, now);
@@ -414,11 +400,8 @@ impl Observer {
             // 100 ms is the first stage of the watchdog minus the frame in which main last reset the watchdog. The
             // pulses end after the first stage, and the reset follows after the second stage.
             if stalled_time < 100 * MS {
-                let ms = stalled_time / MS;
-                self.record_violation(
-                    Rule::NoNeedlessReset,
-                    format!("main was stalled for only {ms} ms"),
-                );
+                let observation = format!("main was stalled for only {} ms", stalled_time / MS);
+                self.record_violation(Rule::NoNeedlessReset, observation);
             }
         }
         if cause == Cause::BrownOut {
@@ -451,11 +434,8 @@ impl Observer {
             self.reports.record_motion_command(is_accepted.is_some());
             self.unfinished_motion_count += 1;
         }
-        let is_undisturbed = self.disturbed_until <= self.now;
-        self.permission.record_motion_command(
-            self.now,
-            effect,
-            is_accepted.is_some() && is_undisturbed,
-        );
+        let is_certain = is_accepted.is_some() && self.disturbed_until <= self.now;
+        self.permission
+            .record_motion_command(self.now, effect, is_certain);
     }
 }

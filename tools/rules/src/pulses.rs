@@ -169,11 +169,7 @@ impl ServoHistory {
             Interruption::Nothing if !were_pulses_permitted && is_rest_pose_saved => {
                 Interruption::ResetInRest
             }
-            Interruption::Nothing | Interruption::Reset
-                if were_pulses_permitted && keeps_position =>
-            {
-                Interruption::Reset
-            }
+            Interruption::Nothing if were_pulses_permitted && keeps_position => Interruption::Reset,
             Interruption::ResetInRest => Interruption::ResetInRest,
             Interruption::Reset if keeps_position => Interruption::Reset,
             _ => Interruption::Unknown,
@@ -209,13 +205,14 @@ impl Observer {
                 "{name} gets pulses of {} and then {} cycles",
                 servo.last_complete_width, pulse.width
             );
-            match servo.interruption {
-                Interruption::Nothing => self.record_violation(Rule::SlewLimit, observation),
-                Interruption::Reset => self.record_violation(Rule::NoStepByReset, observation),
-                Interruption::ResetInRest => {
-                    self.record_violation(Rule::WakesInRestPose, observation)
-                }
-                Interruption::Unknown => {}
+            let rule = match servo.interruption {
+                Interruption::Nothing => Some(Rule::SlewLimit),
+                Interruption::Reset => Some(Rule::NoStepByReset),
+                Interruption::ResetInRest => Some(Rule::WakesInRestPose),
+                Interruption::Unknown => None,
+            };
+            if let Some(rule) = rule {
+                self.record_violation(rule, observation);
             }
         }
         if is_complete && !is_first && change > MAX_STEADY_CHANGE {
@@ -228,10 +225,9 @@ impl Observer {
             *servo = ServoHistory {
                 last_complete_width: pulse.width,
                 last_complete_pulse_start: now,
-                interruption: if servo.blocked_until > now {
-                    Interruption::Unknown
-                } else {
-                    Interruption::Nothing
+                interruption: match servo.blocked_until > now {
+                    true => Interruption::Unknown,
+                    false => Interruption::Nothing,
                 },
                 was_hung: false,
                 is_position_lost: false,
@@ -301,29 +297,23 @@ impl Observer {
         }
         if is_soon && !(is_after_hang && was_after_hang) {
             let ms = (now - last_wake_at) / MS;
-            self.record_violation(
-                Rule::WakeOneByOne,
-                format!("{name} wakes {ms} ms after another servo"),
-            );
+            let observation = format!("{name} wakes {ms} ms after another servo");
+            self.record_violation(Rule::WakeOneByOne, observation);
         }
         self.last_wake = (pulse.servo, now, is_after_hang);
     }
 
     /// Checks the end of all pulses: without another cause, the program hung, and a reset must follow.
     pub(crate) fn check_end_of_pulses(&mut self) {
-        let Some(end) = self.servos.iter().map(|servo| servo.last_end).max() else {
-            return;
-        };
-        if self.is_pulse_end_checked
-            || self.now - end < MAX_TIME_TO_RESET + self.limits.max_routine_rest
-        {
+        let ends = self.servos.map(|servo| servo.last_end);
+        let end = ends.into_iter().fold(NEVER, Time::max);
+        let max_pause = MAX_TIME_TO_RESET + self.limits.max_routine_rest;
+        if self.is_pulse_end_checked || self.now - end < max_pause {
             return;
         }
         self.is_pulse_end_checked = true;
-        let [_, stop_mv, rest_mv] = self
-            .limits
-            .levels_mv
-            .map(|mv| mv + self.limits.supply_error_mv);
+        let error_mv = self.limits.supply_error_mv;
+        let [_, stop_mv, rest_mv] = self.limits.levels_mv.map(|mv| mv + error_mv);
         let has_reason = self.rest_command_at > end - 400 * MS
             || self.cut_at > end - 25 * MS
             || self.started_at > end - 25 * MS
@@ -334,10 +324,8 @@ impl Observer {
             || self.reports.reported_at > end;
         if !has_reason {
             let ms = (self.now - end) / MS;
-            self.record_violation(
-                Rule::ResetAfterHang,
-                format!("no pulses for {ms} ms, and no reset"),
-            );
+            let observation = format!("no pulses for {ms} ms, and no reset");
+            self.record_violation(Rule::ResetAfterHang, observation);
         }
     }
 }

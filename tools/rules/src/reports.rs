@@ -4,7 +4,6 @@ use lizard_core::console::word::{Effect, Word};
 use lizard_core::memory::restart::Cause;
 use lizard_core::virtual_board::is_answer;
 
-use crate::answers::NO_PULSES_TIME;
 use crate::event::{MS, NEVER, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
@@ -84,10 +83,9 @@ impl Observer {
                 let silence = first_byte_at - self.last_command_at;
                 if (self.limits.max_queue_time..self.deadman_time).contains(&silence) {
                     let (silence_ms, deadman_ms) = (silence / MS, self.deadman_time / MS);
-                    self.record_violation(
-                        Rule::DeadmanNotEarly,
-                        format!("deadman {deadman_ms}, but stopped after {silence_ms} ms"),
-                    );
+                    let observation =
+                        format!("deadman {deadman_ms}, but stopped after {silence_ms} ms");
+                    self.record_violation(Rule::DeadmanNotEarly, observation);
                 }
             }
         }
@@ -179,19 +177,13 @@ impl Observer {
             self.reports.is_reported = true;
         }
         if gait == Some("rest") {
-            self.pending_promises.no_pulses = Some((
-                now + self.limits.max_frame_remainder,
-                now + NO_PULSES_TIME,
-                Rule::NoPulsesInRest,
-            ));
+            self.forbid_pulses(Rule::NoPulsesInRest);
         } else if !has_fault
             && self.last_motion_command_at < now - 400 * MS
             && !self.was_disturbed_since(now - 400 * MS)
         {
-            let has_no_pulses = self
-                .servos
-                .iter()
-                .all(|servo| servo.last_start < now - 200 * MS);
+            let mut servos = self.servos.iter();
+            let has_no_pulses = servos.all(|servo| servo.last_start < now - 200 * MS);
             self.pending_promises.pulses_after_status =
                 has_no_pulses.then(|| (now + 200 * MS, answer.to_owned()));
         }

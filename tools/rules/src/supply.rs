@@ -58,17 +58,14 @@ impl SupplyHistory {
         let ends = self.voltages.iter().skip(1).map(|(time, _)| *time);
         let spans = self.voltages.iter().zip(ends.chain([Time::MAX]));
         let low_spans = spans.filter(|((_, span_mv), _)| *span_mv < mv);
-        low_spans
-            .map(|((start, _), end)| (end.min(to) - (*start).max(from)).max(0))
-            .sum()
+        let low_times = low_spans.map(|((start, _), end)| end.min(to) - (*start).max(from));
+        low_times.map(|time| time.max(0)).sum()
     }
 
     /// True if the supply has been below `mv` since a time.
     pub(crate) fn has_been_low_since(&self, mv: u32, since: Time) -> bool {
-        let last_above = self
-            .voltages
-            .iter()
-            .rposition(|(_, span_mv)| *span_mv >= mv);
+        let is_above = |(_, span_mv): &(Time, u32)| *span_mv >= mv;
+        let last_above = self.voltages.iter().rposition(is_above);
         let first_low = self.voltages.get(last_above.map_or(0, |index| index + 1));
         first_low.is_some_and(|(start, _)| *start <= since)
     }
@@ -99,10 +96,8 @@ impl Observer {
         let low_time = self.supply.time_below(level_mv, from, self.now);
         if low_time < MIN_LOW_TIME {
             let ms = low_time / MS;
-            self.record_violation(
-                Rule::LowForSixFrames,
-                format!("{report:?}, but the supply was low for only {ms} ms"),
-            );
+            let observation = format!("{report:?}, but the supply was low for only {ms} ms");
+            self.record_violation(Rule::LowForSixFrames, observation);
         }
     }
 
@@ -111,25 +106,18 @@ impl Observer {
         let now = self.now;
         if now - self.started_at < FIRST_READING_TIME {
             let us = (now - self.started_at) / 16;
-            self.record_violation(
-                Rule::SafeWrites,
-                format!("a byte is written {us} us after the start"),
-            );
+            let observation = format!("a byte is written {us} us after the start");
+            self.record_violation(Rule::SafeWrites, observation);
         }
         let slow_mv = self.limits.levels_mv[0].saturating_sub(self.limits.supply_error_mv);
         // The main loop takes no readings while it is stalled.
         let since = now - MAX_LOW_DETECTION_TIME - self.stalled_time_before(now);
         if self.supply.has_been_low_since(slow_mv, since) {
-            self.record_violation(
-                Rule::SafeWrites,
-                "a byte is written while the supply is too low",
-            );
+            let observation = "a byte is written while the supply is too low";
+            self.record_violation(Rule::SafeWrites, observation);
         }
-        if self
-            .pending_promises
-            .no_writes_until
-            .is_some_and(|until| now < until)
-        {
+        let no_writes_until = self.pending_promises.no_writes_until;
+        if no_writes_until.is_some_and(|until| now < until) {
             self.record_violation(Rule::SecondRestWritesNothing, "a byte is written");
         }
     }

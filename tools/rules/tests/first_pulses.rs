@@ -67,11 +67,8 @@ fn observer_of_hung_robot(rest_ms: Time) -> Observer {
 }
 
 fn take_violated_rules(observer: &mut Observer) -> Vec<Rule> {
-    let violations = observer.take_violations();
-    violations
-        .into_iter()
-        .map(|violation| violation.rule)
-        .collect()
+    let violations = observer.take_violations().into_iter();
+    violations.map(|violation| violation.rule).collect()
 }
 
 #[test]
@@ -79,11 +76,8 @@ fn a_rest_in_or_soon_after_a_hang_does_not_forbid_the_pulses_of_the_next_frame()
     for rest_ms in [500, 620] {
         let mut observer = observer_of_hung_robot(rest_ms);
         observe_pulses_of_all_servos(&mut observer, 625);
-        assert_eq!(
-            take_violated_rules(&mut observer),
-            [],
-            "rest at {rest_ms} ms"
-        );
+        let violated_rules = take_violated_rules(&mut observer);
+        assert_eq!(violated_rules, [], "rest at {rest_ms} ms");
     }
 }
 

@@ -58,19 +58,14 @@ impl LiftedBoard {
     fn slide_distances(&self, seconds: f64) -> Vec<f64> {
         let (mut distance_mm, mut speed_mm_s) = (0.0, 0.0);
         let advance = |step: usize| {
-            let (sin, cos) = self
-                .tilt_deg_at(step as f64 * STEP_S)
-                .to_radians()
-                .sin_cos();
-            let friction = if speed_mm_s > 0.0 {
-                self.sliding_friction
-            } else {
-                self.static_friction
+            let tilt_deg = self.tilt_deg_at(step as f64 * STEP_S);
+            let (sin, cos) = tilt_deg.to_radians().sin_cos();
+            let friction = match speed_mm_s > 0.0 {
+                true => self.sliding_friction,
+                false => self.static_friction,
             };
-            speed_mm_s = f64::max(
-                0.0,
-                speed_mm_s + GRAVITY_MM_S2 * (sin - friction * cos) * STEP_S,
-            );
+            let new_speed_mm_s = speed_mm_s + GRAVITY_MM_S2 * (sin - friction * cos) * STEP_S;
+            speed_mm_s = f64::max(0.0, new_speed_mm_s);
             distance_mm = f64::min(STOP_DISTANCE_MM, distance_mm + speed_mm_s * STEP_S);
             distance_mm
         };
@@ -101,21 +96,15 @@ impl LiftedBoard {
             let heading = PI + self.head_direction_deg.to_radians();
             let (sin, cos) = (PI + self.slide_direction_deg.to_radians()).sin_cos();
             let pose_at = |time: f64| {
-                [
-                    55.0 + distance_at(time) * cos,
-                    5.0 + distance_at(time) * sin,
-                    heading,
-                ]
+                let distance = distance_at(time);
+                [55.0 + distance * cos, 5.0 + distance * sin, heading]
             };
             let background = tilted_studio.render_background(&mut rng);
-            use_frame(
-                seconds,
-                &background.render_frame(seconds, pose_at, &mut rng),
-            );
-            seconds += if distance_at(seconds + 0.25) > 0.5 {
-                1.0 / frames_per_s
-            } else {
-                0.2
+            let frame = background.render_frame(seconds, pose_at, &mut rng);
+            use_frame(seconds, &frame);
+            seconds += match distance_at(seconds + 0.25) > 0.5 {
+                true => 1.0 / frames_per_s,
+                false => 0.2,
             };
         }
     }
@@ -125,12 +114,7 @@ impl LiftedBoard {
 pub fn small_studio() -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(5));
     (studio.size, studio.focal_length) = ([640, 480], 0.85);
-    (
-        studio.camera_height,
-        studio.camera_tilt,
-        studio.camera_direction,
-    ) = (850.0, 12.0, 90.0);
-    (studio.camera_roll, studio.aim) = (0.0, [0.0; 2]);
+    studio.aim_camera(850.0, 12.0);
     // A robot that is not aligned with the strips needs more room between them.
     studio.strips = [[5.0, -180.0, 0.03], [-5.0, 180.0, PI - 0.02]];
     studio.exposure_s = 1.0 / 250.0;

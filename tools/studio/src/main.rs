@@ -25,23 +25,15 @@ const JPEG_QUALITY: u8 = 85;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = env::args().skip(1);
-    let mut next_argument = || {
-        arguments
-            .next()
-            .ok_or("usage: studio FOLDER WIDTH CYCLES [HIDDEN_TAG]...")
-    };
+    let usage = "usage: studio FOLDER WIDTH CYCLES [HIDDEN_TAG]...";
+    let mut next_argument = || arguments.next().ok_or(usage);
     let folder = PathBuf::from(next_argument()?);
-    let (width, cycle_count): (usize, usize) =
-        (next_argument()?.parse()?, next_argument()?.parse()?);
+    let width: usize = next_argument()?.parse()?;
+    let cycle_count: usize = next_argument()?.parse()?;
     let rng = &mut Rng::with_seed(4);
     let mut studio = Studio::random(rng);
     (studio.size, studio.focal_length) = ([width, width * 9 / 16], 0.95);
-    (
-        studio.camera_height,
-        studio.camera_tilt,
-        studio.camera_direction,
-    ) = (800.0, 15.0, 90.0);
-    (studio.camera_roll, studio.aim) = (0.0, [0.0; 2]);
+    studio.aim_camera(800.0, 15.0);
     studio.deck_tag_height = 95.0;
     studio.covered_tags = arguments.map(|id| id.parse()).collect::<Result<_, _>>()?;
     let gait = paper_gait("walk");
@@ -56,9 +48,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let frames_dir = folder.join("frames");
     fs::create_dir_all(&frames_dir)?;
     let [video_width, video_height] = studio.size;
-    let mut video =
-        format!("YUV4MPEG2 W{video_width} H{video_height} F{FRAMES_PER_S}:1 Ip A1:1 C420jpeg\n")
-            .into_bytes();
+    let header =
+        format!("YUV4MPEG2 W{video_width} H{video_height} F{FRAMES_PER_S}:1 Ip A1:1 C420jpeg\n");
+    let mut video = header.into_bytes();
     for i in 0..(walk.duration_s() * f64::from(FRAMES_PER_S)) as usize {
         let seconds = i as f64 / f64::from(FRAMES_PER_S);
         let frame = background.render_frame(seconds, |time| walk.pose_at(time), rng);
@@ -69,9 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         video.resize(video.len() + video_width * video_height / 2, NEUTRAL_CHROMA);
     }
     fs::write(folder.join("video.y4m"), video)?;
-    let truth_json = format!(
-        "{{\"forward\":{},\"left\":{},\"turn\":{}}}\n",
-        truth.forward, truth.left, truth.turn
-    );
+    let (forward, left, turn) = (truth.forward, truth.left, truth.turn);
+    let truth_json = format!("{{\"forward\":{forward},\"left\":{left},\"turn\":{turn}}}\n");
     Ok(fs::write(folder.join("truth.json"), truth_json)?)
 }

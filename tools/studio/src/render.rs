@@ -100,15 +100,12 @@ impl Studio {
         let [half_length, half_width] = sheet::STRIP_SIZE.map(|length| length / 2.0);
         self.strips.iter().all(|&[x, y, heading]| {
             let (sin, cos) = heading.sin_cos();
-            [
-                [half_length, half_width],
-                [half_length, -half_width],
-                [-half_length, half_width],
-                [-half_length, -half_width],
-            ]
-            .into_iter()
-            .map(|[u, v]| optics.project([x + u * cos - v * sin, y + u * sin + v * cos], 0.0))
-            .all(|pixel| (0..2).all(|i| (0.0..self.size[i] as f64).contains(&pixel[i])))
+            let corners =
+                [half_length, -half_length].map(|u| [half_width, -half_width].map(|v| [u, v]));
+            corners.into_iter().flatten().all(|[u, v]| {
+                let pixel = optics.project([x + u * cos - v * sin, y + u * sin + v * cos], 0.0);
+                (0..2).all(|i| (0.0..self.size[i] as f64).contains(&pixel[i]))
+            })
         })
     }
 
@@ -151,12 +148,17 @@ impl Studio {
         }
     }
 
+    /// Makes the camera look at the origin from this height and tilt, with the strips level in the frame.
+    pub fn aim_camera(&mut self, camera_height: f64, camera_tilt: f64) {
+        (self.camera_height, self.camera_tilt) = (camera_height, camera_tilt);
+        (self.camera_direction, self.camera_roll) = (90.0, 0.0);
+        self.aim = [0.0; 2];
+    }
+
     /// Returns the camera's position and its axes (right, down, forward), in the axes of the tilted board.
     fn camera(&self) -> (Vector, [Vector; 3]) {
-        let (tilt, direction) = (
-            self.camera_tilt.to_radians(),
-            self.camera_direction.to_radians(),
-        );
+        let tilt = self.camera_tilt.to_radians();
+        let direction = self.camera_direction.to_radians();
         let horizontal = [tilt.sin() * direction.cos(), tilt.sin() * direction.sin()];
         let forward = [horizontal[0], horizontal[1], -tilt.cos()];
         let distance = self.camera_height / tilt.cos();
@@ -206,21 +208,20 @@ impl Studio {
                 let [u, v] = LocalAxes::new(self.strips[strip]).to_local(pixel_centre);
                 u.abs() < sheet::STRIP_SIZE[0] && v.abs() < sheet::STRIP_SIZE[1]
             });
-            *grey = if is_near {
-                average_over_pixel(|dx, dy| {
-                    self.floor_grey_at(optics.point_at_height([x + dx, y + dy], 0.0))
-                }) as f32
-            } else {
-                self.floor_grey as f32
+            let sample = |dx: f64, dy: f64| {
+                self.floor_grey_at(optics.point_at_height([x + dx, y + dy], 0.0))
+            };
+            *grey = match is_near {
+                true => average_over_pixel(sample) as f32,
+                false => self.floor_grey as f32,
             };
         }
+        let noise = (0..NOISE_COUNT).map(|_| (self.noise * random_normal(rng)) as f32);
         Background {
             studio: self.clone(),
             optics,
             grey_levels,
-            noise: (0..NOISE_COUNT)
-                .map(|_| (self.noise * random_normal(rng)) as f32)
-                .collect(),
+            noise: noise.collect(),
         }
     }
 
@@ -240,11 +241,8 @@ impl Studio {
             for id in 2 * strip..2 * strip + 2 {
                 let [x, y] = sheet::centre_on_strip(id);
                 if let Some(grey) = tag_grey_at(id, [u - self.tag_distance_factor * x, v - y]) {
-                    return if self.covered_tags.contains(&id) {
-                        BLACK_GREY
-                    } else {
-                        grey
-                    };
+                    let is_covered = self.covered_tags.contains(&id);
+                    return if is_covered { BLACK_GREY } else { grey };
                 }
             }
             return PAPER_GREY;
@@ -289,11 +287,8 @@ struct Optics {
 impl Optics {
     /// Returns the point that a pixel shows at a height: the intersection of the pixel's ray with the plane at that
     /// height.
-    fn point_at_height(&self, [x, y]: [f64; 2], height: f64) -> [f64; 2] {
-        let distorted = [
-            (x - self.image_centre[0]) / self.focal_length,
-            (y - self.image_centre[1]) / self.focal_length,
-        ];
+    fn point_at_height(&self, pixel: [f64; 2], height: f64) -> [f64; 2] {
+        let distorted = [0, 1].map(|i| (pixel[i] - self.image_centre[i]) / self.focal_length);
         // Inverts the lens distortion by iteration, which converges fast because the distortion is small.
         let [mut u, mut v] = distorted;
         for _ in 0..3 {
@@ -303,26 +298,18 @@ impl Optics {
         let [right, down, forward] = &self.axes;
         let ray = [0, 1, 2].map(|i| forward[i] + u * right[i] + v * down[i]);
         let distance = (height - self.eye[2]) / ray[2];
-        [
-            self.eye[0] + distance * ray[0],
-            self.eye[1] + distance * ray[1],
-        ]
+        [0, 1].map(|i| self.eye[i] + distance * ray[i])
     }
 
     /// Returns the pixel that shows a point at a height.
     fn project(&self, [x, y]: [f64; 2], height: f64) -> [f64; 2] {
         let offset = [x - self.eye[0], y - self.eye[1], height - self.eye[2]];
         let component_along = |axis: &Vector| (0..3).map(|i| axis[i] * offset[i]).sum::<f64>();
-        let [right, down, forward] = &self.axes;
-        let [u, v] = [
-            component_along(right) / component_along(forward),
-            component_along(down) / component_along(forward),
-        ];
+        let [right, down, depth] = [0, 1, 2].map(|i| component_along(&self.axes[i]));
+        let [u, v] = [right / depth, down / depth];
         let distance = self.focal_length * self.distortion_factor(u, v);
-        [
-            self.image_centre[0] + distance * u,
-            self.image_centre[1] + distance * v,
-        ]
+        let [x, y] = self.image_centre;
+        [x + distance * u, y + distance * v]
     }
 
     /// Returns the factor by which the lens changes a point's distance from the axis.
@@ -360,26 +347,20 @@ impl Background {
             sheet::CARD_SIZE[0] / 2.0 + 2.0,
             sheet::CARD_SIZE[1] - sheet::DECK_TAG_EDGE / 2.0 + 2.0,
         ];
-        self.for_each_pixel(
-            middle_pose,
-            card_half_size,
-            studio.deck_tag_height,
-            |i, [x, y]| {
-                let poses = &rows[i / width];
-                let background_grey = f64::from(grey_levels[i]);
-                let card_grey = |pose: &LocalAxes| {
-                    average_over_pixel(|dx, dy| {
-                        let point = pose.to_robot(
-                            self.optics
-                                .point_at_height([x + dx, y + dy], studio.deck_tag_height),
-                        );
-                        studio.card_grey_at(point).unwrap_or(background_grey)
-                    })
-                };
-                grey_levels[i] =
-                    (poses.iter().map(card_grey).sum::<f64>() / SHUTTER_SAMPLES as f64) as f32;
-            },
-        );
+        let card_height = studio.deck_tag_height;
+        self.for_each_pixel(middle_pose, card_half_size, card_height, |i, [x, y]| {
+            let poses = &rows[i / width];
+            let background_grey = f64::from(grey_levels[i]);
+            let card_grey = |pose: &LocalAxes| {
+                average_over_pixel(|dx, dy| {
+                    let point = self.optics.point_at_height([x + dx, y + dy], card_height);
+                    let grey = studio.card_grey_at(pose.to_robot(point));
+                    grey.unwrap_or(background_grey)
+                })
+            };
+            grey_levels[i] =
+                (poses.iter().map(card_grey).sum::<f64>() / SHUTTER_SAMPLES as f64) as f32;
+        });
         let mut grey = Vec::with_capacity(grey_levels.len());
         for (i, pixels) in grey_levels.chunks(NOISE_RUN_LENGTH).enumerate() {
             let (row, column) = (i * NOISE_RUN_LENGTH / width, i * NOISE_RUN_LENGTH % width);
@@ -387,12 +368,8 @@ impl Background {
                 (row as f64 / height as f64 + column as f64 / width as f64) / 2.0;
             let brightness = (studio.light * (1.0 - studio.shading * diagonal_fraction)) as f32;
             let noise = &self.noise[rng.usize(..NOISE_COUNT - NOISE_RUN_LENGTH)..];
-            grey.extend(
-                pixels
-                    .iter()
-                    .zip(noise)
-                    .map(|(grey, noise)| (grey * brightness + noise + 0.5) as u8),
-            );
+            let noisy_pixels = pixels.iter().zip(noise);
+            grey.extend(noisy_pixels.map(|(grey, noise)| (grey * brightness + noise + 0.5) as u8));
         }
         Frame::new(width, height, grey).expect("the frame has a grey for each pixel")
     }
@@ -408,11 +385,9 @@ impl Background {
     ) {
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[a, b]| {
             let (right, forward) = (a * half_size[0], b * half_size[1]);
-            let floor = [
-                x + forward * cos + right * sin,
-                y + forward * sin - right * cos,
-            ];
-            self.optics.project(floor, height)
+            let floor_x = x + forward * cos + right * sin;
+            let floor_y = y + forward * sin - right * cos;
+            self.optics.project([floor_x, floor_y], height)
         });
         let size = self.studio.size;
         let pixel_range = |i: usize| {
@@ -444,12 +419,10 @@ fn tag_grey_at(id: usize, [x, y]: [f64; 2]) -> Option<f64> {
     let [column, row] = [x / cell + half_count, half_count - y / cell].map(f64::floor);
     let tag_range = 0.0..sheet::CELLS_PER_SIDE as f64;
     let is_inside = tag_range.contains(&column) && tag_range.contains(&row);
-    is_inside.then(
-        || match sheet::is_white(id, row as usize, column as usize) {
-            true => PAPER_GREY,
-            false => BLACK_GREY,
-        },
-    )
+    is_inside.then(|| {
+        let is_white = sheet::is_white(id, row as usize, column as usize);
+        if is_white { PAPER_GREY } else { BLACK_GREY }
+    })
 }
 
 /// The axes of a pose: the origin, and the cosine and sine of the heading.

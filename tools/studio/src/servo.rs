@@ -116,10 +116,9 @@ impl Servo {
             };
             use_frame(seconds, &background.render_frame(seconds, pose_at, rng));
             let turn = card_angles.angle_at(seconds + 0.25) - card_angles.angle_at(seconds - 0.08);
-            seconds += if turn.abs() > 30.0 {
-                1.0 / frames_per_s
-            } else {
-                0.2
+            seconds += match turn.abs() > 30.0 {
+                true => 1.0 / frames_per_s,
+                false => 0.2,
             };
         }
     }
@@ -142,10 +141,9 @@ impl Servo {
                 let max_step = self.slew_rate * PULSE_INTERVAL_S;
                 pulse + (commanded - pulse).clamp(-max_step, max_step)
             } else {
-                let command_start = COMMAND_INTERVAL * index as f64;
-                let fraction = ((seconds - command_start)
-                    / (MOVE_PULSES as f64 * PULSE_INTERVAL_S))
-                    .clamp(0.0, 1.0);
+                let move_seconds = seconds - COMMAND_INTERVAL * index as f64;
+                let fraction = move_seconds / (MOVE_PULSES as f64 * PULSE_INTERVAL_S);
+                let fraction = fraction.clamp(0.0, 1.0);
                 start_pulse
                     + (commanded - start_pulse) * fraction * fraction * (3.0 - 2.0 * fraction)
             };

@@ -75,17 +75,16 @@ impl Walk {
         for _ in 0..cycle_count {
             let mut cycle_deviations = [[0.0; 3]; PARTS_PER_CYCLE + 1];
             for i in 1..=PARTS_PER_CYCLE {
-                let step = variation
-                    .cycle_deviation
-                    .map(|sigma| sigma * random_normal(rng) / (PARTS_PER_CYCLE as f64).sqrt());
+                let divisor = (PARTS_PER_CYCLE as f64).sqrt();
+                let deviation = variation.cycle_deviation;
+                let step = deviation.map(|sigma| sigma * random_normal(rng) / divisor);
                 cycle_deviations[i] =
                     [0, 1, 2].map(|axis| cycle_deviations[i - 1][axis] + step[axis]);
             }
             let start_pose = cycle_starts[cycle_starts.len() - 1];
-            cycle_starts.push(compose(
-                compose(start_pose, gait.path[gait.path.len() - 1]),
-                to_body_pose(cycle_deviations[PARTS_PER_CYCLE]),
-            ));
+            let gait_end = compose(start_pose, gait.path[gait.path.len() - 1]);
+            let deviation = to_body_pose(cycle_deviations[PARTS_PER_CYCLE]);
+            cycle_starts.push(compose(gait_end, deviation));
             deviations.push(cycle_deviations);
         }
         Self {
@@ -108,11 +107,8 @@ impl Walk {
         let (cycle, cycle_fraction) = (phase as usize, phase.fract());
         let path = &self.gait.path;
         let position = cycle_fraction * (path.len() - 1) as f64;
-        let (a, b, fraction) = (
-            path[position as usize],
-            path[position as usize + 1],
-            position.fract(),
-        );
+        let (i, fraction) = (position as usize, position.fract());
+        let (a, b) = (path[i], path[i + 1]);
         let interpolate = |coordinate: fn(&BodyPose) -> f64| {
             coordinate(&a) + fraction * (coordinate(&b) - coordinate(&a))
         };
@@ -123,15 +119,11 @@ impl Walk {
         ]);
         let position = cycle_fraction * PARTS_PER_CYCLE as f64;
         let (i, fraction) = (position as usize, position.fract());
-        let [from, to] = [
-            self.deviations[cycle][i],
-            self.deviations[cycle][(i + 1).min(PARTS_PER_CYCLE)],
-        ];
+        let deviations = &self.deviations[cycle];
+        let [from, to] = [deviations[i], deviations[(i + 1).min(PARTS_PER_CYCLE)]];
         let deviation = [0, 1, 2].map(|axis| from[axis] + fraction * (to[axis] - from[axis]));
-        let pose = compose(
-            compose(self.cycle_starts[cycle], gait_pose),
-            to_body_pose(deviation),
-        );
+        let pose = compose(self.cycle_starts[cycle], gait_pose);
+        let pose = compose(pose, to_body_pose(deviation));
         [pose.forward, pose.left, pose.heading]
     }
 }
@@ -183,12 +175,8 @@ impl WalkSeries {
     /// Returns the robot's pose at a time, s.
     pub fn pose_at(&self, seconds: f64) -> Pose {
         let has_started = |(start_s, _): &&(f64, Walk)| start_s + REST_S <= seconds;
-        let (start_s, walk) = self
-            .walks
-            .iter()
-            .rev()
-            .find(has_started)
-            .unwrap_or(&self.walks[0]);
+        let started_walk = self.walks.iter().rev().find(has_started);
+        let (start_s, walk) = started_walk.unwrap_or(&self.walks[0]);
         walk.pose_at(seconds - start_s)
     }
 }

@@ -46,15 +46,13 @@ impl TimeLimit {
     /// needs a longer message than that of [`TimeLimit::wait_for`].
     pub fn poll(self, mut condition: impl FnMut() -> bool) -> bool {
         let deadline = Instant::now() + self.0;
-        loop {
-            if condition() {
-                return true;
-            }
+        while !condition() {
             if Instant::now() > deadline {
                 return false;
             }
             thread::sleep(POLL_INTERVAL);
         }
+        true
     }
 
     /// Waits until a condition holds.
@@ -138,12 +136,11 @@ impl TimeLimit {
             child.stdout.take().map(read_all),
             child.stderr.take().map(read_all),
         ];
-        let status = self
-            .wait_for_exit(&mut child)
-            .map_err(|error| match error.kind() {
-                ErrorKind::TimedOut => timeout_error(""),
-                _ => error,
-            })?;
+        let status = self.wait_for_exit(&mut child);
+        let status = status.map_err(|error| match error.kind() {
+            ErrorKind::TimedOut => timeout_error(""),
+            _ => error,
+        })?;
         let mut outputs = Vec::new();
         for receiver in readers.into_iter().flatten() {
             let received = receiver.recv_timeout(self.0);

@@ -13,9 +13,8 @@ const SHORT_LIMIT: TimeLimit = TimeLimit::new(Duration::from_millis(100));
 
 /// Returns the message with which `wait` panics.
 fn panic_message<T>(wait: impl FnOnce() -> T) -> String {
-    let panic = catch_unwind(AssertUnwindSafe(wait))
-        .err()
-        .expect("the wait panics");
+    let panic = catch_unwind(AssertUnwindSafe(wait)).err();
+    let panic = panic.expect("the wait panics");
     match panic.downcast::<String>() {
         Ok(message) => *message,
         Err(panic) => (*panic.downcast::<&str>().expect("the panic has a message")).to_owned(),
@@ -63,42 +62,31 @@ fn a_task_that_ends_returns_its_result_or_fails_with_its_own_message() {
 
 #[test]
 fn a_program_that_does_not_exit_is_killed() {
-    let mut child = Command::new("sleep")
-        .arg("60")
-        .spawn()
-        .expect("the program starts");
-    let error = SHORT_LIMIT
-        .wait_for_exit(&mut child)
-        .expect_err("the program sleeps");
+    let child = Command::new("sleep").arg("60").spawn();
+    let mut child = child.expect("the program starts");
+    let status = SHORT_LIMIT.wait_for_exit(&mut child);
+    let error = status.expect_err("the program sleeps");
     assert_eq!(error.kind(), ErrorKind::TimedOut);
-    let id = child.id();
-    assert_eq!(
-        error.to_string(),
-        format!("waited 100ms for the end of process {id}")
-    );
-    let status = child
-        .try_wait()
-        .expect("the child exists")
-        .expect("the child has ended");
+    let message = format!("waited 100ms for the end of process {}", child.id());
+    assert_eq!(error.to_string(), message);
+    let status = child.try_wait().expect("the child exists");
+    let status = status.expect("the child has ended");
     assert_eq!(status.code(), None, "killed by a signal");
 }
 
 #[test]
 fn the_status_of_a_program_that_exits_is_returned() {
     let mut child = shell("exit 3").spawn().expect("the program starts");
-    let status = TIME_LIMIT
-        .wait_for_exit(&mut child)
-        .expect("the program ends");
-    assert_eq!(status.code(), Some(3));
+    let status = TIME_LIMIT.wait_for_exit(&mut child);
+    assert_eq!(status.expect("the program ends").code(), Some(3));
 }
 
 #[test]
 fn a_program_gets_its_input_and_both_of_its_outputs_are_read() {
     // The input and the outputs are larger than a pipe's buffer.
     let input = vec![b'x'; 1 << 20];
-    let output = TIME_LIMIT
-        .run_command(&mut shell("tee /dev/stderr; exit 3"), &input)
-        .expect("the program ends");
+    let output = TIME_LIMIT.run_command(&mut shell("tee /dev/stderr; exit 3"), &input);
+    let output = output.expect("the program ends");
     assert!(output.stdout == input && output.stderr == input);
     assert_eq!(output.status.code(), Some(3));
 }
@@ -115,17 +103,13 @@ fn the_error_of_a_program_that_prints_forever_names_the_program() {
 fn the_error_for_processes_that_a_program_leaves_running_names_the_program() {
     let error = SHORT_LIMIT.run_command(&mut shell("sleep 2 &"), b"");
     let message = error.expect_err("the process may still print").to_string();
-    assert_eq!(
-        message,
-        "waited 100ms for the end of a process started by `sh`"
-    );
+    let expected = "waited 100ms for the end of a process started by `sh`";
+    assert_eq!(message, expected);
 }
 
 #[test]
 fn a_missing_program_is_a_system_error() {
     let error = TIME_LIMIT.run_command(&mut Command::new("no-such-program"), b"");
-    assert_eq!(
-        error.expect_err("the program is missing").kind(),
-        ErrorKind::NotFound
-    );
+    let error = error.expect_err("the program is missing");
+    assert_eq!(error.kind(), ErrorKind::NotFound);
 }

@@ -29,7 +29,6 @@ export async function restartWithGait(session: Session, gait: EditedGait): Promi
     return { refused: 'A real board has only the gaits that were written to it. Write this gait to the board, or return to the simulation to try it.', consequence: null, line: null, key: '' };
   }
   const refusal = await applyGait(session, gait);
-  if (refusal) return refusal;
-  await session.link.wait(WAKE_MS);
-  return null;
+  if (!refusal) await session.link.wait(WAKE_MS);
+  return refusal;
 }

@@ -25,14 +25,11 @@ const isApple = /iPhone|iPad/.test(navigator.userAgent) || (navigator.platform =
 export const IPHONE_ADVICE =
   isApple && !bluetooth ? 'On an iPhone or iPad, neither Safari nor Chrome can connect to a robot. The browser Bluefy can, through a Bluetooth LE module.' : null;
 
+const NO_BLUETOOTH_MESSAGE = 'This browser cannot connect to a Bluetooth LE module. Chrome and Edge can, on localhost and over https; on Linux only with the flag "Experimental Web Platform features".';
+
 /** Returns the reason if this browser cannot connect to a Bluetooth module; null if it can. */
-export function findBluetoothProblem(): string | null {
-  if (bluetooth) return null;
-  return (
-    IPHONE_ADVICE ??
-    'This browser cannot connect to a Bluetooth LE module. Chrome and Edge can, on localhost and over https; on Linux only with the flag "Experimental Web Platform features".'
-  );
-}
+export const findBluetoothProblem = () =>
+  bluetooth ? null : (IPHONE_ADVICE ?? NO_BLUETOOTH_MESSAGE);
 
 export class BluetoothLink implements Link {
   readonly kind = 'radio';

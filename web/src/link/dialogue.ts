@@ -139,10 +139,7 @@ export class Dialogue {
   /** Sends `stop`, and drops the queued lines, which could make the robot walk again. */
   private sendStop(callbacks: PromiseCallbacks): void {
     this.dropQueuedRequests();
-    if (this.pendingStop) {
-      this.pendingStop.callers.push(callbacks);
-      return;
-    }
+    if (this.pendingStop) return void this.pendingStop.callers.push(callbacks);
     const stop = (this.pendingStop = { callers: [callbacks], sendCount: 0 });
     this.listener.onSent(WORDS.stop);
     this.listener.onStopping(true);
@@ -246,8 +243,7 @@ export class Dialogue {
     if (line === `ok ${WORDS.stop}` || (stop && STOP_REFUSAL.test(line))) {
       if (!stop) return;
       this.listener.onShownLine(line);
-      this.finishStop(stop, { ok: line.startsWith('ok'), text: line, notes: [] });
-      return;
+      return this.finishStop(stop, { ok: line.startsWith('ok'), text: line, notes: [] });
     }
     const isExpected = request !== null && canAnswer(line, request.line);
     const isQuiet = isExpected ? request.isQuiet : line === this.keepAliveAnswer;

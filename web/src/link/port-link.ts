@@ -43,20 +43,17 @@ export class PortLink implements Link {
   /** Opens a port that the user picks, which resets a UNO; null if the user cancels. Throws an error for the user. */
   static async open(): Promise<PortLink | null> {
     if (!hasSerial()) throw new Error(NO_SERIAL_MESSAGE);
-    let port: SerialPort;
-    try {
-      port = await navigator.serial.requestPort({ allowedBluetoothServiceClassIds: [SERIAL_PROFILE] });
-    } catch (error) {
+    const request = navigator.serial.requestPort({ allowedBluetoothServiceClassIds: [SERIAL_PROFILE] });
+    const port = await request.catch((error: unknown) => {
       // The user closed the chooser without a choice.
       if (error instanceof DOMException && error.name === 'NotFoundError') return null;
       throw error;
-    }
+    });
+    if (!port) return null;
     const link = new PortLink(port);
-    try {
-      await link.openPort();
-    } catch (error) {
+    await link.openPort().catch((error: unknown) => {
       throw new Error(`${getMessage(error)} Another program may be using the port: close the program, and connect again.`);
-    }
+    });
     return link;
   }
 

@@ -103,8 +103,4 @@ export class TagTracker {
     const edgeDistance = Math.min(deckCentre[0], deckCentre[1], frameSize[0] - deckCentre[0], frameSize[1] - deckCentre[1]) * scale;
     return { forward, left, reach, isNearEdge: Math.hypot(forward, left) > reach || edgeDistance < FRAME_MARGIN_MM };
   }
-
-  clearPath(): void {
-    this.path = [];
-  }
 }

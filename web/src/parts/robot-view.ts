@@ -41,7 +41,7 @@ export class RobotView {
   private readonly camera = new three.PerspectiveCamera(35, 1, 10, 4000);
   private readonly controls: OrbitControls;
   private readonly sun = new three.DirectionalLight(0xffffff, 2.2);
-  private readonly renderBudget: RenderBudget;
+  readonly renderBudget: RenderBudget;
   private grid: three.GridHelper | null = null;
   private model: Model | null = null;
   private mounts: three.Group[] = [];
@@ -175,7 +175,6 @@ export class RobotView {
     this.scene.add(this.grid);
     this.model?.bodies.forEach((body, index) => {
       const mesh = this.meshes[index];
-      if (!mesh) return;
       const isInCurrentStep = guideStep === null || body.step === guideStep;
       mesh.visible = guideStep === null || body.step <= guideStep;
       const highlightedBodies = clashingBodies.length > 0 ? clashingBodies : selectedBody === null ? null : [selectedBody];
@@ -198,15 +197,10 @@ export class RobotView {
     this.needsRendering = true;
   }
 
-  /** Returns true if a frame may be rendered now; must be called once per animation frame. */
-  mayRender(): boolean {
-    return this.renderBudget.mayRender();
-  }
-
-  /** Renders a frame if the view has changed and `mayRender()` is true. `place` is the robot's place on the floor. */
+  /** Renders a frame if the view has changed and the budget allows it. `place` is the robot's place on the floor. */
   render(place: Place): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    if (!this.mayRender() || width === 0 || height === 0) return;
+    if (!this.renderBudget.mayRender() || width === 0 || height === 0) return;
     const now = performance.now();
     if (this.needsRendering) this.changedAt = now;
     // A still view is rendered again at full resolution.

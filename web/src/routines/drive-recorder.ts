@@ -64,11 +64,8 @@ export class DriveRecorder {
     const phase = this.currentGait?.reversed ? (1 - reportedPhase) % 1 : reportedPhase;
     // The count is never too low; therefore a phase ahead of it belongs to the previous gait: the robot reports that
     // gait's phase until it reaches the new gait's first pose.
-    if (phase > this.cycles + COUNT_TOLERANCE_CYCLES) {
-      this.cycles = 0;
-      return;
-    }
-    this.cycles = Math.floor(this.cycles + ROUNDING_OFFSET_CYCLES - phase) + phase;
+    if (phase > this.cycles + COUNT_TOLERANCE_CYCLES) this.cycles = 0;
+    else this.cycles = Math.floor(this.cycles + ROUNDING_OFFSET_CYCLES - phase) + phase;
   }
 
   /** Returns the steps until `time`, from the first gait to the last gait. */

@@ -76,10 +76,9 @@ export function listJoints({ shafts, tips, points, sliders, legs }: Scene, getLe
    * Lengthens each half of a slider by half of `change`, the change of the distance between its arm tips, so that the
    * slider keeps its travel.
    */
-  const editHalves = (side: (typeof SIDES)[number], change: number): Edits => [
-    [toLinkKey(side.rearHalf), roundToHalf(getLength(toLinkKey(side.rearHalf)) + change / 2)],
-    [toLinkKey(side.frontHalf), roundToHalf(getLength(toLinkKey(side.frontHalf)) + change / 2)],
-  ];
+  const editHalves = (side: (typeof SIDES)[number], change: number): Edits =>
+    [toLinkKey(side.rearHalf), toLinkKey(side.frontHalf)]
+      .map((key) => [key, roundToHalf(getLength(key) + change / 2)]);
   const cranks = ENDS.flatMap((end): Joint[] =>
     (['left', 'right'] as const).map((side) => {
       const servo = end[side];

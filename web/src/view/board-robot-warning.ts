@@ -3,17 +3,14 @@
 import { effect } from '@preact/signals-core';
 
 import { files } from '../files';
-import { browserStorage } from '../browser-storage';
+import { browserStorage, type SavedChanges } from '../browser-storage';
 import { isRefused, Robot } from '../robot';
 import type { Session } from '../session';
 import { formatRobotName } from './setup/board';
 import type { ProblemList } from './problems';
 
 /** A robot that the page can show: its file name and its robot.toml, which the user may have changed. */
-interface KnownRobot {
-  file: string;
-  toml: string;
-}
+type KnownRobot = Pick<SavedChanges, 'file' | 'toml'>;
 
 export class BoardRobotWarning {
   /** An instance that only reads robots: an instance has one robot, and the page's instance must keep its robot. */

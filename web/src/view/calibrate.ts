@@ -31,29 +31,22 @@ export class CalibrationView {
     }
     const panel = element<HTMLDetailsElement>('calibrate');
     panel.addEventListener('toggle', () => isShown(panel) && void this.read());
-    session.state.status.subscribe(() => this.rereadIfOutdated());
+    // The robot answers again.
+    session.state.status.subscribe(() => this.mayBeOutdated && void this.read());
   }
 
   /** Reads the robot's settings and shows them. */
   async read(): Promise<void> {
     const answer = await this.session.ask(WORDS.cal, true);
-    let board;
-    try {
-      board = await loadBoardModule();
-    } catch (error) {
+    const board = await loadBoardModule().catch((error: unknown) => {
       this.message.textContent = getMessage(error);
-      return;
-    }
-    const settings = answer && board.readCalibration(answer.notes);
+      return null;
+    });
+    const settings = answer && board?.readCalibration(answer.notes);
     if (!settings) return;
     this.mayBeOutdated = false;
     if (this.servoInputs.length === 0) this.buildInputs();
     settings.servos.forEach((servo, index) => this.showServo(index, servo));
-  }
-
-  /** Reads the settings again if the shown settings may be outdated; called when the robot answers. */
-  private rereadIfOutdated(): void {
-    if (this.mayBeOutdated) void this.read();
   }
 
   private showServo(index: number, { trim, limit, dir, scale }: ServoSettings): void {

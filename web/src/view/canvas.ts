@@ -28,6 +28,13 @@ export function prepareSurface(canvas: HTMLCanvasElement, isOpaque = false): Sur
   return { context, width, height };
 }
 
+/** Begins a path for lines of this colour and width. */
+export function beginLines(context: CanvasRenderingContext2D, colour: string, width: number): void {
+  context.strokeStyle = colour;
+  context.lineWidth = width;
+  context.beginPath();
+}
+
 /** Adds the straight lines between successive points to the path. */
 export function addPolyline(context: CanvasRenderingContext2D, ...[[x, y], ...others]: [[number, number], ...[number, number][]]): void {
   context.moveTo(x, y);

@@ -1,7 +1,7 @@
 // The overlay on the camera's video: the tags, and the robot's path and heading.
 import type { Pixel } from '../../generated/measure';
 import type { TagTracker } from '../measure/tag-tracker';
-import { prepareSurface } from './canvas';
+import { beginLines, prepareSurface } from './canvas';
 import { getPalette } from './palette';
 
 /** Length of the heading's arrow, relative to the size of the deck's tag. */
@@ -21,10 +21,8 @@ export function drawTracking(canvas: HTMLCanvasElement, tracker: TagTracker): vo
   const toCanvas = ([x, y]: Pixel): Pixel => [scale * x, scale * y];
   const { accent, a2 } = getPalette();
   const drawLine = (points: Pixel[], colour: string, lineWidth: number) => {
-    context.beginPath();
+    beginLines(context, colour, lineWidth);
     for (const [i, point] of points.entries()) context[i === 0 ? 'moveTo' : 'lineTo'](...toCanvas(point));
-    context.strokeStyle = colour;
-    context.lineWidth = lineWidth;
     context.stroke();
   };
   drawLine(tracker.path, a2, 2);

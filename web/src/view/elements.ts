@@ -54,6 +54,14 @@ export function button(label: string, action: () => void, isMain = false): HTMLB
   return make('button', { type: 'button', className: isMain ? 'main' : '', onclick: action }, label);
 }
 
+/** Replaces the options of a list. Returns true if the chosen option still exists, which then stays chosen. */
+export function replaceOptions(list: HTMLSelectElement, options: HTMLOptionElement[]): boolean {
+  const chosen = options.find(({ value }) => value === list.value);
+  list.replaceChildren(...options);
+  if (chosen) list.value = chosen.value;
+  return chosen !== undefined;
+}
+
 /** Makes a labelled number input; `onNumber` is called with each number that the user enters. */
 export function numberBox(label: string, value: number | null, step: string, onNumber: (value: number) => void): HTMLElement {
   const box = make('input', { type: 'number', step, value: String(value ?? '') });

@@ -37,8 +37,6 @@ export class FasterView {
   private toml = '';
   /** Number of gaits that the search tries. */
   private gaitCount = 0;
-  /** The WebAssembly module with the search, loaded on demand. */
-  private module: Promise<WebAssembly.Module> | null = null;
 
   constructor(
     private readonly session: Session,
@@ -76,10 +74,7 @@ export class FasterView {
     this.progressBar.removeAttribute('value');
     this.progressBar.hidden = false;
     this.setMessage('Searching for the widest stride within the limits…');
-    this.module ??= files.searchModule();
-    // The next search repeats a failed download.
-    this.module.catch(() => (this.module = null));
-    this.search = new FasterSearch(this.module, { toml, floor, servos, task: { bars, ...this.settings } }, (report) => this.handleReport(report));
+    this.search = new FasterSearch(files.searchModule(), { toml, floor, servos, task: { bars, ...this.settings } }, (report) => this.handleReport(report));
   }
 
   private handleReport(report: SearchReport): void {

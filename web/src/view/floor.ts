@@ -1,6 +1,6 @@
 // The view of the floor on which the robot walks; pointer, wheel, fingers and keys pan and zoom it.
 import type { Frame, Place, Plate } from '../robot';
-import { addCircle, addPolyline, prepareSurface } from './canvas';
+import { addCircle, addPolyline, beginLines, prepareSurface } from './canvas';
 import { element } from './elements';
 import { drawLizard } from './lizard';
 import { onPaletteChange, getPalette } from './palette';
@@ -26,17 +26,15 @@ const GOAL_TOLERANCE_MM = 0.01;
 /** Sideways movement beyond which a finger drags the floor, CSS pixels. */
 const DRAG_THRESHOLD_PX = 12;
 
-/** The label of the scale bar and its position, CSS pixels. */
-interface ScaleLabel {
-  text: string;
+/** A position on the canvas, CSS pixels, or on the floor, mm. */
+interface Position {
   x: number;
   y: number;
 }
 
-/** The position of a pointer on the canvas, CSS pixels. */
-interface PointerPosition {
-  x: number;
-  y: number;
+/** The label of the scale bar and its position. */
+interface ScaleLabel extends Position {
+  text: string;
 }
 
 export class FloorView {
@@ -51,7 +49,7 @@ export class FloorView {
   /** True while the view follows the robot. */
   private isFollowing = true;
   /** The tracks of the robot and of the second robot, mm, each in the frame of its own start. */
-  private tracks: { x: number; y: number }[][] = [[], []];
+  private tracks: Position[][] = [[], []];
   /** True if the floor is drawn in every animation frame, even behind the robot in 3D: for a video or a picture. */
   drawsAlways = false;
   /** The plate and the two robots' frames in the last drawing; null before the first drawing. */
@@ -59,7 +57,7 @@ export class FloorView {
   /** The inputs of the drawn picture except the colours, as text; empty if the floor must be drawn again. */
   private drawnState = '';
   /** The last positions of the pressed pointers by id. */
-  private readonly pressedPointers = new Map<number, PointerPosition>();
+  private readonly pressedPointers = new Map<number, Position>();
   /** True while the pointer drags the floor. */
   private isDragging = false;
 
@@ -84,16 +82,13 @@ export class FloorView {
         this.isDragging = false;
       });
     }
-    this.canvas.addEventListener(
-      'wheel',
-      (event) => {
-        // Without Ctrl, the wheel scrolls the page.
-        if (!event.ctrlKey && !event.metaKey) return;
-        event.preventDefault();
-        this.zoomBy(Math.exp(-event.deltaY / 500), event.offsetX, event.offsetY);
-      },
-      { passive: false },
-    );
+    const handleWheel = (event: WheelEvent) => {
+      // Without Ctrl, the wheel scrolls the page.
+      if (!event.ctrlKey && !event.metaKey) return;
+      event.preventDefault();
+      this.zoomBy(Math.exp(-event.deltaY / 500), event.offsetX, event.offsetY);
+    };
+    this.canvas.addEventListener('wheel', handleWheel, { passive: false });
     this.canvas.addEventListener('keydown', (event) => this.handleKey(event));
     const invalidate = () => (this.drawnState = '');
     onPaletteChange(invalidate);
@@ -198,9 +193,7 @@ export class FloorView {
     const spacing = this.zoom < 0.4 ? GRID_SPACING_MM * 5 : GRID_SPACING_MM;
     const [halfWidth, halfHeight] = [width / 2 / this.zoom, height / 2 / this.zoom];
     const { x, y } = this.centre;
-    context.strokeStyle = getPalette().grid;
-    context.lineWidth = 1 / this.zoom;
-    context.beginPath();
+    beginLines(context, getPalette().grid, 1 / this.zoom);
     for (let lineX = Math.ceil((x - halfWidth) / spacing) * spacing; lineX <= x + halfWidth; lineX += spacing) {
       addPolyline(context, [lineX, y - halfHeight], [lineX, y + halfHeight]);
     }
@@ -210,11 +203,9 @@ export class FloorView {
     context.stroke();
   }
 
-  private drawTrack(context: CanvasRenderingContext2D, track: { x: number; y: number }[]): void {
-    context.strokeStyle = getPalette().track;
-    context.lineWidth = 2.5 / this.zoom;
+  private drawTrack(context: CanvasRenderingContext2D, track: Position[]): void {
     context.lineJoin = 'round';
-    context.beginPath();
+    beginLines(context, getPalette().track, 2.5 / this.zoom);
     track.forEach(({ x, y }, n) => (n === 0 ? context.moveTo(x, y) : context.lineTo(x, y)));
     context.stroke();
     // Marks the start.
@@ -229,9 +220,7 @@ export class FloorView {
     const length = [10, 50, 100, 500].find((mm) => mm * this.zoom > 50) ?? 1000;
     // The scale bar is to the right of the on-screen stick.
     const [x, y] = [124, height - 18];
-    context.strokeStyle = getPalette().ink;
-    context.lineWidth = 1.5;
-    context.beginPath();
+    beginLines(context, getPalette().ink, 1.5);
     const endX = x + length * this.zoom;
     addPolyline(context, [x, y - 4], [x, y], [endX, y], [endX, y - 4]);
     context.stroke();
@@ -266,7 +255,7 @@ export class FloorView {
     const current = { x: event.offsetX, y: event.offsetY };
     const otherPointer = [...this.pressedPointers].find(([id]) => id !== event.pointerId)?.[1];
     if (otherPointer) {
-      const computeDistance = ({ x, y }: PointerPosition) => Math.hypot(x - otherPointer.x, y - otherPointer.y);
+      const computeDistance = ({ x, y }: Position) => Math.hypot(x - otherPointer.x, y - otherPointer.y);
       this.zoomBy(computeDistance(current) / Math.max(1, computeDistance(previous)), (current.x + otherPointer.x) / 2, (current.y + otherPointer.y) / 2);
     } else {
       // A finger that scrolls the page moves slightly before the browser takes over; this movement does not drag the

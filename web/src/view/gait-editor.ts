@@ -3,7 +3,7 @@ import { browserStorage } from '../browser-storage';
 import { type Bars, type Description, type Four, Robot } from '../robot';
 import type { Session } from '../session';
 import { type GaitEditor, FasterView } from './faster';
-import { element, make, makeSvg, setAttributes, tableRow } from './elements';
+import { element, make, makeSvg, replaceOptions, setAttributes, tableRow } from './elements';
 import { setUpNumberInput, putNumber, type Range } from './number-input';
 import { followShownRobot } from './rooms';
 import { TrialView } from './trial';
@@ -78,11 +78,10 @@ export class GaitEditorView {
   }
 
   private fillTemplateList({ gaits }: Description): void {
-    const chosen = this.templateList.value;
     const { robot } = this.session;
-    const barGaits = gaits.flatMap(({ name }, index) => (robot.bars(index) ? [{ name, index }] : []));
-    this.templateList.replaceChildren(...barGaits.map(({ name, index }) => new Option(name, String(index))));
-    if (barGaits.some(({ index }) => String(index) === chosen)) this.templateList.value = chosen;
+    const options = gaits.flatMap(({ name }, index) =>
+      robot.bars(index) ? [new Option(name, String(index))] : []);
+    replaceOptions(this.templateList, options);
   }
 
   /** Starts editing a copy of the robot's gait that the user chose as a template. */
@@ -169,11 +168,8 @@ export class GaitEditorView {
     const fraction = gait.held ? HELD_STANCE_FRACTION : gait.duty;
     LEGS.forEach((_, leg) => {
       const [start, radius] = [gait.start[leg] ?? 0, RING_RADII[leg] ?? 0];
-      const [startInput, gainInput] = [this.startInputs[leg], this.gainInputs[leg]];
-      if (startInput && gainInput) {
-        put(startInput, start);
-        put(gainInput, gait.gain[leg] ?? 1);
-      }
+      put(this.startInputs[leg], start);
+      put(this.gainInputs[leg], gait.gain[leg] ?? 1);
       this.bars[leg]?.setAttribute('d', makeSectorPath(radius, start, fraction));
       // A negative gain makes the foot push the robot backward.
       this.bars[leg]?.classList.toggle('against', (gait.gain[leg] ?? 1) < 0);

@@ -25,10 +25,9 @@ export class LengthsView {
     if (lengths.length !== this.inputs.size) this.buildInputs(lengths);
     for (const { key, value } of lengths) {
       const input = this.inputs.get(key);
-      if (input) {
-        input.value = String(value);
-        input.removeAttribute('aria-invalid');
-      }
+      if (!input) continue;
+      input.value = String(value);
+      input.removeAttribute('aria-invalid');
     }
     this.setMessage('');
   }

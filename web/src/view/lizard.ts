@@ -1,6 +1,6 @@
 // The drawing of the robot from above, in mm of the chassis frame: x to the right, y forward.
 import type { Plate, Scene, Point } from '../robot';
-import { addCircle, addPolyline } from './canvas';
+import { addCircle, addPolyline, beginLines } from './canvas';
 import { getPalette, getServoColour } from './palette';
 
 const FOOT_RADIUS_MM = 6;
@@ -12,10 +12,8 @@ const SLIP_THRESHOLD_MM = 0.3;
 type Context = CanvasRenderingContext2D;
 
 function drawBar(context: Context, from: Point, to: Point, colour: string, widthMm: number): void {
-  context.strokeStyle = colour;
-  context.lineWidth = widthMm;
   context.lineCap = 'round';
-  context.beginPath();
+  beginLines(context, colour, widthMm);
   addPolyline(context, from, to);
   context.stroke();
 }
@@ -44,10 +42,8 @@ function drawSpring(context: Context, [x1, y1]: Point, [x2, y2]: Point): void {
     x1 + direction[0] * fraction * length + normal[0] * offset,
     y1 + direction[1] * fraction * length + normal[1] * offset,
   ];
-  context.strokeStyle = getPalette().steel;
-  context.lineWidth = 0.9;
   context.lineJoin = 'round';
-  context.beginPath();
+  beginLines(context, getPalette().steel, 0.9);
   const windings = Array.from({ length: 2 * SPRING_TURNS }, (_, n) => pointAt(0.12 + (0.76 * (n + 0.5)) / (2 * SPRING_TURNS), n % 2 === 0 ? SPRING_HALF_WIDTH_MM : -SPRING_HALF_WIDTH_MM));
   addPolyline(context, [x1, y1], pointAt(0.12, 0), ...windings, pointAt(0.88, 0), [x2, y2]);
   context.stroke();
@@ -163,9 +159,7 @@ export function drawLizard(context: Context, plate: Plate, scene: Scene, slides:
   for (const servo of SERVO_INDICES) drawFoot(context, scene, servo, slides[servo] ?? 0);
   drawChassis(context, plate);
   for (const servo of SERVO_INDICES) drawLeg(context, scene, servo);
-  drawSlider(context, scene, 0);
-  drawSlider(context, scene, 1);
-  drawFiveBar(context, scene, 0);
-  drawFiveBar(context, scene, 1);
+  for (const side of [0, 1] as const) drawSlider(context, scene, side);
+  for (const end of [0, 1] as const) drawFiveBar(context, scene, end);
   for (const { strut } of scene.legs) drawDisc(context, strut[0], 1.2, getPalette().card, getPalette().ink);
 }

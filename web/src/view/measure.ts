@@ -15,7 +15,7 @@ import type { Session } from '../session';
 import { getMessage } from '../problem';
 import { WORDS } from '../words';
 import { saveFile } from './download';
-import { element, make, setText } from './elements';
+import { element, make, replaceOptions, setText } from './elements';
 import { ResultsView } from './results';
 import { setUpNumberInput, putNumber, type Range } from './number-input';
 import { ROOM_OPENED } from './rooms';
@@ -66,7 +66,7 @@ export class MeasureView {
   private tracker = new TagTracker();
   private task: Task = 'idle';
   /** The protocol with which the page drives the robot; null while it does not drive. */
-  private protocol: Protocol | null = null;
+  protocol: Protocol | null = null;
   /** True while the user puts the robot back by hand; no frames are added to the video meanwhile. */
   private isBeingPutBack = false;
   /** True if a video file was read and can be measured again. */
@@ -102,20 +102,19 @@ export class MeasureView {
     session.followRobot((description) => this.showRobot(description));
     predictor.predictions.subscribe(() => this.tickMovingGaits());
     session.state.gait.subscribe((activity) => this.protocol?.setActivity(activity));
-    session.state.isSilent.subscribe((isSilent) => isSilent && this.stopDriving('the robot is silent'));
+    session.state.isSilent.subscribe((isSilent) => isSilent && this.protocol?.stop('the robot is silent'));
     session.state.link.subscribe(() => this.followLink());
   }
 
   /** Ends driving, and lists the gaits of another robot. */
   private showRobot({ gaits }: Description): void {
-    this.stopDriving('another robot was chosen');
-    const movingCommands = gaits.filter(({ moves }) => moves).map(({ command }) => command);
-    const chosen = this.gaitList.value;
-    this.gaitList.replaceChildren(new Option('recognized by its path', ''), ...gaits.filter(({ moves }) => moves).map(({ command, name }) => new Option(command, name)));
-    if ([...this.gaitList.options].some(({ value }) => value === chosen)) this.gaitList.value = chosen;
+    this.protocol?.stop('another robot was chosen');
+    const movingGaits = gaits.filter(({ moves }) => moves);
+    const gaitOptions = movingGaits.map(({ command, name }) => new Option(command, name));
+    replaceOptions(this.gaitList, [new Option('recognized by its path', ''), ...gaitOptions]);
     this.gaitBoxes.replaceChildren(
       make('legend', {}, 'Gaits'),
-      ...movingCommands.map((command) => {
+      ...movingGaits.map(({ command }) => {
         const box = make('input', { type: 'checkbox', name: command, onchange: () => this.userTicks.set(command, box.checked) });
         return make('label', { className: 'check' }, box, ` ${command}`);
       }),
@@ -129,26 +128,11 @@ export class MeasureView {
     for (const box of this.gaitBoxes.querySelectorAll('input')) box.checked = this.userTicks.get(box.name) ?? hasDisplacement.get(box.name) ?? false;
   }
 
-  /** Ends driving for an external reason, and stops the robot. */
-  private stopDriving(reason: string): void {
-    this.protocol?.stop(reason);
-  }
-
   /** Ends driving after a change of the link, and preselects the page as the driver of a real robot. */
   private followLink(): void {
     this.protocol?.end('the link to the robot has changed');
     this.driverList.value = this.session.isReal ? 'page' : 'other';
     this.updateControls();
-  }
-
-  /** Handles a line that was sent to the robot. */
-  handleSent(line: string): void {
-    this.protocol?.handleSent(line);
-  }
-
-  /** Handles a line that the robot has sent. */
-  handleReceived(line: string): void {
-    this.protocol?.handleReceived(line);
   }
 
   /** Updates the texts about the latest frames; called several times per second. */
@@ -196,7 +180,7 @@ export class MeasureView {
 
   /** Switches the camera off and ends the task that uses it. */
   private switchCameraOff(): void {
-    this.stopDriving('the camera was switched off');
+    this.protocol?.stop('the camera was switched off');
     this.source.stop();
     if (this.task !== 'compute') this.task = 'idle';
     this.updateControls();
@@ -250,7 +234,7 @@ export class MeasureView {
     const gaits = isPageDriving ? this.getDrivableGaits() : [];
     const videoWorker = await this.getVideoWorker();
     await videoWorker.call((video) => video.clear());
-    this.tracker.clearPath();
+    this.tracker.path = [];
     if (isPageDriving) return this.driveGaits(gaits);
     this.task = 'record';
     this.setMessage('Recording. Let the robot walk at least four cycles, then press Done.');

@@ -20,9 +20,7 @@ export function getPalette(): Palette {
 }
 
 /** Calls `callback` whenever the colour scheme changes between light and dark. */
-export function onPaletteChange(callback: () => void): void {
-  changeCallbacks.push(callback);
-}
+export const onPaletteChange = (callback: () => void) => changeCallbacks.push(callback);
 
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
   cachedPalette = null;

@@ -15,6 +15,8 @@ const ORIGIN: Place = { x: 0, y: 0, heading: 0 };
 /** Converts the guide's Markdown, which uses only bold and code, to plain text. */
 const toPlainText = (markdown: string) => markdown.replaceAll('**', '').replaceAll('`', '');
 
+const setMessage = (id: string, text: string) => showMessage(element(id), text);
+
 export class PartsView {
   private readonly panel = element<HTMLDetailsElement>('parts');
   private readonly view3d = element('view-3d');
@@ -77,7 +79,7 @@ export class PartsView {
     if (this.listedToml !== toml) {
       this.listedToml = toml;
       this.listFiles([]);
-      if (!this.cancelMaking) this.setMessage('files-message', '');
+      if (!this.cancelMaking) setMessage('files-message', '');
     }
     this.show3d(toml);
   }
@@ -91,7 +93,7 @@ export class PartsView {
   }
 
   private async load(toml: string): Promise<void> {
-    this.setMessage('parts-message', 'Building the 3D model…');
+    setMessage('parts-message', 'Building the 3D model…');
     try {
       const [{ Solids }, { RobotView }] = await Promise.all([import('../parts/make-parts'), import('../parts/robot-view')]);
       const { solids, model, meshes } = await Solids.make(toml);
@@ -110,7 +112,7 @@ export class PartsView {
       if (toml !== this.shownToml) return;
       // A failed download is repeated when the 3D view is opened again.
       this.shownToml = '';
-      this.setMessage('parts-message', `Cannot make the parts of this robot: ${getMessage(error)}${this.model ? ' The previous robot is still shown.' : ''}`);
+      setMessage('parts-message', `Cannot make the parts of this robot: ${getMessage(error)}${this.model ? ' The previous robot is still shown.' : ''}`);
     }
   }
 
@@ -120,7 +122,7 @@ export class PartsView {
       return new RobotViewClass(this.canvas, (body) => this.pickBody(body));
     } catch {
       this.canvas.hidden = true;
-      this.setMessage('canvas-3d-none', 'This browser has no WebGL, or it is switched off; it cannot show the robot in 3D. You can still make the files.');
+      setMessage('canvas-3d-none', 'This browser has no WebGL, or it is switched off; it cannot show the robot in 3D. You can still make the files.');
       return null;
     }
   }
@@ -145,8 +147,8 @@ export class PartsView {
     this.requestedPose = '';
     const shownStep = step === null ? undefined : this.model.steps[step - 1];
     const stepCount = this.model.steps.length;
-    this.setMessage('step-title', shownStep ? `${step} of ${stepCount}: ${shownStep.title}` : 'The whole robot');
-    this.setMessage('step-words', shownStep ? toPlainText(shownStep.instructions) : '');
+    setMessage('step-title', shownStep ? `${step} of ${stepCount}: ${shownStep.title}` : 'The whole robot');
+    setMessage('step-words', shownStep ? toPlainText(shownStep.instructions) : '');
     element<HTMLButtonElement>('step-back').disabled = step === 1;
     element<HTMLButtonElement>('step-on').disabled = step === stepCount;
     element<HTMLButtonElement>('step-all').disabled = step === null;
@@ -162,12 +164,12 @@ export class PartsView {
     const { clash } = this;
     if (clash) {
       const { first, second, mm } = clash;
-      this.setMessage('parts-message', `${first} and ${second} ${mm < 0 ? `overlap by ${(-mm).toFixed(2)} mm` : `are only ${mm.toFixed(2)} mm apart`}.`);
-    } else if (!body) this.setMessage('parts-message', this.robotView ? 'Click a part for its name and its file.' : '');
-    else if (!part) this.setMessage('parts-message', `${body.name}: ${body.kind}, bought; mounted in step ${body.step}.`);
+      setMessage('parts-message', `${first} and ${second} ${mm < 0 ? `overlap by ${(-mm).toFixed(2)} mm` : `are only ${mm.toFixed(2)} mm apart`}.`);
+    } else if (!body) setMessage('parts-message', this.robotView ? 'Click a part for its name and its file.' : '');
+    else if (!part) setMessage('parts-message', `${body.name}: ${body.kind}, bought; mounted in step ${body.step}.`);
     else {
       const countText = part.count === 1 ? 'printed once' : `printed ${part.count} times`;
-      this.setMessage('parts-message', `${body.name}: ${countText}, stl/${part.file}.stl and step/${part.file}.step; mounted in step ${body.step}.`);
+      setMessage('parts-message', `${body.name}: ${countText}, stl/${part.file}.stl and step/${part.file}.step; mounted in step ${body.step}.`);
     }
     this.updateRobotView();
   }
@@ -191,7 +193,7 @@ export class PartsView {
   /** Renders the robot; called in every animation frame. */
   render(frame: Frame | null): void {
     const { robotView, solids } = this;
-    if (!robotView || !solids || !robotView.mayRender() || !this.is3d) return;
+    if (!robotView || !solids || !robotView.renderBudget.mayRender() || !this.is3d) return;
     const neutral = this.session.description.servos.map((servo) => servo.neutral);
     // The robot stands still while a step of the guide or a clash is shown.
     const isMoving = this.step === null && !this.clash && frame?.scene != null;
@@ -221,7 +223,7 @@ export class PartsView {
     progressBar.removeAttribute('value');
     button.textContent = 'Stop';
     this.cancelMaking = () => {};
-    this.setMessage('files-message', 'Loading…');
+    setMessage('files-message', 'Loading…');
     this.listFiles([]);
     let isCancelled = false;
     let isOver = false;
@@ -232,7 +234,7 @@ export class PartsView {
         if (isOver) return;
         progressBar.max = total;
         progressBar.value = done;
-        this.setMessage('files-message', `${stageTexts[stage]}: ${done} of ${total}.`);
+        setMessage('files-message', `${stageTexts[stage]}: ${done} of ${total}.`);
       });
       const cancellation = new Promise<null>((resolve) => {
         this.cancelMaking = () => {
@@ -244,15 +246,15 @@ export class PartsView {
       const archive = await Promise.race([result, cancellation]).finally(() => (isOver = true));
       if (!archive) return;
       if (archive.paths.length > 0) saveFile(`${file || 'robot'}-${selection === 'all' ? 'parts' : 'changed-parts'}.zip`, [archive.zip], 'application/zip');
-      this.setMessage('files-message', this.describeArchive(archive, selection));
+      setMessage('files-message', this.describeArchive(archive, selection));
       if (selection === 'changed') this.listFiles(archive.paths);
     } catch (error) {
-      this.setMessage('files-message', `Cannot make the files: ${getMessage(error)}`);
+      setMessage('files-message', `Cannot make the files: ${getMessage(error)}`);
     } finally {
       this.cancelMaking = null;
       progressBar.hidden = true;
       button.textContent = label;
-      if (isCancelled) this.setMessage('files-message', 'Stopped; nothing was saved.');
+      if (isCancelled) setMessage('files-message', 'Stopped; nothing was saved.');
     }
   }
 
@@ -266,9 +268,5 @@ export class PartsView {
     const list = element('files-list');
     list.replaceChildren(...paths.map((path) => make('li', {}, path)));
     list.hidden = paths.length === 0;
-  }
-
-  private setMessage(id: string, text: string): void {
-    showMessage(element(id), text);
   }
 }

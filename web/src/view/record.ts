@@ -9,7 +9,7 @@ import { WORDS } from '../words';
 import { saveFile } from './download';
 import { formatDisplacement } from './drive';
 import type { FloorView } from './floor';
-import { element, makeSvg, setText } from './elements';
+import { element, makeSvg, replaceOptions, setText } from './elements';
 import { getPalette } from './palette';
 import { isShown } from './rooms';
 
@@ -90,14 +90,11 @@ export class RecordView {
     this.recording = null;
     this.isReplaying = false;
     this.removeCompanion();
-    const chosen = [this.firstGaitList.value, this.secondGaitList.value];
-    for (const list of [this.firstGaitList, this.secondGaitList]) {
-      list.replaceChildren(...gaits.map(({ command }) => new Option(command)));
-    }
-    const commands = gaits.map(({ command }) => command);
+    const makeOptions = () => gaits.map(({ command }) => new Option(command));
     const movingCommands = gaits.filter(({ moves }) => moves).map(({ command }) => command);
-    this.firstGaitList.value = commands.find((gait) => gait === chosen[0]) ?? movingCommands[movingCommands.length > 1 ? 1 : 0] ?? '';
-    this.secondGaitList.value = commands.find((gait) => gait === chosen[1]) ?? movingCommands[0] ?? '';
+    const [firstMoving = '', secondMoving = firstMoving] = movingCommands;
+    if (!replaceOptions(this.firstGaitList, makeOptions())) this.firstGaitList.value = secondMoving;
+    if (!replaceOptions(this.secondGaitList, makeOptions())) this.secondGaitList.value = firstMoving;
     this.setMessage('');
     this.updateButtons();
   }

@@ -4,7 +4,7 @@ import { type OnFloor, type Place, type Refusal, Robot, type RoundPath, type Rou
 import { createRobotQueue } from '../robot-requests';
 import { DriveRecorder } from '../routines/drive-recorder';
 import type { Session } from '../session';
-import { element, make, setText, showMessage } from './elements';
+import { element, make, replaceOptions, setText, showMessage } from './elements';
 import { isShown } from './rooms';
 import type { RobotTextView } from './robot-text';
 import type { BoardWriter } from './writer';
@@ -69,10 +69,8 @@ export class RoutinesView {
   /** Shows the text's routines, if the panel is shown. */
   show(): void {
     if (!isShown(this.panel)) return;
-    const { value } = this.routineList;
     this.routines = Robot.routines(this.text.draft);
-    this.routineList.replaceChildren(...this.routines.map(({ name }) => new Option(name)));
-    if (this.routines.some(({ name }) => name === value)) this.routineList.value = value;
+    replaceOptions(this.routineList, this.routines.map(({ name }) => new Option(name)));
     this.routineList.disabled = this.routines.length === 0;
     this.drag = null;
     this.showSteps();

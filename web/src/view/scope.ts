@@ -4,7 +4,7 @@ import { effect } from '@preact/signals-core';
 import type { Description, Scene } from '../robot';
 import type { Session } from '../session';
 import { FREQUENCY_HZ } from '../uno/simulated-board';
-import { addPolyline, prepareSurface } from './canvas';
+import { addPolyline, beginLines, prepareSurface } from './canvas';
 import { element, make, setText } from './elements';
 import { getPalette, getServoColour } from './palette';
 import { isShown } from './rooms';
@@ -21,14 +21,12 @@ interface Pulse {
 }
 
 /** Returns the label on the board of the pin with this Arduino number. */
-function formatPin(pin: number): string {
-  return pin >= 14 ? `A${pin - 14}` : `D${pin}`;
-}
+const formatPin = (pin: number) => (pin >= 14 ? `A${pin - 14}` : `D${pin}`);
 
 export class ScopeView {
   private readonly panel = element<HTMLDetailsElement>('pulses');
   private readonly canvas = element<HTMLCanvasElement>('scope');
-  private readonly rows: { width: HTMLElement; angle: HTMLElement }[] = [];
+  private rows: { width: HTMLElement; angle: HTMLElement }[] = [];
   private pins: number[] = [];
   private pulses: Pulse[] = [];
   private readonly note = element('scope-note');
@@ -47,13 +45,12 @@ export class ScopeView {
     this.pulses = [];
     const body = element('widths');
     body.replaceChildren();
-    this.rows.length = 0;
-    servos.forEach(({ name, pin }, servo) => {
+    this.rows = servos.map(({ name, pin }, servo) => {
       const swatch = make('span', { className: 'swatch' });
       swatch.style.background = `var(--a${servo + 1})`;
       const [width, angle] = [make('td', {}, '–'), make('td', {}, '–')];
       body.append(make('tr', {}, make('td', {}, swatch, name), make('td', {}, formatPin(pin)), width, angle));
-      this.rows.push({ width, angle });
+      return { width, angle };
     });
   }
 
@@ -104,9 +101,7 @@ export class ScopeView {
       context.lineWidth = 1;
       context.strokeRect(-1, servo * rowHeight, width + 2, rowHeight);
       if (!this.hasPulses) continue;
-      context.strokeStyle = getServoColour(servo);
-      context.lineWidth = 2;
-      context.beginPath();
+      beginLines(context, getServoColour(servo), 2);
       const edges = this.pulses
         .filter((pulse) => pulse.servo === servo)
         .map(({ riseCycle, widthCycles }) => [toX(riseCycle), toX(riseCycle + widthCycles)])

@@ -63,7 +63,7 @@ export class SetupDialog implements StepTools {
 
   constructor(
     readonly session: Session,
-    readonly writer: BoardWriter,
+    private readonly writer: BoardWriter,
     private readonly connectBoard: () => Promise<void>,
   ) {
     element('setup-open').addEventListener('click', () => this.open(this.step));

@@ -2,7 +2,7 @@
 // robot's current pose.
 import type { Scene, SingularityMap } from '../robot';
 import type { Session } from '../session';
-import { prepareSurface } from './canvas';
+import { beginLines, prepareSurface } from './canvas';
 import { element } from './elements';
 import { onPaletteChange, getPalette } from './palette';
 
@@ -48,17 +48,13 @@ export class SingularityMapView {
       (left - map.min_angle) * scale,
       height - (right - map.min_angle) * scale,
     ];
-    context.strokeStyle = getPalette().a1;
-    context.lineWidth = 1.5;
-    context.beginPath();
+    beginLines(context, getPalette().a1, 1.5);
     for (const point of this.trail) context.lineTo(...toPixel(point));
     context.stroke();
     const currentPoint = this.trail[this.trail.length - 1];
     if (!currentPoint) return;
     context.fillStyle = getPalette().a1;
-    context.strokeStyle = getPalette().card;
-    context.lineWidth = 2;
-    context.beginPath();
+    beginLines(context, getPalette().card, 2);
     context.arc(...toPixel(currentPoint), 5, 0, 2 * Math.PI);
     context.fill();
     context.stroke();

@@ -20,13 +20,14 @@ const HALF_PACE_DEFLECTION = 0.65;
 const FULL_PACE_DEFLECTION = 0.75;
 /** Lowest pace that the robot accepts. */
 const MIN_PACE_PERCENT = 10;
+
+const IDLE: Direction = { forward: 0, left: 0 };
+const AHEAD: Direction = { forward: 1, left: 0 };
+const BACK: Direction = { forward: -1, left: 0 };
+const LEFT: Direction = { forward: 0, left: 1 };
+const RIGHT: Direction = { forward: 0, left: -1 };
 /** The direction of each D-pad button of a gamepad, by its index in the browser; all other buttons stop the robot. */
-const D_PAD_DIRECTIONS: Record<number, Direction> = {
-  12: { forward: 1, left: 0 },
-  13: { forward: -1, left: 0 },
-  14: { forward: 0, left: 1 },
-  15: { forward: 0, left: -1 },
-};
+const D_PAD_DIRECTIONS: Record<number, Direction> = { 12: AHEAD, 13: BACK, 14: LEFT, 15: RIGHT };
 
 /** Smallest cosine of the angle between a gait's displacement and the steering direction. */
 const MIN_COSINE = 0.8;
@@ -36,15 +37,13 @@ const MIN_DISPLACEMENT = { forwardMm: 2, turnDeg: 1 };
 
 /** The direction of each key, by code. */
 const KEY_DIRECTIONS: Record<string, Direction> = {
-  ArrowUp: { forward: 1, left: 0 },
-  ArrowDown: { forward: -1, left: 0 },
-  ArrowLeft: { forward: 0, left: 1 },
-  ArrowRight: { forward: 0, left: -1 },
-  KeyW: { forward: 1, left: 0 },
-  KeyS: { forward: -1, left: 0 },
-  KeyA: { forward: 0, left: 1 },
-  KeyD: { forward: 0, left: -1 },
+  ArrowUp: AHEAD, ArrowDown: BACK, ArrowLeft: LEFT, ArrowRight: RIGHT,
+  KeyW: AHEAD, KeyS: BACK, KeyA: LEFT, KeyD: RIGHT,
 };
+
+/** Returns the sum of directions. */
+const addDirections = (directions: Direction[]) =>
+  directions.reduce((a, b) => ({ forward: a.forward + b.forward, left: a.left + b.left }), IDLE);
 
 /**
  * Returns the command of the best gait for a direction; null if no gait fits. Distances and turns are compared as
@@ -77,8 +76,8 @@ export class Steering {
   private readonly heldKeys = new Set<string>();
   private readonly stick = element('stick');
   private readonly knob = element('knob');
-  private stickDirection: Direction = { forward: 0, left: 0 };
-  private gamepadDirection: Direction = { forward: 0, left: 0 };
+  private stickDirection = IDLE;
+  private gamepadDirection = IDLE;
   /** True once the gamepads' sticks are in the dead zone after `release`; until then, a held stick does not steer. */
   private isGamepadReleased = true;
   /** True while a gamepad's stop button is pressed. */
@@ -120,18 +119,16 @@ export class Steering {
   /** Reads the gamepads; called in every animation frame. */
   readGamepads(): void {
     const gamepads = (navigator.getGamepads?.() ?? []).filter((gamepad) => gamepad !== null);
-    const direction = { forward: 0, left: 0 };
-    let isStopButtonPressed = false;
-    for (const { axes, buttons } of gamepads) {
-      direction.forward -= axes[1] ?? 0;
-      direction.left -= axes[0] ?? 0;
-      buttons.forEach(({ pressed }, index) => {
-        if (!pressed) return;
-        isStopButtonPressed ||= !(index in D_PAD_DIRECTIONS);
-        direction.forward += D_PAD_DIRECTIONS[index]?.forward ?? 0;
-        direction.left += D_PAD_DIRECTIONS[index]?.left ?? 0;
-      });
-    }
+    const findPressed = ({ buttons }: Gamepad) =>
+      [...buttons.keys()].filter((index) => buttons[index].pressed);
+    const directions = gamepads.flatMap((gamepad) => {
+      const [x = 0, y = 0] = gamepad.axes;
+      const dPad = findPressed(gamepad).flatMap((index) => D_PAD_DIRECTIONS[index] ?? []);
+      return [{ forward: -y, left: -x }, ...dPad];
+    });
+    const direction = addDirections(directions);
+    const pressedButtons = gamepads.flatMap(findPressed);
+    const isStopButtonPressed = pressedButtons.some((index) => !(index in D_PAD_DIRECTIONS));
     if (isStopButtonPressed && !this.isStopButtonPressed) {
       void this.session.drive(WORDS.stop);
       this.release(false);
@@ -147,7 +144,7 @@ export class Steering {
   /** Releases all controls; if `stopsRobot`, also stops a robot that they drive. */
   release(stopsRobot = true): void {
     this.heldKeys.clear();
-    this.gamepadDirection = { forward: 0, left: 0 };
+    this.gamepadDirection = IDLE;
     this.isGamepadReleased = false;
     if (!stopsRobot) this.sentGait = null;
     this.moveStick(null);
@@ -186,11 +183,8 @@ export class Steering {
 
   /** Sends the gait and the pace for all held controls, if these have changed. */
   private applyDirection(): void {
-    const direction = { forward: this.stickDirection.forward + this.gamepadDirection.forward, left: this.stickDirection.left + this.gamepadDirection.left };
-    for (const code of this.heldKeys) {
-      direction.forward += KEY_DIRECTIONS[code]?.forward ?? 0;
-      direction.left += KEY_DIRECTIONS[code]?.left ?? 0;
-    }
+    const keyDirections = Array.from(this.heldKeys, (code) => KEY_DIRECTIONS[code]);
+    const direction = addDirections([this.stickDirection, this.gamepadDirection, ...keyDirections]);
     const deflection = Math.hypot(direction.forward, direction.left);
     const isIdle = this.isDrivingForbidden() || deflection < DEAD_ZONE;
     const isHalfPace = !isIdle && deflection < (this.fullPace === null ? HALF_PACE_DEFLECTION : FULL_PACE_DEFLECTION);

@@ -8,6 +8,7 @@ import { element, make } from './elements';
 const DECIMALS = { force: 1, play: 1, leaf: 1, twist: 1, friction: 2, ratio: 2, mass: 0 };
 type SliderName = keyof typeof DECIMALS;
 const SLIDER_NAMES = Object.keys(DECIMALS) as SliderName[];
+const getSlider = (name: SliderName) => element<HTMLInputElement>(name);
 
 /** The label of each of the robot's inputs: the event that closes its contact. */
 const CONTACT_LABELS: Record<string, string> = { button: 'button pressed', nose: 'wall at the nose' };
@@ -21,7 +22,7 @@ export class WorldView {
   constructor(private readonly session: Session) {
     this.driveList.addEventListener('change', () => this.applySettings());
     for (const name of SLIDER_NAMES) {
-      const input = this.getSlider(name);
+      const input = getSlider(name);
       input.addEventListener('input', () => this.showText(input, input.valueAsNumber.toFixed(DECIMALS[name])));
       input.addEventListener('change', () => this.applySettings());
     }
@@ -42,7 +43,7 @@ export class WorldView {
     const { floor, description } = this.session;
     this.driveList.value = floor.kind;
     for (const name of SLIDER_NAMES) {
-      const input = this.getSlider(name);
+      const input = getSlider(name);
       // The slider's range grows to include the value.
       if (floor[name] > Number(input.max)) input.max = String(floor[name]);
       if (floor[name] < Number(input.min)) input.min = String(floor[name]);
@@ -92,19 +93,15 @@ export class WorldView {
     element('inputs').hidden = boxes.length === 0;
   }
 
-  private getSlider(name: SliderName): HTMLInputElement {
-    return element<HTMLInputElement>(name);
-  }
-
   /** Enables only the sliders that have an effect. */
   private enableSliders(floor: Floor): void {
     const hasSprings = floor.kind !== 'rigid';
     const isElastic = hasSprings || this.session.servos !== 'ideal';
-    this.getSlider('force').disabled = !hasSprings;
+    getSlider('force').disabled = !hasSprings;
     // If neither springs nor servos yield, friction has no effect; if no foot is too long either, mass has no effect.
-    this.getSlider('friction').disabled = !isElastic;
-    this.getSlider('mass').disabled = !isElastic && floor.twist === 0;
-    this.getSlider('leaf').disabled = floor.twist === 0;
+    getSlider('friction').disabled = !isElastic;
+    getSlider('mass').disabled = !isElastic && floor.twist === 0;
+    getSlider('leaf').disabled = floor.twist === 0;
     element('rigid-note').hidden = isElastic || canLag(floor) || floor.twist !== 0;
   }
 
@@ -120,7 +117,7 @@ export class WorldView {
     // A value whose displayed text is unchanged keeps its exact number.
     const floor: Floor = { ...this.session.floor, kind: this.driveList.value as LegDrive };
     for (const name of SLIDER_NAMES) {
-      const value = this.getSlider(name).valueAsNumber;
+      const value = getSlider(name).valueAsNumber;
       if (floor[name].toFixed(DECIMALS[name]) !== value.toFixed(DECIMALS[name])) floor[name] = value;
     }
     this.enableSliders(floor);

@@ -54,19 +54,15 @@ impl Calibrator {
     /// Turns one servo from its neutral angle far enough to see its direction; returns the turn.
     #[wasm_bindgen(js_name = turnToCheckSign)]
     pub async fn turn_to_check_sign(&mut self, servo: usize) -> Result<f64, JsValue> {
-        self.0
-            .turn_servo(servo, &SIGN_TURNS_DEG)
-            .await
-            .map_err(error_to_js)
+        let turn = self.0.turn_servo(servo, &SIGN_TURNS_DEG).await;
+        turn.map_err(error_to_js)
     }
 
     /// Turns one servo from its neutral angle far enough to measure its scale; returns the turn.
     #[wasm_bindgen(js_name = turnToMeasureScale)]
     pub async fn turn_to_measure_scale(&mut self, servo: usize) -> Result<f64, JsValue> {
-        self.0
-            .turn_servo(servo, &SCALE_TURNS_DEG)
-            .await
-            .map_err(error_to_js)
+        let turn = self.0.turn_servo(servo, &SCALE_TURNS_DEG).await;
+        turn.map_err(error_to_js)
     }
 
     /// Moves one servo to an angle, and the other servos to neutral; returns the angle, 0 to 360.
@@ -102,10 +98,8 @@ impl Calibrator {
     /// Sets a servo's travel, counter-clockwise from the first angle to the second.
     #[wasm_bindgen(js_name = setLimit)]
     pub async fn set_limit(&mut self, servo: usize, from: f64, to: f64) -> Result<(), JsValue> {
-        self.0
-            .set_limit(servo, [from, to])
-            .await
-            .map_err(error_to_js)
+        let outcome = self.0.set_limit(servo, [from, to]).await;
+        outcome.map_err(error_to_js)
     }
 
     /// Starts `walk`, or else the first moving gait; returns the gait's name, or undefined if no gait moves.

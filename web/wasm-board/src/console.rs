@@ -2,9 +2,8 @@
 
 use std::time::Duration;
 
-use js_sys::{Array, JsString, Reflect};
+use js_sys::{Array, Reflect};
 use lizard_calibrate::{ConsoleError, Reply, ReplyError};
-use wasm_bindgen::JsCast;
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen(typescript_custom_section)]
@@ -54,9 +53,7 @@ impl lizard_calibrate::Console for JsConsole {
 
 /// Converts a string from JavaScript; returns an empty string for any other value.
 fn string_or_empty(value: JsValue) -> String {
-    value
-        .dyn_into::<JsString>()
-        .map_or(String::new(), Into::into)
+    value.as_string().unwrap_or_default()
 }
 
 /// Converts an error to the thrown value: the page's own error, or a message about the robot's reply.

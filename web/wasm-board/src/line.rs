@@ -53,10 +53,8 @@ impl Board for JsBoard {
     }
 
     async fn read(&mut self, bytes: &mut [u8], timeout: Duration) -> Result<usize, BoardError> {
-        let result = self
-            .0
-            .read(bytes.len() as u32, to_milliseconds(timeout))
-            .await;
+        let timeout_ms = to_milliseconds(timeout);
+        let result = self.0.read(bytes.len() as u32, timeout_ms).await;
         let received = Uint8Array::new(&result.map_err(to_board_error)?);
         let count = received.length() as usize;
         received.copy_to(&mut bytes[..count]);

@@ -1,25 +1,12 @@
 //! Stores the video that the page records, and measures the gaits in it.
 
+use std::error::Error;
+
 use lizard_measure::{Gaits, NamedVideo, Report, compute_board_height};
 use lizard_robot::Robot;
-use lizard_video::{Frame, Setup, Tag, Video, sheet};
+use lizard_video::{Frame, Setup, Tag, Video, VideoError, sheet};
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
-
-/// A refusal with its reason.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Tsify)]
-pub struct Refusal {
-    /// The reason, as a message for the user.
-    pub refused: String,
-}
-
-impl Refusal {
-    pub(crate) fn new(reason: impl ToString) -> Self {
-        Self {
-            refused: reason.to_string(),
-        }
-    }
-}
 
 /// A tag in a frame.
 #[derive(Debug, Clone, PartialEq, Serialize, Tsify)]
@@ -86,9 +73,9 @@ impl Camera {
     ///
     /// # Errors
     /// Fails if the frame does not fit the video, or shows a tag twice.
-    pub fn add_frame(&mut self, frame: &Frame, seconds: f64) -> Result<Vec<TagEntry>, Refusal> {
+    pub fn add_frame(&mut self, frame: &Frame, seconds: f64) -> Result<Vec<TagEntry>, VideoError> {
         self.cached_analysis = None;
-        let tags = self.video.add_frame(seconds, frame).map_err(Refusal::new)?;
+        let tags = self.video.add_frame(seconds, frame)?;
         let to_entry = |(id, corners): (usize, &Option<_>)| {
             Some(TagEntry {
                 id,
@@ -103,42 +90,37 @@ impl Camera {
     /// # Errors
     /// Fails if robot.toml is invalid, if the robot does not have a requested gait, if the video cannot be measured, or
     /// if a walk without a requested gait does not clearly match one.
-    pub fn measure(&mut self, request: &MeasureRequest) -> Result<Results, Refusal> {
-        let robot = Robot::parse(&request.toml).map_err(Refusal::new)?;
+    pub fn measure(&mut self, request: &MeasureRequest) -> Result<Results, Box<dyn Error>> {
+        let robot = Robot::parse(&request.toml)?;
         let find_gait = |walk: &RequestedWalk| {
             let gait = robot.gait(&walk.gait).filter(|gait| gait.has_movement());
-            gait.ok_or_else(|| Refusal::new(format!("no gait `{}` moves this robot", walk.gait)))
+            gait.ok_or_else(|| format!("no gait `{}` moves this robot", walk.gait))
         };
-        let named_gaits: Vec<_> = request
-            .walks
-            .iter()
-            .map(find_gait)
-            .collect::<Result<_, _>>()?;
+        let named_gaits = request.walks.iter().map(find_gait);
+        let named_gaits = named_gaits.collect::<Result<Vec<_>, _>>()?;
+        let deck_height = request.deck_height;
         let setup = Setup {
             print_scale: request.ruler_length / sheet::RULER_LENGTH,
-            deck_height: request
-                .deck_height
-                .unwrap_or_else(|| compute_board_height(&robot)),
+            deck_height: deck_height.unwrap_or_else(|| compute_board_height(&robot)),
         };
         let gaits = Gaits::predict(&robot, &named_gaits, f64::from(request.speed) / 100.0);
         let video = match self.cached_analysis.take() {
             Some((cached_setup, video)) if cached_setup == setup => video,
             _ => NamedVideo {
                 name: "the video".to_owned(),
-                analysis: self.video.analyse(setup).map_err(Refusal::new)?,
+                analysis: self.video.analyse(setup)?,
             },
         };
         let (_, video) = self.cached_analysis.insert((setup, video));
         let videos = std::slice::from_ref(&*video);
         let mut problems = Vec::new();
         let walks = match request.walks.is_empty() {
-            true => gaits.measure_walks(videos).map_err(Refusal::new)?,
+            true => gaits.measure_walks(videos)?,
             false => {
                 let measured_walks = request.walks.iter().enumerate().filter_map(|(i, walk)| {
-                    let measured_walk = gaits.measure_walk(i, &videos[0], walk.during);
-                    let measured_walk = measured_walk
-                        .map_err(|reason| problems.push(format!("{}: {reason}", walk.gait)));
-                    measured_walk.ok()
+                    let result = gaits.measure_walk(i, &videos[0], walk.during);
+                    let add_problem = |reason| problems.push(format!("{}: {reason}", walk.gait));
+                    result.map_err(add_problem).ok()
                 });
                 measured_walks.collect()
             }
@@ -146,7 +128,7 @@ impl Camera {
         let report = Report::compute(&robot, request.speed, setup, videos, &gaits, &walks);
         let report = report.with_ranges(&robot).with_mujoco(&request.toml);
         Ok(Results {
-            gaits: serde_json::to_value(&report.gaits).map_err(Refusal::new)?,
+            gaits: serde_json::to_value(&report.gaits)?,
             problems,
         })
     }

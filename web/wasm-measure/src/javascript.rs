@@ -6,7 +6,7 @@ use lizard_video::Frame;
 use serde::Serialize;
 use wasm_bindgen::prelude::{JsError, JsValue, wasm_bindgen};
 
-use crate::camera::{Camera, Refusal};
+use crate::camera::Camera;
 
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = "
@@ -51,12 +51,6 @@ export interface Range {
   most_by: string | null;
 }
 ";
-
-impl From<Refusal> for JsError {
-    fn from(refusal: Refusal) -> Self {
-        Self::new(&refusal.refused)
-    }
-}
 
 fn to_js(value: impl Serialize) -> JsValue {
     let text = serde_json::to_string(&value).unwrap_or_default();
@@ -114,18 +108,18 @@ impl PageCamera {
         let json = JSON::stringify(request)
             .map_err(|_| JsError::new("the request cannot be converted to JSON"))?;
         let request = serde_json::from_str(&String::from(json))?;
-        Ok(to_js(self.0.measure(&request)?))
+        let results = self.0.measure(&request);
+        let results = results.map_err(|error| JsError::new(&error.to_string()));
+        Ok(to_js(results?))
     }
 
     /// Draws the sheet of tags as PDF, for US Letter paper if `is_letter`, otherwise for A4.
     #[must_use]
     #[wasm_bindgen(js_name = drawSheet)]
     pub fn draw_sheet(is_letter: bool) -> Vec<u8> {
-        let paper = if is_letter {
-            PaperSize::Letter
-        } else {
-            PaperSize::A4
-        };
-        paper.draw_tag_sheet()
+        match is_letter {
+            true => PaperSize::Letter.draw_tag_sheet(),
+            false => PaperSize::A4.draw_tag_sheet(),
+        }
     }
 }

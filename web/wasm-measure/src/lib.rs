@@ -11,5 +11,5 @@
 mod camera;
 mod javascript;
 
-pub use camera::{Camera, MeasureRequest, Refusal, RequestedWalk, Results, TagEntry};
+pub use camera::{Camera, MeasureRequest, RequestedWalk, Results, TagEntry};
 pub use javascript::PageCamera;

@@ -139,8 +139,7 @@ impl Model {
         let mut next_bought_index = self.needed_parts().count();
         let bodies = self.assembly.bodies().iter().map(|body| {
             sole_z = sole_z.min(body.z()[0]);
-            let has_body = |part: &Part| part.body_names.contains(&body.name);
-            let part = self.needed_parts().position(has_body);
+            let part = self.needed_parts().position(|part| part.has_body(body));
             let transform = part.map(|part| self.parts[part].transform_to_body(body));
             let step = self.steps.iter().position(|step| step.adds(body));
             let solid = part.unwrap_or_else(|| {
@@ -253,10 +252,8 @@ impl Model {
         if group > count {
             return Ok(Vec::new());
         }
-        let pose = robot
-            .lizard()
-            .solve(&robot.neutral_pose())
-            .map_err(Refusal::without_clash)?;
+        let pose = robot.lizard().solve(&robot.neutral_pose());
+        let pose = pose.map_err(Refusal::without_clash)?;
         let bill = Bill::compute(&self.assembly, &self.parts, &pose);
         Ok(make_documents(&self.assembly, &bill, &pose)?)
     }
@@ -281,13 +278,9 @@ fn to_matrix(transform: Option<PrintTransform>) -> [f64; 16] {
         lift: 0.0,
         frame: Placement::CHASSIS,
     };
-    let PrintTransform {
-        is_flipped,
-        lift,
-        frame,
-    } = transform.unwrap_or(identity);
-    let Placement { origin, x_axis } = frame;
-    let z_sign = if is_flipped { -1.0 } else { 1.0 };
+    let transform = transform.unwrap_or(identity);
+    let (Placement { origin, x_axis }, lift) = (transform.frame, transform.lift);
+    let z_sign = if transform.is_flipped { -1.0 } else { 1.0 };
     let y_axis = x_axis.rotated_left() * z_sign;
     [
         x_axis.x, x_axis.y, 0.0, 0.0, y_axis.x, y_axis.y, 0.0, 0.0, 0.0, 0.0, z_sign, 0.0,

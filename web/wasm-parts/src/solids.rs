@@ -22,23 +22,12 @@ impl Model {
     /// # Errors
     /// Fails if the layers of a part do not form a closed body.
     pub fn make_solids(&self) -> Result<Vec<Triangles>, Refusal> {
-        let printed = self
-            .needed_parts()
-            .map(|part| make_triangles(&part.name, &part.build_printed_layers().0));
-        let bought = self
-            .bought_bodies()
-            .map(|body| make_triangles(&body.name, &body.prisms));
+        let parts = self.needed_parts();
+        let printed = parts.map(|part| make_triangles(&part.name, &part.build_printed_layers().0));
+        let is_bought = |body: &&Body| !self.needed_parts().any(|part| part.has_body(body));
+        let bodies = self.assembly().bodies().iter().filter(is_bought);
+        let bought = bodies.map(|body| make_triangles(&body.name, &body.prisms));
         printed.chain(bought).collect()
-    }
-
-    /// Returns the bodies that belong to no needed part.
-    fn bought_bodies(&self) -> impl Iterator<Item = &Body> {
-        let bodies = self.assembly().bodies().iter();
-        bodies.filter(|body| {
-            !self
-                .needed_parts()
-                .any(|part| part.body_names.contains(&body.name))
-        })
     }
 }
 

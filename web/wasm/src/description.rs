@@ -93,11 +93,8 @@ impl ServoModelEntry {
             ]),
         };
         let mut models = vec![make_entry(OWN_SERVOS, robot.servo_type())];
-        models.extend(
-            ServoType::ALL
-                .iter()
-                .map(|servo| make_entry(servo.model, servo)),
-        );
+        let types = ServoType::ALL.iter();
+        models.extend(types.map(|servo| make_entry(servo.model, servo)));
         models.push(Self {
             name: IDEAL_SERVOS,
             ratings: None,
@@ -200,15 +197,12 @@ impl Description {
     /// Describes a robot.
     #[must_use]
     pub fn for_robot(robot: &Robot) -> Self {
-        let servos = robot
-            .servos()
-            .iter()
-            .enumerate()
-            .map(|(i, servo)| ServoEntry {
-                name: SERVO_NAMES[i],
-                pin: servo.pin,
-                neutral: servo.neutral,
-            });
+        let servos = SERVO_NAMES.into_iter().zip(robot.servos());
+        let servos = servos.map(|(name, servo)| ServoEntry {
+            name,
+            pin: servo.pin,
+            neutral: servo.neutral,
+        });
         let gaits = robot.gaits().iter().map(|gait| GaitEntry {
             name: gait.name().to_string(),
             command: gait.command(),
@@ -219,12 +213,15 @@ impl Description {
         let routines = robot.routines().iter();
         let limits = robot.limits();
         let list_margins = |checks: &[Check], limit: f64| {
-            let make_entry = |check: &Check| MarginEntry {
-                name: check.name(),
-                limit,
-            };
-            checks.iter().map(make_entry).collect::<Vec<_>>()
+            let names = checks.iter().map(|check| check.name());
+            let entries = names.map(|name| MarginEntry { name, limit });
+            entries.collect::<Vec<_>>()
         };
+        let margins = [
+            list_margins(&Check::TYPE2, limits.type2),
+            list_margins(&Check::TYPE1, limits.type1),
+            list_margins(&Check::LEG, limits.leg),
+        ];
         let core = robot.core();
         let board = core.supplies().board;
         Self {
@@ -237,12 +234,7 @@ impl Description {
             routines: routines.map(|routine| routine.command()).collect(),
             lengths: list_lengths(robot),
             plate: robot.plate().into(),
-            margins: [
-                list_margins(&Check::TYPE2, limits.type2),
-                list_margins(&Check::TYPE1, limits.type1),
-                list_margins(&Check::LEG, limits.leg),
-            ]
-            .concat(),
+            margins: margins.concat(),
             rail: healthy_rail_mv(&core.supplies())
                 .zip(core.rail_pin())
                 .map(|(mv, pin)| (pin - 14, mv / 1000.0)),
@@ -306,41 +298,25 @@ fn list_lengths(robot: &Robot) -> Vec<LengthEntry> {
     let values = robot.lizard().links.to_array();
     let links = LINK_LABELS_AND_TWINS.iter().zip(values).enumerate();
     let links = links.map(|(i, ((label, twin), value))| {
-        make_entry(
-            &format!("links.l{i}"),
-            label,
-            &format!("links.l{twin}"),
-            value,
-        )
+        let (key, twin) = (format!("links.l{i}"), format!("links.l{twin}"));
+        make_entry(&key, label, &twin, value)
     });
     let [forward_key, side_key] = HIP_KEYS;
     let [front_side, hind_side] = feet.hip_side;
+    let (forward, mount) = (feet.hip_forward, feet.mount_angle);
     let legs = [
         make_entry("leg.ground", "leg ground link", "leg.coupler", leg.ground),
         make_entry("leg.crank", "leg crank", "leg.follower", leg.crank),
         make_entry("leg.coupler", "leg coupler", "leg.ground", leg.coupler),
         make_entry("leg.follower", "leg follower", "leg.crank", leg.follower),
-        make_entry(
-            forward_key,
-            "hip, fore and aft",
-            forward_key,
-            feet.hip_forward,
-        ),
+        make_entry(forward_key, "hip, fore and aft", forward_key, forward),
     ];
     // Derived front and hind hips may differ. One number cannot describe both; therefore it is not offered.
     let side_entry = (front_side == hind_side)
         .then(|| make_entry(side_key, "hip, sideways", side_key, front_side));
-    let mount_entry = make_entry(
-        "leg.mount",
-        "outward sweep of the legs",
-        "leg.mount",
-        feet.mount_angle,
-    );
-    links
-        .chain(legs)
-        .chain(side_entry)
-        .chain([mount_entry])
-        .collect()
+    let mount_entry = make_entry("leg.mount", "outward sweep of the legs", "leg.mount", mount);
+    let lengths = links.chain(legs).chain(side_entry);
+    lengths.chain([mount_entry]).collect()
 }
 
 #[cfg(test)]
@@ -352,9 +328,8 @@ mod tests {
         let robot = crate::paper::load_paper_robot();
         let lengths = Description::for_robot(&robot).lengths;
         for length in &lengths {
-            let twin = lengths
-                .iter()
-                .find(|candidate| candidate.key == length.twin);
+            let mut candidates = lengths.iter();
+            let twin = candidates.find(|candidate| candidate.key == length.twin);
             let twin = twin.expect("every twin is in the list");
             assert_eq!((&twin.twin, twin.value), (&length.key, length.value));
         }

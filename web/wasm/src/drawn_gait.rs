@@ -49,10 +49,8 @@ impl DrawnGait {
     /// Returns the path that the end point follows; `None` for an unknown `end`, or if the line has no length.
     fn smoothed_path(&self, robot: &Robot) -> Option<Path> {
         let neutral = compute_neutral_point(robot, self.end()?);
-        let scale_point = |[x, y]: &[f64; 2]| {
-            let scale_about_neutral =
-                |axis: usize, value: f64| neutral[axis] + self.size * (value - neutral[axis]);
-            [scale_about_neutral(0, *x), scale_about_neutral(1, *y)]
+        let scale_point = |point: &[f64; 2]| {
+            [0, 1].map(|axis| neutral[axis] + self.size * (point[axis] - neutral[axis]))
         };
         let points: Vec<[f64; 2]> = self.points.iter().map(scale_point).collect();
         let samples = sample_evenly(&points)?;
@@ -104,11 +102,10 @@ impl DrawnGait {
 /// Returns the mean and the first harmonics of values that are evenly spaced over a cycle.
 fn compute_harmonics(values: &[f64], harmonic_count: usize) -> (f64, Vec<Harmonic>) {
     let compute_mean = |transform: &dyn Fn(f64, f64) -> f64| {
+        let count = values.len() as f64;
         let indexed_values = values.iter().enumerate();
-        let sum: f64 = indexed_values
-            .map(|(i, value)| transform(*value, i as f64 / values.len() as f64))
-            .sum();
-        sum / values.len() as f64
+        let terms = indexed_values.map(|(i, value)| transform(*value, i as f64 / count));
+        terms.sum::<f64>() / count
     };
     let compute_harmonic = |order: usize| {
         let order = order as f64;
@@ -121,10 +118,8 @@ fn compute_harmonics(values: &[f64], harmonic_count: usize) -> (f64, Vec<Harmoni
             phase_shift: (cosine.atan2(sine) / TAU * 1e4).round() / 1e4 + 0.0,
         }
     };
-    (
-        compute_mean(&|value, _| value),
-        (1..=harmonic_count).map(compute_harmonic).collect(),
-    )
+    let harmonics = (1..=harmonic_count).map(compute_harmonic);
+    (compute_mean(&|value, _| value), harmonics.collect())
 }
 
 /// Samples a closed line at equal distances along it; `None` if the line has no length.
@@ -149,10 +144,9 @@ fn sample_evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
             true => (distance - segment_start) / lengths[segment],
             false => 0.0,
         };
+        let fraction = segment_fraction.min(1.0);
         let (from, to) = (points[segment], next_point(segment));
-        samples.push(
-            [0, 1].map(|axis| from[axis] + segment_fraction.min(1.0) * (to[axis] - from[axis])),
-        );
+        samples.push([0, 1].map(|axis| from[axis] + fraction * (to[axis] - from[axis])));
     }
     Some(samples)
 }
@@ -161,7 +155,7 @@ fn sample_evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
 mod tests {
     use super::*;
     use crate::paper::{PAPER_TOML, load_paper_robot, load_paper_robot_and_twin};
-    use crate::trial::EditedGait;
+    use crate::trial::{Alternative, EditedGait};
 
     /// Makes a gait along a circle about the neutral point of head or tail.
     fn make_circular_gait(robot: &Robot, end: End, radius_mm: f64) -> DrawnGait {
@@ -186,29 +180,18 @@ mod tests {
         for end in End::ALL {
             let drawn_gait = make_circular_gait(&robot, end, 6.0);
             let edited_gait = EditedGait::DrawnGait(drawn_gait);
-            let trial = edited_gait
-                .try_on(&twin)
-                .expect("the line has a length")
-                .expect("the gait is valid");
-            assert!(
-                trial.table.contains(&format!("[gait.mine.{end}]")),
-                "{}",
-                trial.table
-            );
-            let text = edited_gait
-                .put_into(PAPER_TOML, &robot)
-                .expect("the line has a length");
+            let trial = edited_gait.try_on(&twin).expect("the line has a length");
+            let table = trial.expect("the gait is valid").table;
+            assert!(table.contains(&format!("[gait.mine.{end}]")), "{table}");
+            let text = edited_gait.put_into(PAPER_TOML, &robot);
+            let text = text.expect("the line has a length");
             let robot = Robot::parse(&text).expect("the robot with the gait is valid");
             let gait = robot.gait("mine").expect("the gait was added");
             let [x, y] = compute_neutral_point(&robot, end);
             for i in 0..50 {
                 let pose = gait.pose(f64::from(i) / 50.0);
-                let point = robot
-                    .lizard()
-                    .solve(&pose)
-                    .expect("every loop closes")
-                    .end(end)
-                    .end_point;
+                let solution = robot.lizard().solve(&pose).expect("every loop closes");
+                let point = solution.end(end).end_point;
                 let distance = (point.x - x).hypot(point.y - y);
                 assert!((distance - 6.0).abs() < 0.05, "{end} {i}: {distance} mm");
             }
@@ -219,18 +202,13 @@ mod tests {
     fn the_path_of_a_drawn_circle_is_a_circle_with_one_harmonic() {
         let robot = load_paper_robot();
         let drawn_gait = make_circular_gait(&robot, End::Head, 6.0);
-        let table = drawn_gait
-            .format_table(&robot)
-            .expect("the line has a length");
-        assert!(
-            table.contains("k = 1") && !table.contains("k = 2"),
-            "{table}"
-        );
+        let table = drawn_gait.format_table(&robot);
+        let table = table.expect("the line has a length");
+        assert!(table.contains("k = 1"), "{table}");
+        assert!(!table.contains("k = 2"), "{table}");
         let [x, y] = compute_neutral_point(&robot, End::Head);
-        for [px, py] in drawn_gait
-            .shown_points(&robot)
-            .expect("the line has a length")
-        {
+        let points = drawn_gait.shown_points(&robot);
+        for [px, py] in points.expect("the line has a length") {
             assert!(((px - x).hypot(py - y) - 6.0).abs() < 0.02);
         }
     }
@@ -240,60 +218,47 @@ mod tests {
         let (robot, twin) = load_paper_robot_and_twin();
         let drawn_gait = make_circular_gait(&robot, End::Head, 40.0);
         let try_gait = |drawn_gait: &DrawnGait| {
-            EditedGait::DrawnGait(drawn_gait.clone())
-                .try_on(&twin)
-                .expect("the line has a length")
+            let edited_gait = EditedGait::DrawnGait(drawn_gait.clone());
+            edited_gait.try_on(&twin).expect("the line has a length")
         };
         let refused_trial = try_gait(&drawn_gait).expect_err("the circle is too large");
-        let [size] = refused_trial.alternatives.as_slice() else {
-            panic!(
-                "only a size is offered, no period: {:?}",
-                refused_trial.alternatives
-            );
+        let alternatives = refused_trial.alternatives;
+        let [Alternative { parameter, value }] = alternatives[..] else {
+            panic!("only a size is offered, no period: {alternatives:?}");
         };
-        assert_eq!(size.parameter, "size");
+        assert_eq!(parameter, "size");
         let with_size = |size: f64| DrawnGait {
             size,
             ..drawn_gait.clone()
         };
         let is_valid = |drawn_gait: DrawnGait| try_gait(&drawn_gait).is_ok();
-        assert!(
-            is_valid(with_size(size.value)) && !is_valid(with_size(size.value + 0.01)),
-            "{}",
-            size.value
-        );
+        assert!(is_valid(with_size(value)), "{value}");
+        assert!(!is_valid(with_size(value + 0.01)), "{value}");
         let fast_gait = DrawnGait {
             period: 0.2,
             ..make_circular_gait(&robot, End::Head, 8.0)
         };
         let refused_trial = try_gait(&fast_gait).expect_err("the gait is too fast");
-        let offer = refused_trial
-            .alternatives
-            .iter()
-            .find(|alternative| alternative.parameter == "period");
+        let mut alternatives = refused_trial.alternatives.iter();
+        let offer = alternatives.find(|alternative| alternative.parameter == "period");
         let slow_period = offer.expect("a longer period is offered").value;
         let with_period = |period: f64| DrawnGait {
             period,
             ..fast_gait.clone()
         };
-        assert!(
-            is_valid(with_period(slow_period)) && !is_valid(with_period(slow_period - 0.01)),
-            "{slow_period} s"
-        );
+        assert!(is_valid(with_period(slow_period)), "{slow_period} s");
+        let is_faster_valid = is_valid(with_period(slow_period - 0.01));
+        assert!(!is_faster_valid, "{slow_period} s");
     }
 
     #[test]
     fn a_line_without_length_gives_no_gait() {
         let (robot, twin) = load_paper_robot_and_twin();
         let mut drawn_gait = make_circular_gait(&robot, End::Tail, 0.0);
-        assert!(
-            EditedGait::DrawnGait(drawn_gait.clone())
-                .try_on(&twin)
-                .is_none()
-        );
+        let edited_gait = EditedGait::DrawnGait(drawn_gait.clone());
+        assert!(edited_gait.try_on(&twin).is_none());
         drawn_gait.points.clear();
-        assert!(
-            drawn_gait.shown_points(&robot).is_none() && drawn_gait.format_table(&robot).is_none()
-        );
+        assert!(drawn_gait.shown_points(&robot).is_none());
+        assert!(drawn_gait.format_table(&robot).is_none());
     }
 }

@@ -114,9 +114,8 @@ impl FasterSearch {
         if self.progress.done < self.trial_count {
             let search = &mut self.searches[self.kind_index];
             let parameters = &search.trials()[self.scores.len()];
-            let score = self
-                .tuning
-                .score(GaitKind::ALL[self.kind_index], parameters);
+            let kind = GaitKind::ALL[self.kind_index];
+            let score = self.tuning.score(kind, parameters);
             self.scores.push(score);
             self.progress.done += 1;
             if score > self.progress.best_score {
@@ -164,10 +163,8 @@ mod tests {
     use crate::trial::EditedGait;
 
     fn make_task(name: &str) -> SearchTask {
-        let gait = load_paper_robot()
-            .gait(name)
-            .cloned()
-            .expect("the robot has this gait");
+        let robot = load_paper_robot();
+        let gait = robot.gait(name).expect("the robot has this gait");
         SearchTask {
             bars: gait.bars().expect("the gait has bars"),
             rate: None,
@@ -178,9 +175,9 @@ mod tests {
 
     /// Returns the message with which a search is refused.
     fn begin_refused(task: &SearchTask) -> String {
-        FasterSearch::begin(&load_paper_robot_and_twin().1, task)
-            .expect_err("the search is refused")
-            .refused
+        let (_, twin) = load_paper_robot_and_twin();
+        let refusal = FasterSearch::begin(&twin, task).expect_err("the search is refused");
+        refusal.refused
     }
 
     #[test]
@@ -190,41 +187,34 @@ mod tests {
             FasterSearch::begin(&twin, &make_task("walk")).expect("the gait can be made faster");
         assert_eq!(search.extent().total, 40);
         assert_eq!(search.compare_best(20), None, "no gait has been tried yet");
-        let best_score = (0..3)
-            .map(|_| search.try_next())
-            .last()
-            .expect("three gaits were tried")
-            .best_score;
+        let progress: [Progress; 3] = std::array::from_fn(|_| search.try_next());
+        let best_score = progress[2].best_score;
         let found = search.compare_best(20).expect("a gait was valid");
         // The search of `lizard tune` tries the same gaits.
         let walk = robot.gait("walk").expect("the robot has this gait");
         let tuning = Tuning::new(&robot, robot.ground(), walk, None, "walk", 3)
             .expect("`walk` goes straight ahead");
-        let round_parameters = tuning.start_search(GaitKind::Wave).trials().to_vec();
-        let tried_parameters = round_parameters
-            .into_iter()
-            .take(3)
-            .filter_map(|parameters| {
-                let kind = GaitKind::Wave;
-                let score = tuning.score(kind, &parameters)?;
-                Some(ScoredParameters {
-                    kind,
-                    score,
-                    parameters,
-                })
-            });
+        let kind = GaitKind::Wave;
+        let round_parameters = tuning.start_search(kind).trials().to_vec();
+        let tried_parameters = round_parameters.into_iter().take(3);
+        let tried_parameters = tried_parameters.filter_map(|parameters| {
+            let score = tuning.score(kind, &parameters)?;
+            Some(ScoredParameters {
+                kind,
+                score,
+                parameters,
+            })
+        });
         let tried_parameters: Vec<_> = tried_parameters.collect();
         let scores = tried_parameters.iter().map(|entry| entry.score);
         assert_eq!(best_score, Some(scores.fold(f64::NEG_INFINITY, f64::max)));
-        let best_tuned = tuning
-            .build_best(tried_parameters)
-            .expect("a gait was valid");
+        let best_tuned = tuning.build_best(tried_parameters);
+        let best_tuned = best_tuned.expect("a gait was valid");
         assert_eq!(found.comparison, tuning.compare(&best_tuned, 20));
         // The page uses exactly the found gait.
         assert_eq!(found.bars.to_toml(), best_tuned.table());
-        let trial = EditedGait::Bars(found.bars)
-            .try_on(&twin)
-            .expect("bars always have a table");
+        let trial = EditedGait::Bars(found.bars).try_on(&twin);
+        let trial = trial.expect("bars always have a table");
         let trial = trial.expect("the gait is valid");
         assert_eq!(trial.max_servo_speed, found.comparison.tuned.rate);
         assert_eq!(search.try_next().done, 4, "the search must continue");
@@ -233,20 +223,15 @@ mod tests {
     #[test]
     fn the_refusal_of_a_search_names_the_reason() {
         assert!(begin_refused(&make_task("arc-left")).contains("walks along a curve"));
-        let rate = Some(900.0);
+        let mut fast_task = make_task("walk");
+        fast_task.rate = Some(900.0);
         assert_eq!(
-            begin_refused(&SearchTask {
-                rate,
-                ..make_task("walk")
-            }),
+            begin_refused(&fast_task),
             "servo speed 900: must be between 10 and 310 deg/s (limits.gait_slew in robot.toml)"
         );
         let mut wide_task = make_task("walk");
         wide_task.bars.amplitude = 60.0;
-        assert!(
-            begin_refused(&wide_task).starts_with("in \"walk\" "),
-            "{}",
-            begin_refused(&wide_task)
-        );
+        let refused = begin_refused(&wide_task);
+        assert!(refused.starts_with("in \"walk\" "), "{refused}");
     }
 }

@@ -79,11 +79,9 @@ impl Floor {
     #[must_use]
     pub fn with_valid_values(self, robot: &Robot) -> Self {
         let own_floor = Self::for_robot(robot);
-        let finite_or_own = |value: f64, is_in_range: bool, own_value: f64| match is_in_range
-            && value.is_finite()
-        {
-            true => value,
-            false => own_value,
+        let finite_or_own = |value: f64, is_in_range: bool, own_value: f64| {
+            let is_valid = is_in_range && value.is_finite();
+            if is_valid { value } else { own_value }
         };
         let positive_or_own = |value, own_value| finite_or_own(value, value > 0.0, own_value);
         let non_negative_or_own = |value, own_value| finite_or_own(value, value >= 0.0, own_value);
@@ -167,15 +165,9 @@ mod tests {
             "[feet]\nstiffness = 2.0\ntwist = -0.6",
         ] {
             let robot = parse_robot_with(extra_toml);
-            assert_eq!(
-                Floor::for_robot(&robot).to_ground(&robot),
-                *robot.ground(),
-                "{extra_toml}"
-            );
-            assert_eq!(
-                Floor::for_robot(&robot).kind.name(),
-                robot.drive().kind_name()
-            );
+            let floor = Floor::for_robot(&robot);
+            assert_eq!(floor.to_ground(&robot), *robot.ground(), "{extra_toml}");
+            assert_eq!(floor.kind.name(), robot.drive().kind_name());
         }
     }
 }

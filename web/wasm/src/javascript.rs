@@ -8,10 +8,13 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::prelude::{JsError, JsValue, wasm_bindgen};
 
+use crate::drawn_gait::DrawnGait;
 use crate::lengths::{self, TriedLengths};
-use crate::page::PageState;
+use crate::page::{EditedToml, PageState};
 use crate::place::Place;
 use crate::prediction::Displacement;
+use crate::round_path::RoundPath;
+use crate::trial::EditedGait;
 
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = "
@@ -109,7 +112,8 @@ impl Robot {
     /// some hundredths of a second.
     #[must_use]
     pub fn section(&self) -> Vec<u8> {
-        self.0.section().unwrap_or_default()
+        let section = self.0.robot().map(|robot| robot.section());
+        section.unwrap_or_default()
     }
 
     /// Moves the robot for a frame with these pulse widths in CPU cycles, 0 for no pulse; null if no robot is loaded.
@@ -146,9 +150,8 @@ impl Robot {
         #[wasm_bindgen(unchecked_param_type = "Place")] to: &JsValue,
     ) -> Result<JsValue, JsError> {
         let from: Place = from_js(from)?;
-        Ok(to_js(Displacement::from(
-            from.displacement_to(from_js(to)?),
-        )))
+        let travel = from.displacement_to(from_js(to)?);
+        Ok(to_js(Displacement::from(travel)))
     }
 
     /// Sets the floor, the mass, the feet and the leg drive.
@@ -195,7 +198,9 @@ impl Robot {
     #[must_use]
     #[wasm_bindgen(unchecked_return_type = "Bars | null")]
     pub fn bars(&self, gait: usize) -> JsValue {
-        to_js(self.0.bars(gait))
+        let gaits = self.0.robot().map(|robot| robot.gaits());
+        let gait = gaits.and_then(|gaits| gaits.get(gait));
+        to_js(gait.and_then(|gait| gait.bars()))
     }
 
     /// Tries a gait on the page's robot; takes tenths of a second. Returns null if no robot is loaded or a drawn
@@ -205,10 +210,9 @@ impl Robot {
         &self,
         #[wasm_bindgen(unchecked_param_type = "EditedGait")] edited_gait: &JsValue,
     ) -> Result<JsValue, JsError> {
-        Ok(self
-            .0
-            .try_gait(&from_js(edited_gait)?)
-            .map_or(JsValue::NULL, result_to_js))
+        let edited_gait: EditedGait = from_js(edited_gait)?;
+        let trial = self.0.twin().and_then(|twin| edited_gait.try_on(twin));
+        Ok(trial.map_or(JsValue::NULL, result_to_js))
     }
 
     /// Returns the robot.toml with this gait. The gait replaces the gait of the same name, or else is added. Returns
@@ -219,7 +223,9 @@ impl Robot {
         toml: &str,
         #[wasm_bindgen(unchecked_param_type = "EditedGait")] edited_gait: &JsValue,
     ) -> Result<String, JsError> {
-        let text = self.0.put_gait(toml, &from_js(edited_gait)?);
+        let edited_gait: EditedGait = from_js(edited_gait)?;
+        let robot = self.0.robot();
+        let text = robot.and_then(|robot| edited_gait.put_into(toml, robot));
         Ok(text.unwrap_or_else(|| toml.to_owned()))
     }
 
@@ -234,14 +240,15 @@ impl Robot {
     #[must_use]
     #[wasm_bindgen(js_name = putSteps, unchecked_return_type = "EditedToml")]
     pub fn put_steps(toml: &str, name: &str, steps: Vec<String>) -> JsValue {
-        to_js(PageState::put_steps(toml, name, &steps))
+        to_js(EditedToml::check(edit::with_steps(toml, name, &steps)))
     }
 
     /// Simulates one round of a routine; takes tenths of a second. Returns null if there is no such routine.
     #[must_use]
     #[wasm_bindgen(js_name = simulateRound, unchecked_return_type = "RoundPath | null")]
     pub fn simulate_round(&self, routine: &str) -> JsValue {
-        to_js(self.0.simulate_round(routine))
+        let twin = self.0.twin();
+        to_js(twin.and_then(|twin| RoundPath::simulate(twin, routine)))
     }
 
     /// Returns the end point's smoothed path; null if the drawn line has no length.
@@ -250,7 +257,10 @@ impl Robot {
         &self,
         #[wasm_bindgen(unchecked_param_type = "DrawnGait")] drawn_gait: &JsValue,
     ) -> Result<JsValue, JsError> {
-        Ok(to_js(self.0.smoothed_path(&from_js(drawn_gait)?)))
+        let drawn_gait: DrawnGait = from_js(drawn_gait)?;
+        let robot = self.0.robot();
+        let points = robot.and_then(|robot| drawn_gait.shown_points(robot));
+        Ok(to_js(points))
     }
 
     /// Returns the workspace of the end point of the head (0) or the tail (1); null if no robot is loaded.
@@ -292,14 +302,14 @@ impl Robot {
     /// Tries one more gait; returns the progress, with the score of the best gait so far.
     #[wasm_bindgen(js_name = tryNextGait, unchecked_return_type = "Progress")]
     pub fn try_next_gait(&mut self) -> JsValue {
-        to_js(self.0.search().map(|search| search.try_next()))
+        to_js(self.0.search.as_mut().map(|search| search.try_next()))
     }
 
     /// Compares the best gait so far with the gait to beat on `robotCount` random robots; null until a valid gait is
     /// found.
     #[wasm_bindgen(js_name = compareBestGait, unchecked_return_type = "FoundGait | null")]
     pub fn compare_best_gait(&mut self, robot_count: usize) -> JsValue {
-        let search = self.0.search();
+        let search = self.0.search.as_ref();
         to_js(search.and_then(|search| search.compare_best(robot_count)))
     }
 }

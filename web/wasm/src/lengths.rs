@@ -56,9 +56,7 @@ impl TriedLengths {
     pub fn try_edits(text: &str, requested: &RequestedLengths, searches: bool) -> Self {
         let changed_text = match with_lengths(text, requested) {
             Ok(text) => text,
-            Err(unknown_key) => {
-                return Self::without_alternatives(text.to_string(), Some(unknown_key.into()));
-            }
+            Err(error) => return Self::without_alternatives(text.to_string(), Some(error.into())),
         };
         let Err(error) = Robot::parse(&changed_text) else {
             return Self::without_alternatives(changed_text, None);
@@ -66,10 +64,9 @@ impl TriedLengths {
         let gait = error.key.strip_prefix("gait.");
         let gait = gait.and_then(|rest| rest.split('.').next());
         let gait = gait.filter(|_| searches).map(str::to_string);
+        let nearest = searches.then(|| find_nearest_lengths(text, requested));
         Self {
-            nearest: searches
-                .then(|| find_nearest_lengths(text, requested))
-                .flatten(),
+            nearest: nearest.flatten(),
             without: gait.and_then(|gait| {
                 let text = without_gait(&changed_text, &gait);
                 Robot::parse(&text).ok()?;
@@ -95,9 +92,8 @@ impl TriedLengths {
 #[must_use]
 pub fn find_accepted_range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
     let lengths = Description::for_robot(&Robot::parse(text).ok()?).lengths;
-    let length = lengths
-        .iter()
-        .find(|length| Some(&length.key) == keys.first())?;
+    let mut candidates = lengths.iter();
+    let length = candidates.find(|length| Some(&length.key) == keys.first())?;
     let (smallest, largest) = match length.unit {
         "deg" => (length.value - 45.0, length.value + 45.0),
         _ => (0.5 * length.value, 2.0 * length.value),
@@ -106,19 +102,13 @@ pub fn find_accepted_range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
         let value = (value / LENGTH_STEP).round() * LENGTH_STEP;
         let requested: Vec<_> = keys.iter().map(|key| (key.clone(), value)).collect();
         let result = TriedLengths::try_edits(text, &requested, true);
-        let nearest = result
-            .nearest
-            .and_then(|nearest| nearest.lengths.first().cloned());
-        match (result.refusal, nearest) {
+        match (result.refusal, result.nearest) {
             (None, _) => value,
-            (Some(_), Some((_, nearest))) => nearest,
+            (Some(_), Some(nearest)) => nearest.lengths[0].1,
             (Some(_), None) => length.value,
         }
     };
-    Some((
-        find_nearest_accepted(smallest),
-        find_nearest_accepted(largest),
-    ))
+    Some([smallest, largest].map(find_nearest_accepted).into())
 }
 
 /// Returns the text with the requested lengths.
@@ -134,13 +124,11 @@ fn with_lengths(text: &str, requested: &RequestedLengths) -> Result<String, KeyE
 /// `None` if no lengths in between are accepted.
 fn find_nearest_lengths(text: &str, requested: &RequestedLengths) -> Option<NearestLengths> {
     let current_lengths = Description::for_robot(&Robot::parse(text).ok()?).lengths;
-    let changes: Vec<(&String, f64, f64)> = requested
-        .iter()
-        .map(|(key, to)| {
-            let current_length = current_lengths.iter().find(|length| length.key == *key);
-            (key, current_length.map_or(*to, |length| length.value), *to)
-        })
-        .collect();
+    let changes = requested.iter().map(|(key, to)| {
+        let current_length = current_lengths.iter().find(|length| length.key == *key);
+        (key, current_length.map_or(*to, |length| length.value), *to)
+    });
+    let changes: Vec<(&String, f64, f64)> = changes.collect();
     let distances = changes.iter().map(|(_, from, to)| (to - from).abs());
     let (mut accepted_fraction, mut refused_fraction) = (0.0, 1.0);
     let mut nearest = None;
@@ -176,13 +164,11 @@ mod tests {
     #[test]
     fn accepted_lengths_have_no_alternatives_and_an_unknown_key_is_refused() {
         let result = TriedLengths::try_edits(PAPER_TOML, &crank_lengths(41.0), true);
-        assert_eq!(
-            (result.refusal, result.nearest, result.without),
-            (None, None, None)
-        );
+        assert_eq!(result.refusal, None);
+        assert_eq!((result.nearest, result.without), (None, None));
         assert!(result.text.contains("crank = 41.0") && result.text.contains("follower = 41.0"));
-        let with_unknown_key =
-            TriedLengths::try_edits(PAPER_TOML, &[("links.l99".to_string(), 1.0)], true);
+        let unknown_length = ("links.l99".to_string(), 1.0);
+        let with_unknown_key = TriedLengths::try_edits(PAPER_TOML, &[unknown_length], true);
         assert_eq!(with_unknown_key.text, PAPER_TOML);
         let refusal = with_unknown_key.refusal.expect("an unknown key is refused");
         assert_eq!(refusal.refused, "robot.toml has no number links.l99");
@@ -198,16 +184,15 @@ mod tests {
             Some("in the neutral pose the left slider would hit its end stop")
         );
         assert_eq!(result.without, None, "no gait forbids these lengths");
-        let NearestLengths { lengths, text } =
-            result.nearest.expect("shorter lengths are accepted");
-        let [(_, left_half), (_, right_half)] = lengths[..] else {
+        let nearest = result.nearest.expect("shorter lengths are accepted");
+        let [(_, left_half), (_, right_half)] = nearest.lengths[..] else {
             panic!("there are two lengths")
         };
         assert_eq!(left_half, right_half);
         assert!(45.0 < left_half && left_half < 80.0, "{left_half}");
-        assert!(Robot::parse(&text).is_ok());
-        let longer_lengths =
-            TriedLengths::try_edits(PAPER_TOML, &slider_lengths(left_half + LENGTH_STEP), false);
+        assert!(Robot::parse(&nearest.text).is_ok());
+        let longer_lengths = slider_lengths(left_half + LENGTH_STEP);
+        let longer_lengths = TriedLengths::try_edits(PAPER_TOML, &longer_lengths, false);
         assert!(
             longer_lengths.refusal.is_some(),
             "{left_half} mm is not the longest accepted length"
@@ -217,28 +202,21 @@ mod tests {
 
     #[test]
     fn half_a_millimetre_beyond_the_range_of_a_length_is_refused() {
-        let keys: Vec<_> = crank_lengths(0.0).into_iter().map(|(key, _)| key).collect();
-        let (smallest, largest) =
-            find_accepted_range(PAPER_TOML, &keys).expect("the robot has cranks");
+        let keys = crank_lengths(0.0).map(|(key, _)| key);
+        let range = find_accepted_range(PAPER_TOML, &keys);
+        let (smallest, largest) = range.expect("the robot has cranks");
         assert!(smallest < 45.0 && 45.0 < largest, "{smallest} to {largest}");
         let is_refused = |mm: f64| {
-            TriedLengths::try_edits(PAPER_TOML, &crank_lengths(mm), false)
-                .refusal
-                .is_some()
+            let result = TriedLengths::try_edits(PAPER_TOML, &crank_lengths(mm), false);
+            result.refusal.is_some()
         };
         assert!(!is_refused(smallest) && !is_refused(largest));
-        assert!(
-            smallest == 22.5 || is_refused(smallest - LENGTH_STEP),
-            "{smallest}"
-        );
-        assert!(
-            largest == 90.0 || is_refused(largest + LENGTH_STEP),
-            "{largest}"
-        );
-        assert_eq!(
-            find_accepted_range(PAPER_TOML, &["links.l99".to_string()]),
-            None
-        );
+        let is_smallest = smallest == 22.5 || is_refused(smallest - LENGTH_STEP);
+        assert!(is_smallest, "{smallest}");
+        let is_largest = largest == 90.0 || is_refused(largest + LENGTH_STEP);
+        assert!(is_largest, "{largest}");
+        let unknown_key = "links.l99".to_string();
+        assert_eq!(find_accepted_range(PAPER_TOML, &[unknown_key]), None);
     }
 
     #[test]

@@ -1,27 +1,23 @@
 //! The page's state: a robot, its body on the floor, and optionally the firmware's core without a simulated chip.
 
-use lizard_core::virtual_board::Eeprom;
 use lizard_kinematics::End;
-use lizard_robot::edit::{with_number, with_steps, with_string, without_key};
+use lizard_robot::edit::{with_number, with_string, without_key};
 use lizard_robot::servo::FORWARD_TURN_SIGN;
-use lizard_robot::{Bars, BodyPose, Robot};
+use lizard_robot::{BodyPose, Robot};
 use lizard_twin::{ServoModel, State, Twin};
 use serde::Serialize;
 use tsify::Tsify;
 
 use crate::description::{Description, find_servo_model};
-use crate::drawn_gait::DrawnGait;
 #[cfg(feature = "tune")]
 use crate::faster_search::{FasterSearch, SearchExtent, SearchTask};
 use crate::floor::{Floor, LegDrive};
 use crate::place::Place;
 use crate::prediction::GaitPrediction;
 use crate::refusal::Refusal;
-use crate::round_path::RoundPath;
 use crate::running_core::{CoreFrame, RunningCore};
 use crate::scene::Scene;
 use crate::singularity_map::SingularityMap;
-use crate::trial::{EditedGait, RefusedTrial, Trial};
 use crate::workspace::Workspace;
 
 /// CPU cycles in a microsecond.
@@ -54,7 +50,8 @@ pub struct EditedToml {
 }
 
 impl EditedToml {
-    fn check(text: String) -> Self {
+    /// Checks the changed text of a robot.toml.
+    pub(crate) fn check(text: String) -> Self {
         let refusal = Robot::parse(&text).err().map(Refusal::from);
         Self { text, refusal }
     }
@@ -69,8 +66,9 @@ pub struct PageState {
     /// Name of the servo model that the page set; `None` for the robot's own servos.
     model_name: Option<String>,
     running_core: Option<RunningCore>,
+    /// The prepared search; `None` if no search was prepared since the robot was read.
     #[cfg(feature = "tune")]
-    search: Option<FasterSearch>,
+    pub(crate) search: Option<FasterSearch>,
 }
 
 impl PageState {
@@ -89,22 +87,19 @@ impl PageState {
         }
         let model_name = self.model_name.as_deref();
         let model = model_name.and_then(|name| find_servo_model(&robot, name));
-        self.twin = Some(Twin::new(
-            &robot,
-            model.unwrap_or_else(|| ServoModel::for_robot(&robot)),
-        ));
+        let model = model.unwrap_or_else(|| ServoModel::for_robot(&robot));
+        self.twin = Some(Twin::new(&robot, model));
         Ok(description)
     }
 
-    fn robot(&self) -> Option<&Robot> {
-        self.twin.as_ref().map(Twin::robot)
+    /// Returns the robot on the floor; `None` if no robot is loaded.
+    pub(crate) fn twin(&self) -> Option<&Twin> {
+        self.twin.as_ref()
     }
 
-    /// Makes the robot's section of flash; `None` if no robot is loaded. Takes some hundredths of a second, because the
-    /// guard's certified cells must be proved.
-    #[must_use]
-    pub fn section(&self) -> Option<Vec<u8>> {
-        Some(self.robot()?.section())
+    /// Returns the robot; `None` if no robot is loaded.
+    pub(crate) fn robot(&self) -> Option<&Robot> {
+        self.twin().map(Twin::robot)
     }
 
     /// Sets the floor, the mass, the feet and the leg drive in the text of a robot.toml. Unchanged values keep their
@@ -222,42 +217,9 @@ impl PageState {
     /// Predicts a cycle of the gait with this index, on the current floor with the current servos; `None` if no robot
     /// is loaded or there is no such gait.
     pub fn predict(&self, gait: usize) -> Option<GaitPrediction> {
-        let twin = self.twin.as_ref()?;
+        let twin = self.twin()?;
         let gait = twin.robot().gaits().get(gait)?;
         Some(GaitPrediction::predict(twin, gait))
-    }
-
-    /// Returns the gait with this index as bars; `None` if no robot is loaded, or if there is no such gait,
-    /// or the gait stands or follows a path.
-    pub fn bars(&self, gait: usize) -> Option<Bars> {
-        self.robot()?.gaits().get(gait)?.bars()
-    }
-
-    /// Tries a gait on the page's robot; `None` if no robot is loaded or the drawn line has no length.
-    ///
-    /// # Errors
-    /// Returns the first limit that the gait violates, with valid alternatives.
-    pub fn try_gait(&self, edited_gait: &EditedGait) -> Option<Result<Trial, RefusedTrial>> {
-        edited_gait.try_on(self.twin.as_ref()?)
-    }
-
-    /// Returns the text of a robot.toml with this gait. The gait replaces the gait of the same name, or else is added
-    /// at the end. `None` if no robot is loaded or the drawn line has no length.
-    pub fn put_gait(&self, text: &str, edited_gait: &EditedGait) -> Option<String> {
-        edited_gait.put_into(text, self.robot()?)
-    }
-
-    /// Sets the steps of a routine in the text of a robot.toml, or adds the routine. The page's robot does not
-    /// change.
-    #[must_use]
-    pub fn put_steps(text: &str, name: &str, steps: &[String]) -> EditedToml {
-        EditedToml::check(with_steps(text, name, steps))
-    }
-
-    /// Simulates one round of a routine on the current floor with the current servos; `None` if no robot is loaded or
-    /// there is no such routine.
-    pub fn simulate_round(&self, routine: &str) -> Option<RoundPath> {
-        RoundPath::simulate(self.twin.as_ref()?, routine)
     }
 
     /// Prepares the search for a faster gait of the page's robot; `None` if no robot is loaded.
@@ -266,20 +228,8 @@ impl PageState {
     /// Returns the reason if the search cannot start.
     #[cfg(feature = "tune")]
     pub fn begin_search(&mut self, task: &SearchTask) -> Option<Result<SearchExtent, Refusal>> {
-        let search = FasterSearch::begin(self.twin.as_ref()?, task);
+        let search = FasterSearch::begin(self.twin()?, task);
         Some(search.map(|search| self.search.insert(search).extent()))
-    }
-
-    /// Returns the prepared search; `None` if no search was prepared since the robot was read.
-    #[cfg(feature = "tune")]
-    pub fn search(&mut self) -> Option<&mut FasterSearch> {
-        self.search.as_mut()
-    }
-
-    /// Returns points of the end point's path in a drawn gait; `None` if no robot is loaded or the drawn line has no
-    /// length.
-    pub fn smoothed_path(&self, drawn_gait: &DrawnGait) -> Option<Vec<[f64; 2]>> {
-        drawn_gait.shown_points(self.robot()?)
     }
 
     /// Returns the workspace of the end point of the head (0) or the tail (1); `None` if no robot is loaded.
@@ -295,10 +245,8 @@ impl PageState {
     /// Starts the core as at power-on with this robot; the EEPROM keeps the contents of the previous run, unless the
     /// robot was read again since.
     pub fn start_core(&mut self) {
-        let memory = self
-            .running_core
-            .take()
-            .map_or_else(Eeprom::default, RunningCore::into_memory);
+        let memory = self.running_core.take().map(RunningCore::into_memory);
+        let memory = memory.unwrap_or_default();
         let robot = self.robot();
         self.running_core = robot.map(|robot| RunningCore::power_on(*robot.firmware(), memory));
     }

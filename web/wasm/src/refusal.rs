@@ -31,17 +31,11 @@ impl Refusal {
 
     /// Converts the error of a gait. Drops the line, because the user does not see the gait's text.
     pub(crate) fn for_gait(error: Error) -> Self {
-        let Error {
-            consequence,
-            problem,
-            key,
-            ..
-        } = error;
+        let subject = error.consequence.as_ref().unwrap_or(&error.key);
         Self {
-            refused: format!("{}: {problem}", consequence.as_ref().unwrap_or(&key)),
-            consequence,
+            refused: format!("{subject}: {}", error.problem),
             line: None,
-            key,
+            ..error.into()
         }
     }
 }

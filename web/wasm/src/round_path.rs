@@ -1,7 +1,7 @@
 //! The path of a routine's round, on the page's floor with the page's servos.
 
 use lizard_robot::servo::FORWARD_TURN_SIGN;
-use lizard_robot::{BodyPose, FRAMES_PER_SECOND, Robot};
+use lizard_robot::{BodyPose, FRAMES_PER_SECOND, RoutineRow};
 use lizard_twin::Twin;
 use serde::Serialize;
 use tsify::Tsify;
@@ -30,12 +30,11 @@ impl RoundPath {
     /// `None` if there is no such routine.
     #[must_use]
     pub fn simulate(twin: &Twin, name: &str) -> Option<Self> {
-        let robot: &Robot = twin.robot();
+        let robot = twin.robot();
         let mut simulated_twin = Twin::new(robot, twin.servo_model());
         simulated_twin.set_ground(*twin.ground());
         let neutral: [f64; 4] = robot.neutral_pose().into();
-        let mut sweeps_by_frame =
-            lizard_robot::RoutineRow::simulate_sweeps(robot, robot.routine(name)?);
+        let mut sweeps_by_frame = RoutineRow::simulate_sweeps(robot, robot.routine(name)?);
         let (mut places, mut frame_count, mut place) = (Vec::new(), 0, BodyPose::START);
         for sweeps in sweeps_by_frame.by_ref().take(MAX_FRAMES) {
             if frame_count % FRAMES_PER_PLACE == 0 {
@@ -56,6 +55,7 @@ impl RoundPath {
 
 #[cfg(test)]
 mod tests {
+    use lizard_robot::Robot;
     use lizard_twin::ServoModel;
 
     use super::*;
@@ -64,8 +64,8 @@ mod tests {
     fn simulate_steps(steps: &str) -> RoundPath {
         let text = format!("{PAPER_TOML}\n[routine.one]\nsteps = [{steps}]\n");
         let robot = Robot::parse(&text).expect("the robot with the routine is valid");
-        RoundPath::simulate(&Twin::new(&robot, ServoModel::Ideal), "one")
-            .expect("the routine was added")
+        let twin = Twin::new(&robot, ServoModel::Ideal);
+        RoundPath::simulate(&twin, "one").expect("the routine was added")
     }
 
     #[test]
@@ -78,16 +78,11 @@ mod tests {
         let turned_rad = (6.0_f64 * 15.34).to_radians();
         let walk_mm = 3.0 * 34.17;
         assert!((heading - 6.0 * 15.34).abs() < 3.0, "{heading} deg");
-        assert!(
-            (y - walk_mm * (1.0 + turned_rad.cos())).abs() < 8.0,
-            "y {y} mm"
-        );
+        let y_error = y - walk_mm * (1.0 + turned_rad.cos());
+        assert!(y_error.abs() < 8.0, "y {y} mm");
         assert!((x + walk_mm * turned_rad.sin()).abs() < 8.0, "x {x} mm");
-        assert!(
-            (12.0..14.0).contains(&square.seconds),
-            "{} s",
-            square.seconds
-        );
+        let seconds = square.seconds;
+        assert!((12.0..14.0).contains(&seconds), "{seconds} s");
         assert!(!square.is_truncated);
     }
 

@@ -104,24 +104,15 @@ mod tests {
         let mut output = String::new();
         let standing_widths = send_and_run(&mut output, &mut core, "", 200);
         assert!(output.starts_with("# lizard "), "{output}");
-        assert!(
-            standing_widths.iter().all(|width| *width == 24_000),
-            "{standing_widths:?}"
-        );
+        assert_eq!(standing_widths, [24_000; 4]);
         let trimmed_widths = send_and_run(&mut output, &mut core, "trim 1 3\nsave\n", 500);
-        assert!(
-            output.contains("ok trim 1 3") && output.contains("ok save"),
-            "{output}"
-        );
+        assert!(output.contains("ok trim 1 3"), "{output}");
+        assert!(output.contains("ok save"), "{output}");
         let mut restarted_core = RunningCore::power_on(*robot.firmware(), core.into_memory());
-        assert_eq!(
-            send_and_run(&mut output, &mut restarted_core, "", 200),
-            trimmed_widths
-        );
-        assert_ne!(
-            send_and_run(&mut output, &mut restarted_core, "walk\n", 60),
-            trimmed_widths
-        );
+        let widths = send_and_run(&mut output, &mut restarted_core, "", 200);
+        assert_eq!(widths, trimmed_widths);
+        let walking_widths = send_and_run(&mut output, &mut restarted_core, "walk\n", 60);
+        assert_ne!(walking_widths, trimmed_widths);
     }
 
     #[test]

@@ -93,13 +93,12 @@ impl Scene {
     pub fn compute(twin: &Twin) -> Result<Self, String> {
         let (robot, angles) = (twin.robot(), twin.angles());
         let pose = Pose::from(angles);
-        let solution = robot
-            .lizard()
-            .solve(&pose)
-            .map_err(|fault| fault.to_string())?;
+        let solution = robot.lizard().solve(&pose);
+        let solution = solution.map_err(|fault| fault.to_string())?;
         let shape = Shape::from_solution(robot, &solution, twin.leg_sweeps());
         let has_spring = twin.ground().drive.kind != lizard_robot::DriveKind::Rigid;
         let refusal = robot.limits().violations(&solution).next();
+        let compute_slider = |side| compute_slider_scene(robot, &shape, &solution, side);
         let to_margin = |(check, value): (Check, f64)| Margin {
             name: check.name(),
             value,
@@ -109,9 +108,7 @@ impl Scene {
             shafts: shape.shafts.map(Point::from),
             tips: shape.crank_tips.map(Point::from),
             points: shape.ends.map(Point::from),
-            sliders: Side::ALL
-                .map(|side| compute_slider_scene(robot, &shape, &solution, side))
-                .into(),
+            sliders: Side::ALL.map(compute_slider).into(),
             legs: shape.legs.map(|leg| LegScene::new(leg, has_spring)).into(),
             margins: solution.margins.iter().map(to_margin).collect(),
             refusal: refusal.map(|violation| violation.to_string()),
@@ -171,17 +168,10 @@ mod tests {
     fn the_neutral_pose_has_the_papers_head_point_and_no_refusal() {
         let robot = load_paper_robot();
         let scene = compute_scene(&robot, robot.neutral_pose().into());
-        assert!(
-            (scene.points[0].1 - (67.5 + 57.840)).abs() < 1e-3,
-            "{:?}",
-            scene.points
-        );
-        assert!(
-            scene
-                .sliders
-                .iter()
-                .all(|slider| slider.travel.abs() < 1e-4)
-        );
+        let head_y = scene.points[0].1;
+        assert!((head_y - (67.5 + 57.840)).abs() < 1e-3, "{head_y}");
+        let mut sliders = scene.sliders.iter();
+        assert!(sliders.all(|slider| slider.travel.abs() < 1e-4));
         assert_eq!(scene.refusal, None);
         assert_eq!(scene.margins.len(), 10);
         assert!(scene.legs.iter().all(|leg| !leg.has_spring));
@@ -197,15 +187,12 @@ mod tests {
     #[test]
     fn the_message_names_the_loop_that_does_not_close() {
         // In the neutral pose, the couplers barely reach each other.
-        let short_toml = ["l2", "l3"]
-            .iter()
-            .fold(PAPER_TOML.to_string(), |text, link| {
-                text.replace(&format!("{link} = 50.0"), &format!("{link} = 34.0"))
-            });
-        let gaits_start = short_toml
-            .find("[gait.walk]")
-            .expect("paper.toml has this gait");
-        let loose_toml = short_toml[..gaits_start].replace("type2 = 0.3", "type2 = 0.1");
+        let gaits_start = PAPER_TOML.find("[gait.walk]");
+        let gaits_start = gaits_start.expect("paper.toml has this gait");
+        let loose_toml = PAPER_TOML[..gaits_start]
+            .replace("l2 = 50.0", "l2 = 34.0")
+            .replace("l3 = 50.0", "l3 = 34.0")
+            .replace("type2 = 0.3", "type2 = 0.1");
         let robot = Robot::parse(&loose_toml).expect("the neutral pose is allowed");
         let mut twin = Twin::new(&robot, ServoModel::Ideal);
         twin.simulate_angles([170.0, 10.0, 318.59, 221.41]);

@@ -98,30 +98,28 @@ fn find_curves(robot: &Robot, end: End) -> Vec<Curve> {
             is_inside(pose.theta_left) && is_inside(pose.theta_right)
         })
         .collect();
-    [
+    let kinds = [
         (Singularity::Couplers, "couplers"),
         (Singularity::LeftArm, "left arm"),
         (Singularity::RightArm, "right arm"),
-    ]
-    .into_iter()
-    .map(|(kind, name)| Curve {
-        kind: name,
-        points: poses
-            .iter()
-            .filter(|pose| pose.kind == kind)
-            .map(|pose| MapPoint(pose.theta_left, pose.theta_right))
-            .collect(),
-    })
-    .collect()
+    ];
+    let curves = kinds.map(|(kind, name)| {
+        let poses = poses.iter().filter(|pose| pose.kind == kind);
+        let points = poses.map(|pose| MapPoint(pose.theta_left, pose.theta_right));
+        Curve {
+            kind: name,
+            points: points.collect(),
+        }
+    });
+    curves.into()
 }
 
 /// Returns a pose's point on the map of an end: the angles of left and right crank, deg, 0 to 360.
 #[must_use]
 pub fn to_map_point(end: End, pose: &Pose) -> MapPoint {
     let angles: [f64; 4] = (*pose).into();
-    let [left, right] = end
-        .pick(angles)
-        .map(|theta| end.mirror_angle(theta).rem_euclid(360.0));
+    let angles = end.pick(angles);
+    let [left, right] = angles.map(|theta| end.mirror_angle(theta).rem_euclid(360.0));
     MapPoint(left, right)
 }
 
@@ -140,14 +138,12 @@ mod tests {
                 grid_index(left) * map.size + grid_index(right)
             };
             let neutral_point = to_map_point(end, &robot.neutral_pose());
-            assert!(
-                (neutral_point.0 - 138.59).abs() < 0.01 && (neutral_point.1 - 41.41).abs() < 0.01,
-                "{neutral_point:?}"
-            );
-            assert!(
-                map.safe[index_at(neutral_point)]
-                    && map.margins[index_at(neutral_point)] > Some(60)
-            );
+            let MapPoint(left, right) = neutral_point;
+            assert!((left - 138.59).abs() < 0.01, "{neutral_point:?}");
+            assert!((right - 41.41).abs() < 0.01, "{neutral_point:?}");
+            let neutral_index = index_at(neutral_point);
+            assert!(map.safe[neutral_index]);
+            assert!(map.margins[neutral_index] > Some(60));
             assert!(!map.safe[index_at(MapPoint(70.5, 109.5))]);
             let couplers = &map.curves[0].points;
             assert!(

@@ -124,25 +124,16 @@ impl EditedGait {
                 }
             })
         };
-        let size_steps = find_nearest_valid(
-            (size * steps_per_unit).ceil() as i64 - 1,
-            MIN_SIZE_STEPS,
-            is_size_valid,
-        );
-        let period_hundredths = find_nearest_valid(
-            (period * 100.0).floor() as i64 + 1,
-            MAX_PERIOD_HUNDREDTHS,
-            is_period_valid,
-        );
-        let make_alternative = |parameter, value: Option<i64>, steps_per_unit: f64| {
-            value.map(|value| Alternative {
-                parameter,
-                value: value as f64 / steps_per_unit,
-            })
-        };
-        let size = make_alternative(size_parameter, size_steps, steps_per_unit);
-        let period = make_alternative("period", period_hundredths, 100.0);
-        size.into_iter().chain(period).collect()
+        let largest_steps = (size * steps_per_unit).ceil() as i64 - 1;
+        let size_steps = find_nearest_valid(largest_steps, MIN_SIZE_STEPS, is_size_valid);
+        let shortest = (period * 100.0).floor() as i64 + 1;
+        let hundredths = find_nearest_valid(shortest, MAX_PERIOD_HUNDREDTHS, is_period_valid);
+        let size = size_steps.map(|steps| (size_parameter, steps as f64 / steps_per_unit));
+        let period = hundredths.map(|hundredths| ("period", hundredths as f64 / 100.0));
+        let alternatives = size.into_iter().chain(period);
+        alternatives
+            .map(|(parameter, value)| Alternative { parameter, value })
+            .collect()
     }
 }
 
@@ -184,10 +175,9 @@ fn find_nearest_valid(from: i64, to: i64, is_valid: impl Fn(i64) -> bool) -> Opt
     let (mut invalid, mut valid) = (from - direction, to);
     while (valid - invalid).abs() > 1 {
         let midpoint = i64::midpoint(invalid, valid);
-        if is_valid(midpoint) {
-            valid = midpoint
-        } else {
-            invalid = midpoint
+        match is_valid(midpoint) {
+            true => valid = midpoint,
+            false => invalid = midpoint,
         }
     }
     Some(valid)

@@ -3,6 +3,8 @@
 //! The other end is at neutral. A point is allowed if the inverse kinematics has a solution there and the limits allow
 //! the solution's pose.
 
+use std::ops::RangeInclusive;
+
 use lizard_kinematics::{End, Vector, wrap};
 use lizard_robot::Robot;
 use serde::Serialize;
@@ -38,53 +40,33 @@ impl Workspace {
     #[must_use]
     pub fn compute(robot: &Robot, end: End) -> Self {
         let five_bar = robot.lizard().end(end);
-        let reach = five_bar.base / 2.0
-            + five_bar.left_crank_length.max(five_bar.right_crank_length)
-            + five_bar
-                .left_coupler_length
-                .max(five_bar.right_coupler_length);
+        let half_base = five_bar.base / 2.0;
+        let crank_length = five_bar.left_crank_length.max(five_bar.right_crank_length);
+        let [left, right] = [five_bar.left_coupler_length, five_bar.right_coupler_length];
+        let reach = half_base + crank_length + left.max(right);
         let spacing = 2.0 * reach / f64::from(STEPS_ACROSS);
         let point_at =
             |column: i32, row: i32| [f64::from(column) * spacing, f64::from(row) * spacing];
-        let half_steps = STEPS_ACROSS / 2;
-        let allowed_in_row = |row: i32| -> Vec<bool> {
-            let columns = -half_steps..=half_steps;
-            columns
-                .map(|column| is_point_allowed(robot, end, point_at(column, row)))
-                .collect()
+        let steps = -(STEPS_ACROSS / 2)..=STEPS_ACROSS / 2;
+        // Returns row and column of each point, in ascending order.
+        let points_in = |rows: &RangeInclusive<i32>, columns: &RangeInclusive<i32>| {
+            let columns = columns.clone();
+            let points_of_row = move |row| columns.clone().map(move |column| (row, column));
+            rows.clone().flat_map(points_of_row)
         };
-        let allowed_by_row: Vec<Vec<bool>> =
-            (-half_steps..=half_steps).map(allowed_in_row).collect();
-        let is_allowed = |column: i32, row: i32| {
-            let row = usize::try_from(row + half_steps)
-                .ok()
-                .and_then(|row| allowed_by_row.get(row));
-            let column = usize::try_from(column + half_steps).ok();
-            row.zip(column).and_then(|(row, column)| row.get(column)) == Some(&true)
+        let allowed_points: Vec<(i32, i32)> = points_in(&steps, &steps)
+            .filter(|(row, column)| is_point_allowed(robot, end, point_at(*column, *row)))
+            .collect();
+        // Returns the range of rows or columns with allowed points, with the rim on both sides.
+        let find_range_with_rim = |to_index: fn(&(i32, i32)) -> i32| {
+            let indices = allowed_points.iter().map(to_index);
+            let smallest = indices.clone().min().unwrap_or(0);
+            (smallest - RIM_WIDTH)..=(indices.max().unwrap_or(0) + RIM_WIDTH)
         };
-        // Returns the range of columns or rows with allowed points, with the rim on both sides.
-        let find_range_with_rim = |has_allowed_points: &dyn Fn(i32) -> bool| {
-            let smallest = (-half_steps..=half_steps)
-                .find(|index| has_allowed_points(*index))
-                .unwrap_or(0);
-            let largest = (-half_steps..=half_steps)
-                .rev()
-                .find(|index| has_allowed_points(*index))
-                .unwrap_or(0);
-            (smallest - RIM_WIDTH)..=(largest + RIM_WIDTH)
-        };
-        let columns = find_range_with_rim(&|column| {
-            (-half_steps..=half_steps).any(|row| is_allowed(column, row))
-        });
-        let rows = find_range_with_rim(&|row| {
-            (-half_steps..=half_steps).any(|column| is_allowed(column, row))
-        });
-        let points_of_row = |row| columns.clone().map(move |column| (column, row));
-        let allowed = rows
-            .clone()
-            .flat_map(points_of_row)
-            .map(|(column, row)| is_allowed(column, row));
-        let half_base = five_bar.base / 2.0;
+        let rows = find_range_with_rim(|(row, _)| *row);
+        let columns = find_range_with_rim(|(_, column)| *column);
+        let is_allowed = |point: (i32, i32)| allowed_points.binary_search(&point).is_ok();
+        let allowed = points_in(&rows, &columns).map(is_allowed);
         Self {
             first_point: point_at(*columns.start(), *rows.start()),
             spacing,
@@ -129,21 +111,16 @@ mod tests {
         for end in End::ALL {
             let workspace = Workspace::compute(&robot, end);
             let is_allowed_at = |[x, y]: [f64; 2]| {
-                let [column, row] = [
-                    (x - workspace.first_point[0]) / workspace.spacing,
-                    (y - workspace.first_point[1]) / workspace.spacing,
-                ];
-                workspace.allowed
-                    [row.round() as usize * workspace.columns + column.round() as usize]
+                let [first_x, first_y] = workspace.first_point;
+                let column = ((x - first_x) / workspace.spacing).round() as usize;
+                let row = ((y - first_y) / workspace.spacing).round() as usize;
+                workspace.allowed[row * workspace.columns + column]
             };
             assert!(is_allowed_at(workspace.neutral), "{end}");
             assert_eq!(workspace.allowed.len() % workspace.columns, 0);
             // The first row belongs to the rim of forbidden points, which makes the workspace's edge visible.
-            assert!(
-                workspace.allowed[..workspace.columns]
-                    .iter()
-                    .all(|allowed| !allowed)
-            );
+            let first_row = &workspace.allowed[..workspace.columns];
+            assert!(first_row.iter().all(|allowed| !allowed));
             // The gesture `look` stays in the workspace: 10 mm to either side of 54 mm outward.
             for x in [-10.0, 0.0, 10.0] {
                 assert!(is_allowed_at([x, 54.0]), "{end} {x}");

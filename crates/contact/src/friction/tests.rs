@@ -23,23 +23,22 @@ fn rigid_leg_pads(positions: [Point; 4], swings: [Point; 4]) -> Pads {
     }
 }
 
+/// Computes the length of a slide, with its components weighted.
+fn weighted_length(pads: &Pads, slide: Point) -> f64 {
+    let weights = pads.slide_weights(slide);
+    (weights[0] * slide[0]).hypot(weights[1] * slide[1])
+}
+
 /// Computes the sum of the friction's work and the springs' energy.
 fn compute_cost(pads: &Pads, displacement: &Displacement) -> f64 {
-    let weighted_length = |slide: Point| {
-        let weights = pads.slide_weights(slide);
-        (weights[0] * slide[0]).hypot(weights[1] * slide[1])
-    };
     let slides = pads.slides(displacement).into_iter().zip(pads.loads);
-    let friction: f64 = slides
-        .map(|(slide, load)| load * weighted_length(slide))
-        .sum();
+    let friction = slides.map(|(slide, load)| load * weighted_length(pads, slide));
     let spring_energy = |compliance: Compliance| -> f64 {
-        let lags = displacement.lags.iter();
-        lags.zip(compliance.lag_energies)
-            .map(|(lag, lag_energy)| lag_energy.expand(*lag, 0.0).energy)
-            .sum()
+        let lags = displacement.lags.iter().zip(compliance.lag_energies);
+        let energies = lags.map(|(lag, lag_energy)| lag_energy.expand(*lag, 0.0).energy);
+        energies.sum()
     };
-    friction + pads.compliance.map_or(0.0, spring_energy)
+    friction.sum::<f64>() + pads.compliance.map_or(0.0, spring_energy)
 }
 
 /// Computes a lower bound of the minimum cost by duality, from the friction forces of a displacement's slides. The
@@ -53,17 +52,13 @@ fn compute_dual_certificate(pads: &Pads, displacement: &Displacement) -> ([f64; 
     let (mut lower_bound, mut net_force) = (0.0, [0.0; 3]);
     for (i, slide) in pads.slides(displacement).into_iter().enumerate() {
         let weights = pads.slide_weights(slide);
-        let length = (weights[0] * slide[0])
-            .hypot(weights[1] * slide[1])
-            .hypot(eps);
+        let length = weighted_length(pads, slide).hypot(eps);
         let force = [
             weights[0] * weights[0] * slide[0] / length,
             weights[1] * slide[1] / length,
         ];
-        assert!(
-            (force[0] / weights[0]).hypot(force[1]) <= 1.0 + 1e-12,
-            "the force is greater than the pad's friction"
-        );
+        let is_possible = (force[0] / weights[0]).hypot(force[1]) <= 1.0 + 1e-12;
+        assert!(is_possible, "the force is greater than the pad's friction");
         let force = force.map(|component| pads.loads[i] * component);
         let work_along = |[x, y]: Point| force[0] * x + force[1] * y;
         lower_bound += work_along(pads.swings[i]);
@@ -82,14 +77,10 @@ fn compute_dual_certificate(pads: &Pads, displacement: &Displacement) -> ([f64; 
 
 fn assert_minimal(pads: &Pads) {
     let (net_force, duality_gap) = compute_dual_certificate(pads, &pads.minimise_cost());
-    assert!(
-        net_force.iter().all(|component| component.abs() < 1e-5),
-        "the forces do not balance: {net_force:?}"
-    );
-    assert!(
-        duality_gap.abs() < 1e-5 * max_abs_component(&pads.swings),
-        "the duality gap is {duality_gap}"
-    );
+    let is_balanced = net_force.iter().all(|component| component.abs() < 1e-5);
+    assert!(is_balanced, "the forces do not balance: {net_force:?}");
+    let is_closed = duality_gap.abs() < 1e-5 * max_abs_component(&pads.swings);
+    assert!(is_closed, "the duality gap is {duality_gap}");
 }
 
 #[test]

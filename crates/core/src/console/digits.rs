@@ -123,10 +123,8 @@ mod tests {
         });
         for value in values.chain([u32::MAX - 1, u32::MAX]) {
             for decimals in 0..=3 {
-                assert_eq!(
-                    print_to_string(value, decimals),
-                    format_with_std(value, decimals)
-                );
+                let expected = format_with_std(value, decimals);
+                assert_eq!(print_to_string(value, decimals), expected);
             }
         }
     }
@@ -137,10 +135,8 @@ mod tests {
             let mut text = String::new();
             print_signed(&mut text, value, 3);
             let sign = if value < 0 { "-" } else { "" };
-            assert_eq!(
-                text,
-                format!("{sign}{}", format_with_std(value.unsigned_abs(), 3))
-            );
+            let magnitude = format_with_std(value.unsigned_abs(), 3);
+            assert_eq!(text, format!("{sign}{magnitude}"));
         }
     }
 

@@ -102,16 +102,13 @@ mod tests {
     use super::*;
 
     /// Returns the text of every line that the bytes complete; `None` if the line is too long or garbled.
-    fn split_lines(bytes: &[u8]) -> Vec<Option<String>> {
+    fn split_lines(bytes: impl AsRef<[u8]>) -> Vec<Option<String>> {
         let mut line = Line::new();
         let mut lines = Vec::new();
-        for byte in bytes {
-            match line.push(*byte) {
-                None => {}
-                Some(LineKind::TooLong | LineKind::Garbled) => lines.push(None),
-                Some(LineKind::Valid) => {
-                    lines.push(Some(line.text().iter().copied().map(char::from).collect()));
-                }
+        for byte in bytes.as_ref() {
+            if let Some(kind) = line.push(*byte) {
+                let text = line.text().iter().copied().map(char::from).collect();
+                lines.push((kind == LineKind::Valid).then_some(text));
             }
         }
         lines
@@ -147,11 +144,7 @@ mod tests {
         for line_end in ["\r", "\n", "\r\n", "\n\r", "\r\r\n\n", "\r \t \n"] {
             let bytes = std::format!("{line_end}one{line_end}two{line_end}");
             let expected_lines = ["one", "two"].map(|text| Some(text.to_string()));
-            assert_eq!(
-                split_lines(bytes.as_bytes()),
-                expected_lines,
-                "{line_end:?}"
-            );
+            assert_eq!(split_lines(bytes), expected_lines, "{line_end:?}");
         }
     }
 
@@ -161,16 +154,11 @@ mod tests {
             let text = "x".repeat(length);
             let bytes = std::format!("{text}\rstand\r");
             let first_line = (length <= 63).then_some(text);
-            assert_eq!(
-                split_lines(bytes.as_bytes()),
-                [first_line, Some("stand".to_string())]
-            );
+            let expected_lines = [first_line, Some("stand".to_string())];
+            assert_eq!(split_lines(bytes), expected_lines);
         }
         // Leading blanks count towards the 63 characters.
-        assert_eq!(
-            split_lines(std::format!("{:>64}\r", "stand").as_bytes()),
-            [None]
-        );
+        assert_eq!(split_lines(std::format!("{:>64}\r", "stand")), [None]);
     }
 
     #[test]
@@ -181,21 +169,17 @@ mod tests {
                 std::format!("walt{delete_byte}k\r"),
                 std::format!("{five_deletions}walk\r"),
             ] {
-                assert_eq!(split_lines(line.as_bytes()), [Some("walk".to_string())]);
+                assert_eq!(split_lines(line), [Some("walk".to_string())]);
             }
-            assert_eq!(
-                split_lines(std::format!("stand{five_deletions}\r").as_bytes()),
-                []
-            );
+            let deleted_line = std::format!("stand{five_deletions}\r");
+            assert_eq!(split_lines(deleted_line), []);
         }
     }
 
     #[test]
     fn the_text_of_a_line_is_in_lower_case_without_surrounding_blanks() {
-        assert_eq!(
-            split_lines(b"  Arc \t LEFT\t \n"),
-            [Some("arc \t left".to_string())]
-        );
+        let text = "arc \t left".to_string();
+        assert_eq!(split_lines("  Arc \t LEFT\t \n"), [Some(text)]);
     }
 
     #[test]

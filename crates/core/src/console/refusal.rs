@@ -195,21 +195,13 @@ mod tests {
 
     #[test]
     fn errors_are_printed_with_their_code_and_message() {
-        use LineError::{AngleOutOfRange, OutOfRange, WrongArguments};
+        use LineError::{AngleOutOfRange, IncompleteName, OutOfRange};
+        use LineError::{UnexpectedArgument, UnknownCommand, WrongArguments};
         for (line_error, message) in [
-            (
-                LineError::UnknownCommand,
-                "1 unknown command; send help for the list",
-            ),
+            (UnknownCommand, "1 unknown command; send help for the list"),
             (LineError::Garbled, "1 the line was garbled; send it again"),
-            (
-                LineError::UnexpectedArgument,
-                "2 this command takes no argument",
-            ),
-            (
-                LineError::IncompleteName,
-                "2 this command needs another word",
-            ),
+            (UnexpectedArgument, "2 this command takes no argument"),
+            (IncompleteName, "2 this command needs another word"),
             (
                 WrongArguments(Text::SpeedUsage),
                 "2 speed takes a whole number, 10..100",
@@ -227,15 +219,11 @@ mod tests {
             (AngleOutOfRange(Servo::A1), "3 A1 must be 61.37..215.36"),
             (LineError::TooLong, "6 a line has at most 63 characters"),
         ] {
-            assert_eq!(
-                print_to_string(|motion, out| line_error.print(motion, out)),
-                message
-            );
+            let text = print_to_string(|motion, out| line_error.print(motion, out));
+            assert_eq!(text, message);
         }
-        assert_eq!(
-            format_refusal(Refusal::Resting),
-            "7 the servos are resting; send stand first"
-        );
+        let resting_text = format_refusal(Refusal::Resting);
+        assert_eq!(resting_text, "7 the servos are resting; send stand first");
         // The limits of the travel are rounded inwards to whole steps. From its neutral angle of 47.91 deg, A2 turns 66
         // deg clockwise and 88 deg counter-clockwise.
         for (servo, message) in [
@@ -243,86 +231,39 @@ mod tests {
             (Servo::A3, "3 A3 must be 235.64..18.64"),
             (Servo::A4, "3 A4 must be 134.18..307.18"),
         ] {
-            assert_eq!(
-                format_refusal(Refusal::Unsafe(Hazard::Travel(servo))),
-                message
-            );
+            let text = format_refusal(Refusal::Unsafe(Hazard::Travel(servo)));
+            assert_eq!(text, message);
         }
     }
 
     #[test]
     fn margin_and_stroke_hazards_are_printed_with_their_value_and_limit() {
+        use End::{Head, Tail};
         use Margin::{Leg, Type1, Type2};
-        for (margin, value, message) in [
-            (
-                Type2(End::Head),
-                1000,
-                "type-2 margin of the head is 0.031, must be at least 0.340",
-            ),
-            (
-                Type2(End::Tail),
-                -33,
-                "type-2 margin of the tail is -0.001, must be at least 0.340",
-            ),
-            (
-                Type2(End::Tail),
-                0,
-                "type-2 margin of the tail is below 0.1, must be at least 0.340",
-            ),
-            (
-                Type1(Servo::A1),
-                0,
-                "type-1 margin of A1 is 0.000, must be at least 0.220",
-            ),
-            (
-                Type1(Servo::A3),
-                -9830,
-                "type-1 margin of A3 is -0.300, must be at least 0.220",
-            ),
-            (
-                Leg(Servo::A2),
-                2000,
-                "leg margin of A2 is 0.061, must be at least 0.130",
-            ),
-            (
-                Leg(Servo::A4),
-                -32_767,
-                "leg margin of A4 is -1.000, must be at least 0.130",
-            ),
+        for (margin, value, kind, statement, limit) in [
+            (Type2(Head), 1000, "type-2", "the head is 0.031", "0.340"),
+            (Type2(Tail), -33, "type-2", "the tail is -0.001", "0.340"),
+            (Type2(Tail), 0, "type-2", "the tail is below 0.1", "0.340"),
+            (Type1(Servo::A1), 0, "type-1", "A1 is 0.000", "0.220"),
+            (Type1(Servo::A3), -9830, "type-1", "A3 is -0.300", "0.220"),
+            (Leg(Servo::A2), 2000, "leg", "A2 is 0.061", "0.130"),
+            (Leg(Servo::A4), -32_767, "leg", "A4 is -1.000", "0.130"),
         ] {
             let value = Sine(value);
-            let hazard = Hazard::Margin { margin, value };
-            assert_eq!(
-                format_refusal(Refusal::Unsafe(hazard)),
-                format!("4 {message}")
-            );
+            let text = format_refusal(Refusal::Unsafe(Hazard::Margin { margin, value }));
+            let message = format!("4 {kind} margin of {statement}, must be at least {limit}");
+            assert_eq!(text, message);
         }
         // The nominal length is 91 mm on the left and 98 mm on the right; a millimetre has 256 steps.
-        assert_eq!(
-            Sample::asymmetric()
-                .content
-                .sliders
-                .map(|side| side.scale.bits),
-            [8, 8]
-        );
-        for (side, mm, message) in [
-            (
-                Side::Left,
-                131,
-                "left slider is at 40.00 mm, must be -21.00..38.00",
-            ),
-            (
-                Side::Right,
-                70,
-                "right slider is at -28.00 mm, must be -21.00..38.00",
-            ),
+        let sliders = Sample::asymmetric().content.sliders;
+        assert_eq!(sliders.map(|side| side.scale.bits), [8, 8]);
+        for (side, mm, statement) in [
+            (Side::Left, 131, "left slider is at 40.00 mm"),
+            (Side::Right, 70, "right slider is at -28.00 mm"),
         ] {
             let length = 256 * mm;
-            let hazard = Hazard::Stroke { side, length };
-            assert_eq!(
-                format_refusal(Refusal::Unsafe(hazard)),
-                format!("5 {message}")
-            );
+            let text = format_refusal(Refusal::Unsafe(Hazard::Stroke { side, length }));
+            assert_eq!(text, format!("5 {statement}, must be -21.00..38.00"));
         }
     }
 }

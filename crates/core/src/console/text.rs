@@ -433,10 +433,8 @@ mod tests {
     #[test]
     fn every_text_is_one_line_without_control_characters() {
         for text in TEXTS {
-            assert!(
-                text.bytes()
-                    .all(|byte| byte == b' ' || byte.is_ascii_graphic())
-            );
+            let is_printable = |byte: u8| byte == b' ' || byte.is_ascii_graphic();
+            assert!(text.bytes().all(is_printable));
         }
     }
 }

@@ -57,7 +57,6 @@ impl Contact {
 
 #[cfg(test)]
 mod tests {
-    use std::string::String;
     use std::vec::Vec;
 
     use super::*;
@@ -83,13 +82,10 @@ mod tests {
     fn a_contact_closed_from_the_start_ends_a_motion_but_ends_a_wait_only_after_opening() {
         let input = Input::nose(16);
         assert_eq!(find_ending_frames(Contact::for_motion(input), "###"), [2]);
-        let stuck_levels: String = "#".repeat(1000);
-        assert!(find_ending_frames(Contact::for_wait(input), &stuck_levels).is_empty());
-        assert_eq!(
-            find_ending_frames(Contact::for_wait(input), "####...###"),
-            [9]
-        );
+        let wait_contact = Contact::for_wait(input);
+        assert!(find_ending_frames(wait_contact, &"#".repeat(1000)).is_empty());
+        assert_eq!(find_ending_frames(wait_contact, "####...###"), [9]);
         // Two open frames are too few to count as open.
-        assert!(find_ending_frames(Contact::for_wait(input), "####..####.##").is_empty());
+        assert!(find_ending_frames(wait_contact, "####..####.##").is_empty());
     }
 }

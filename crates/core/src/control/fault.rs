@@ -128,11 +128,8 @@ mod tests {
     fn without_a_fault_the_led_shows_the_heartbeat() {
         let runs = record_runs(&mut LedPattern::default(), None, 1000);
         assert!(runs[0].0, "the LED is lit first");
-        assert!(
-            runs[1..runs.len() - 1]
-                .iter()
-                .all(|(_, frames)| *frames == 32)
-        );
+        let mut complete_runs = runs[1..runs.len() - 1].iter();
+        assert!(complete_runs.all(|(_, frames)| *frames == 32));
     }
 
     #[test]
@@ -166,10 +163,7 @@ mod tests {
         let shown_faults: Vec<Option<Fault>> =
             ALL_FAULTS.into_iter().map(Some).chain([None]).collect();
         for first_fault in &shown_faults {
-            for second_fault in shown_faults
-                .iter()
-                .filter(|second_fault| *second_fault != first_fault)
-            {
+            for second_fault in shown_faults.iter().filter(|fault| *fault != first_fault) {
                 for frames in 1..300 {
                     let mut led = LedPattern::default();
                     record_runs(&mut led, *first_fault, frames);
@@ -190,10 +184,8 @@ mod tests {
     fn the_pattern_of_a_second_fault_starts_with_a_whole_flash() {
         let mut led = LedPattern::default();
         record_runs(&mut led, Some(Fault::Stack), 100);
-        assert_eq!(
-            record_runs(&mut led, Some(Fault::Guard), 10),
-            [(true, 8), (false, 2)]
-        );
+        let runs = record_runs(&mut led, Some(Fault::Guard), 10);
+        assert_eq!(runs, [(true, 8), (false, 2)]);
         assert_eq!(record_runs(&mut led, None, 40), [(true, 32), (false, 8)]);
     }
 }

@@ -198,16 +198,22 @@ mod tests {
         })
     }
 
+    impl RecordWrite {
+        /// Writes all remaining bytes.
+        pub(crate) fn complete(mut self, content: &RecordContent, eeprom: &mut Eeprom) -> Progress {
+            for _ in 0..10_000 {
+                match self.advance(content, eeprom) {
+                    Progress::InProgress => {}
+                    result => return result,
+                }
+            }
+            panic!("the write never ends");
+        }
+    }
+
     /// Writes a complete record.
     fn write_record(eeprom: &mut Eeprom, content: &RecordContent) -> Progress {
-        let mut record_write = ADDRESS.start_write();
-        for _ in 0..10_000 {
-            match record_write.advance(content, eeprom) {
-                Progress::InProgress => {}
-                result => return result,
-            }
-        }
-        panic!("the write never ends");
+        ADDRESS.start_write().complete(content, eeprom)
     }
 
     /// Reads a record's state, and its content even if the record is not valid.
@@ -262,16 +268,13 @@ mod tests {
         write_record(&mut eeprom, &content);
         eeprom.log.clear();
         write_record(&mut eeprom, &content);
-        assert_eq!(
-            eeprom.log,
-            [(64, VALID_MARK, ERASED), (64, ERASED, VALID_MARK)]
-        );
+        let mark_writes = [(64, VALID_MARK, ERASED), (64, ERASED, VALID_MARK)];
+        assert_eq!(eeprom.log, mark_writes);
         eeprom.log.clear();
         content[5] = 8;
         write_record(&mut eeprom, &content);
         let addresses: Vec<u16> = eeprom.log.iter().map(|(address, ..)| *address).collect();
-        assert_eq!(addresses[0], 64);
-        assert_eq!(addresses[1], 64 + 6);
+        assert_eq!(addresses[..2], [64, 64 + 6]);
         assert_eq!(addresses.last(), Some(&64));
         assert!(
             (4..=5).contains(&addresses.len()),
@@ -283,10 +286,8 @@ mod tests {
     fn a_worn_memory_is_detected() {
         let mut eeprom = Eeprom::blank();
         eeprom.is_worn = true;
-        assert_eq!(
-            write_record(&mut eeprom, &[1; CONTENT_BYTES]),
-            Progress::Failed
-        );
+        let progress = write_record(&mut eeprom, &[1; CONTENT_BYTES]);
+        assert_eq!(progress, Progress::Failed);
     }
 
     #[test]
@@ -294,8 +295,8 @@ mod tests {
         let mut eeprom = Eeprom::blank();
         write_record(&mut eeprom, &[3; CONTENT_BYTES]);
         let bytes_before = *eeprom.bytes();
-        let mut record_write = ADDRESS.start_invalidation();
-        while record_write.advance(&[0; CONTENT_BYTES], &mut eeprom) == Progress::InProgress {}
+        let record_write = ADDRESS.start_invalidation();
+        record_write.complete(&[0; CONTENT_BYTES], &mut eeprom);
         assert_eq!(read_record(&eeprom).0, RecordState::Damaged);
         assert_eq!(eeprom.bytes()[64], ERASED);
         assert_eq!(eeprom.bytes()[65..], bytes_before[65..]);

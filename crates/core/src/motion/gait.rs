@@ -62,12 +62,17 @@ mod tests {
         core::array::from_fn(samples)
     }
 
+    /// Returns a channel of the first waveform.
+    const fn channel_with(offset: u16, gain: i16) -> Channel {
+        Channel {
+            wave: 0,
+            offset,
+            gain,
+        }
+    }
+
     /// A channel that reads a waveform unchanged.
-    const PLAIN_CHANNEL: Channel = Channel {
-        wave: 0,
-        offset: 0,
-        gain: 1 << 14,
-    };
+    const PLAIN_CHANNEL: Channel = channel_with(0, 1 << 14);
 
     proptest! {
         #[test]
@@ -77,7 +82,7 @@ mod tests {
             phase: u16,
         ) {
             let (offset, gain) = channel;
-            let channel = Channel { wave: 0, offset, gain };
+            let channel = channel_with(offset, gain);
             let wave = make_wave(|n| samples[n]);
             let actual = f64::from(channel.sweep(Flash::from(&wave), phase).0);
             let position = f64::from(phase.wrapping_add(offset)) / 1024.0;
@@ -122,22 +127,10 @@ mod tests {
     #[test]
     fn halves_round_up_after_interpolation_and_after_the_gain() {
         let wave = make_wave(|n| [0, 1, 0, -1][n % 4]);
-        let sweep_at = |phase, gain| {
-            Channel {
-                gain,
-                ..PLAIN_CHANNEL
-            }
-            .sweep(Flash::from(&wave), phase)
-            .0
-        };
-        assert_eq!(
-            [sweep_at(0x01fc, 1 << 14), sweep_at(0x0200, 1 << 14)],
-            [0, 1]
-        );
-        assert_eq!(
-            [sweep_at(0x0a00, 1 << 14), sweep_at(0x0a04, 1 << 14)],
-            [0, -1]
-        );
+        let sweep_at = |phase, gain| channel_with(0, gain).sweep(Flash::from(&wave), phase).0;
+        let gain = PLAIN_CHANNEL.gain;
+        assert_eq!([sweep_at(0x01fc, gain), sweep_at(0x0200, gain)], [0, 1]);
+        assert_eq!([sweep_at(0x0a00, gain), sweep_at(0x0a04, gain)], [0, -1]);
         assert_eq!([sweep_at(0x0400, 8191), sweep_at(0x0400, 8192)], [0, 1]);
         assert_eq!([sweep_at(0x0c00, 8192), sweep_at(0x0c00, 8193)], [0, -1]);
     }
@@ -147,21 +140,12 @@ mod tests {
         let robot = Sample::asymmetric();
         let wave = Flash::from(&robot.content.waves[1]);
         for phase in (0..=u16::MAX).step_by(97) {
-            let offset_channel = Channel {
-                offset: 0x1800,
-                ..PLAIN_CHANNEL
-            };
+            let offset_channel = channel_with(0x1800, 1 << 14);
             let plain_sweep = PLAIN_CHANNEL.sweep(wave, phase.wrapping_add(0x1800));
             assert_eq!(offset_channel.sweep(wave, phase), plain_sweep);
-            let reversed_channel = Channel {
-                gain: -(1 << 14),
-                ..offset_channel
-            };
+            let reversed_channel = channel_with(0x1800, -(1 << 14));
             assert_eq!(reversed_channel.sweep(wave, phase), Sweep(-plain_sweep.0));
-            let still_channel = Channel {
-                gain: 0,
-                ..offset_channel
-            };
+            let still_channel = channel_with(0x1800, 0);
             assert_eq!(still_channel.sweep(wave, phase), Sweep(0));
         }
     }
@@ -194,9 +178,7 @@ mod tests {
             assert_eq!(phase, *forward_phase);
             phase = backward_gait.advance(phase, FULL_PACE);
         }
-        assert_eq!(
-            backward_gait.advance(0, FULL_PACE),
-            CYCLE - forward_gait.advance(0, FULL_PACE)
-        );
+        let forward_advance = forward_gait.advance(0, FULL_PACE);
+        assert_eq!(backward_gait.advance(0, FULL_PACE), CYCLE - forward_advance);
     }
 }

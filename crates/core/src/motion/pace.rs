@@ -40,10 +40,8 @@ mod tests {
                 pace_sum += pace;
             }
             let full_pace_frames = f64::from(pace_sum) / f64::from(FULL_PACE);
-            assert!(
-                (full_pace_frames - full_pace_frames.round()).abs() < 0.02,
-                "{full_pace_frames}"
-            );
+            let error = full_pace_frames - full_pace_frames.round();
+            assert!(error.abs() < 0.02, "{full_pace_frames}");
         }
     }
 

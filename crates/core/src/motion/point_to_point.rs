@@ -231,11 +231,8 @@ mod tests {
         let sweeps = compute_sweeps(77, 77, Slew::new(1000));
         assert_eq!(sweeps, [77; 9]);
         let path = PointToPointMove::new(&to_pose([0; 4]), &to_pose([9; 4]), Slew::new(1000));
-        assert_eq!(
-            path.fraction_per_frame,
-            32_768 / 8,
-            "each frame covers an equal fraction"
-        );
+        let fraction = path.fraction_per_frame;
+        assert_eq!(fraction, 32_768 / 8, "each frame covers an equal fraction");
     }
 
     #[test]

@@ -97,11 +97,8 @@ mod tests {
     fn contains_by_division(first_row: i8, rows: &[[i8; 2]], row: i16, column: i16) -> bool {
         let row = f64::from(row).div_euclid(256.0) as i32;
         // A turn has 256 rows; the first row follows the last.
-        let row = if row < i32::from(first_row) {
-            row + 256
-        } else {
-            row
-        };
+        let is_in_next_turn = row < i32::from(first_row);
+        let row = if is_in_next_turn { row + 256 } else { row };
         let column = f64::from(column).div_euclid(128.0) as i32;
         rows.iter()
             .enumerate()
@@ -188,10 +185,8 @@ mod tests {
             for map in 0..2 {
                 let cells = CellMap::from_rows(first_rows[map], starts[map], maps[map].len() as u8, rows);
                 for [row, column] in &pairs {
-                    prop_assert_eq!(
-                        cells.contains(Sweep(*row), Sweep(*column)),
-                        contains_by_division(first_rows[map], &maps[map], *row, *column)
-                    );
+                    let expected = contains_by_division(first_rows[map], &maps[map], *row, *column);
+                    prop_assert_eq!(cells.contains(Sweep(*row), Sweep(*column)), expected);
                 }
             }
         }
@@ -204,10 +199,8 @@ mod tests {
         ) {
             let cells = CellMap::new(first_row, Flash::from(rows.as_slice()));
             for [row, column] in pairs {
-                prop_assert_eq!(
-                    cells.contains(Sweep(row), Sweep(column)),
-                    contains_by_division(first_row, &rows, row, column)
-                );
+                let expected = contains_by_division(first_row, &rows, row, column);
+                prop_assert_eq!(cells.contains(Sweep(row), Sweep(column)), expected);
             }
         }
     }

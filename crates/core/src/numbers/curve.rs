@@ -162,11 +162,8 @@ mod tests {
             for argument in (1 << 20..1 << 21).step_by(997) {
                 let octaves = f64::from(argument) / f64::from(1 << 20) - 1.0;
                 let exact = f64::from(slope) * 16.0 * (f64::from(OCTAVE_COUNT) + octaves);
-                let actual = f64::from(
-                    curve
-                        .at(argument)
-                        .expect("the argument is within the octaves"),
-                );
+                let actual = curve.at(argument).map(f64::from);
+                let actual = actual.expect("the argument is within the octaves");
                 assert!(
                     (actual - exact).abs() <= 0.501,
                     "{argument}: {actual}, exactly {exact}"
@@ -194,14 +191,9 @@ mod tests {
     fn entry_arguments_never_decrease_and_are_at_most_twice_the_largest() {
         for max_argument in [0, 1, 100, 1023, 1024] {
             for index in 1..ENTRY_COUNT {
-                let (previous_argument, current_argument) = (
-                    argument_at(max_argument, index - 1),
-                    argument_at(max_argument, index),
-                );
-                assert!(
-                    previous_argument <= current_argument
-                        && previous_argument <= 2 * u64::from(max_argument)
-                );
+                let previous_argument = argument_at(max_argument, index - 1);
+                assert!(previous_argument <= argument_at(max_argument, index));
+                assert!(previous_argument <= 2 * u64::from(max_argument));
             }
         }
     }

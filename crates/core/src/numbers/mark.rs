@@ -93,11 +93,8 @@ mod tests {
             for bit in 0..8 {
                 let mut flash = flash;
                 flash[address] ^= 1 << bit;
-                assert_ne!(
-                    Mark::read(&flash),
-                    Some(Mark::THIS_FIRMWARE),
-                    "bit {bit} at {address}"
-                );
+                let mark = Mark::read(&flash);
+                assert_ne!(mark, Some(Mark::THIS_FIRMWARE), "bit {bit} at {address}");
             }
         }
         assert_eq!(Mark::read(&flash[..ADDRESS + LENGTH - 1]), None);

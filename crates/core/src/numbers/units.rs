@@ -230,10 +230,8 @@ mod tests {
             {
                 let exact = f64::from(length) * 100.0 / f64::from(1 << bits);
                 let hundredths = f64::from(scale.hundredths(length));
-                assert!(
-                    (hundredths - exact).abs() <= 0.5,
-                    "{length} at {bits}: {hundredths}"
-                );
+                let error = hundredths - exact;
+                assert!(error.abs() <= 0.5, "{length} at {bits}: {hundredths}");
             }
         }
     }
@@ -245,10 +243,8 @@ mod tests {
             let thousandths = thousandths_from_phase(phase);
             // Waveforms and the console use only the highest sixteen bits.
             let rounding_loss = exact - f64::from(thousandths);
-            assert!(
-                (0.0..1.0 + 1000.0 / 65536.0).contains(&rounding_loss),
-                "{phase}"
-            );
+            let allowed_loss = 0.0..1.0 + 1000.0 / 65536.0;
+            assert!(allowed_loss.contains(&rounding_loss), "{phase}");
             assert!(thousandths < 1000);
             assert_eq!(u32::from(phase16(phase)), phase / 256);
         }

@@ -253,14 +253,14 @@ fn a_late_edge_and_a_stack_in_the_data_are_reported_as_faults() {
     let mut robot = start_robot(0, "");
     robot.run_frames(1);
     robot.board.late_edges = 1;
-    let is_reported =
-        |lines: &[std::string::String], fault| lines.iter().any(|line| line.starts_with(fault));
-    let lines = robot.run_frames(1);
-    assert!(
-        is_reported(&lines, "# fault: a pulse was late"),
-        "{lines:?}"
-    );
+    let late_lines = robot.run_frames(1);
     robot.board.is_stack_intact = false;
-    let lines = robot.run_frames(1);
-    assert!(is_reported(&lines, "# fault: the stack"), "{lines:?}");
+    let stack_lines = robot.run_frames(1);
+    for (lines, fault) in [
+        (late_lines, "# fault: a pulse was late"),
+        (stack_lines, "# fault: the stack"),
+    ] {
+        let is_reported = lines.iter().any(|line| line.starts_with(fault));
+        assert!(is_reported, "{lines:?}");
+    }
 }

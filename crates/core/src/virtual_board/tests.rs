@@ -24,11 +24,8 @@ fn a_frame_is_played_once_taken_over_and_repeats_while_main_is_late() {
     board.submit(pulses);
     assert_eq!(board.started_pulses(), NO_PULSES);
     board.pass_time(1 + 3);
-    assert_eq!(
-        board.started_pulses(),
-        NO_PULSES,
-        "the frame has not been taken over yet"
-    );
+    let claim = "the frame has not been taken over yet";
+    assert_eq!(board.started_pulses(), NO_PULSES, "{claim}");
     board.pass_time(1);
     let widths = board.started_pulses().0.map(|width| width.0);
     assert_eq!(widths, [1_000, 0, 0, 0]);
@@ -52,11 +49,8 @@ fn a_stall_below_125_ms_changes_nothing_and_a_longer_stall_restarts_the_program(
     let mut hung_robot = run_standing_robot();
     assert!(!hung_robot.board.pass_time(WATCHDOG_MS + 20));
     assert!(hung_robot.board.are_pulses_ended());
-    assert_eq!(
-        hung_robot.board.started_pulses(),
-        NO_PULSES,
-        "no further pulse begins"
-    );
+    let started_pulses = hung_robot.board.started_pulses();
+    assert_eq!(started_pulses, NO_PULSES, "no further pulse begins");
     let pose = *hung_robot.motion().pose();
     let frames = hung_robot.motion().frame_count();
     hung_robot.settle();
@@ -66,32 +60,21 @@ fn a_stall_below_125_ms_changes_nothing_and_a_longer_stall_restarts_the_program(
     assert!(!hung_robot.board.are_pulses_ended());
     let restart = hung_robot.board.last_restart();
     assert_eq!((restart.cause, restart.reset_count), (Cause::Watchdog, 1));
-    assert_eq!(
-        restart
-            .servo_state_before
-            .map(|servo_state| servo_state.pose),
-        Some(pose)
-    );
+    let servo_state = restart.servo_state_before.expect("it is in the RAM");
+    assert_eq!(servo_state.pose, pose);
 }
 
 #[test]
 fn a_reset_keeps_the_pose_and_a_loss_of_power_does_not() {
     let mut robot = run_standing_robot();
-    robot.send_line("sway");
-    robot.run_frames(60);
+    robot.send_and_run("sway", 60);
     let pose = *robot.motion().pose();
     robot.board.send(b"stand\r");
     robot.reset(Cause::External);
     let servo_state_before = robot.board.last_restart().servo_state_before;
-    assert_eq!(
-        servo_state_before.map(|servo_state| servo_state.pose),
-        Some(pose)
-    );
-    let unread_count = robot.board.unread_count();
-    assert_eq!(
-        unread_count, 0,
-        "bytes that the main loop has not read are lost"
-    );
+    assert_eq!(servo_state_before.expect("it is in the RAM").pose, pose);
+    let claim = "bytes that the main loop has not read are lost";
+    assert_eq!(robot.board.unread_count(), 0, "{claim}");
     robot.lose_power(None);
     assert_eq!(robot.board.last_restart(), &Restart::NONE);
 }
@@ -136,16 +119,9 @@ fn the_reading_is_empty_until_every_voltage_has_been_measured() {
         for frame in 1..40 {
             let reading = adc.advance_frame();
             let is_given = frame >= first_frame;
-            assert_eq!(
-                reading.reference == 221,
-                is_given,
-                "{measures_rail} {frame}"
-            );
-            assert_eq!(
-                reading.rail == 393,
-                measures_rail && is_given,
-                "{measures_rail} {frame}"
-            );
+            let is_read = [reading.reference == 221, reading.rail == 393];
+            let expected = [is_given, measures_rail && is_given];
+            assert_eq!(is_read, expected, "{measures_rail} {frame}");
         }
     }
 }
@@ -154,10 +130,8 @@ fn the_reading_is_empty_until_every_voltage_has_been_measured() {
 fn bytes_beyond_the_receivers_capacity_are_lost_and_counted() {
     let mut board = VirtualBoard::default();
     board.send(&[b'x'; RECEIVE_CAPACITY + 5]);
-    assert_eq!(
-        (board.unread_count(), board.counters().rx_lost),
-        (RECEIVE_CAPACITY, 5)
-    );
+    assert_eq!(board.unread_count(), RECEIVE_CAPACITY);
+    assert_eq!(board.counters().rx_lost, 5);
     let mut main = Main::new();
     main.begin(Sample::asymmetric().section(), &mut board);
     while main.step(&mut board) == StepResult::Worked {}
@@ -170,17 +144,14 @@ fn the_first_pulses_after_a_reset_repeat_the_last_submitted_frame() {
     // frame, and from then on the slew limit applies.
     let mut robot = RunningRobot::power_on(*Sample::asymmetric());
     robot.run_frames(200);
-    robot.send_line("sway");
-    robot.run_frames(60);
+    robot.send_and_run("sway", 60);
     let started_pulses = robot.board.started_pulses();
     robot.board.pass_time(robot.board.ms_until_tick());
     robot.settle();
     robot.reset(Cause::External);
     let submitted_pulses = *robot.motion().sent_pulses();
-    assert_ne!(
-        started_pulses, submitted_pulses,
-        "the submitted frame has not been played"
-    );
+    let claim = "the submitted frame has not been played";
+    assert_ne!(started_pulses, submitted_pulses, "{claim}");
     for servo in 1..=4 {
         robot.send_line(&format!("scale {servo} 9.3"));
     }
@@ -216,15 +187,12 @@ fn measure_max_changes(robot: &mut RunningRobot, frames: usize) -> [u16; 4] {
 fn settings_changed_at_rest_turn_no_servo_faster_than_the_slew_limit() {
     let robot = Sample::asymmetric();
     let sweep_per_frame = robot.slew().per_frame;
-    let max_changes = robot
-        .calibration()
-        .map(|servo| servo.max_width_change(sweep_per_frame));
+    let calibration = robot.calibration();
+    let max_changes = calibration.map(|servo| servo.max_width_change(sweep_per_frame));
     for reset_cause in [None, Some(Cause::External), Some(Cause::Watchdog)] {
         let mut running_robot = run_standing_robot();
-        running_robot.send_line("sway");
-        running_robot.run_frames(60);
-        running_robot.send_line("rest");
-        running_robot.run_frames(60);
+        running_robot.send_and_run("sway", 60);
+        running_robot.send_and_run("rest", 60);
         let pulses_before_rest = *running_robot.motion().sent_pulses();
         for servo in 1..=4 {
             running_robot.expect_accepted(&format!("trim {servo} 6"));
@@ -235,15 +203,9 @@ fn settings_changed_at_rest_turn_no_servo_faster_than_the_slew_limit() {
         }
         running_robot.send_line("stand");
         let changes = measure_max_changes(&mut running_robot, 200);
-        for servo in 0..4 {
-            assert!(
-                changes[servo] <= max_changes[servo],
-                "{changes:?}, {max_changes:?}"
-            );
-            assert!(
-                changes[servo] > 0,
-                "the neutral pose differs from the rest pose"
-            );
+        for (change, max_change) in changes.into_iter().zip(max_changes) {
+            assert!(change <= max_change, "{changes:?}, {max_changes:?}");
+            assert!(change > 0, "the neutral pose differs from the rest pose");
         }
         assert_ne!(*running_robot.motion().sent_pulses(), pulses_before_rest);
     }

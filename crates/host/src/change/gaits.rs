@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::shared::displacement::Displacement;
 use crate::shared::json;
 use crate::shared::pose_args::ANGLE_NAMES;
-use crate::shared::progress::Spinner;
+use crate::shared::progress::create_spinner;
 use crate::shared::robot_args::unknown_gait_failure;
 use crate::{Failure, RobotArgs};
 
@@ -88,7 +88,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
 /// Computes a table while a spinner shows the elapsed time.
 fn with_spinner<T>(compute: impl FnOnce() -> T) -> T {
-    let _spinner = Spinner::new("simulating every gait");
+    let _spinner = create_spinner("simulating every gait");
     compute()
 }
 
@@ -202,7 +202,7 @@ impl<'a> GaitLine<'a> {
             type2: to_min_margin(audit.type2),
             type1: to_min_margin(audit.type1),
             leg: to_min_margin(audit.leg),
-            stroke: [audit.stroke_range.0, audit.stroke_range.1],
+            stroke: audit.stroke_range.into(),
             ideal_displacement: row.movement.into(),
             utilisation: row.utilisation,
             displacement: row.movement_with_servos.into(),

@@ -1,6 +1,6 @@
 //! `lizard prove`: compares the integer guard with floating point at every pair of positions of two servos.
 
-use std::io::{self, Write};
+use std::fmt::Write as _;
 
 use lizard_proof::{GuardComparison, LENGTH_BAND_STEPS, PIECE_COUNT, PairSample, Proof};
 use serde::{Deserialize, Serialize};
@@ -60,12 +60,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         one_in: args.one_in,
         offset: args.offset,
     };
-    let row_count = Proof::row_count(guard) * args.spread.count_own_pieces(PIECE_COUNT) as u64
-        / PIECE_COUNT as u64;
-    let bar = create_progress_bar(
-        row_count as usize,
-        "{bar:40} {percent} % of all rows, {eta} left",
-    );
+    let own_piece_count = args.spread.count_own_pieces(PIECE_COUNT) as u64;
+    let row_count = Proof::row_count(guard) * own_piece_count / PIECE_COUNT as u64;
+    let template = "{bar:40} {percent} % of all rows, {eta} left";
+    let bar = create_progress_bar(row_count as usize, template);
     let comparison = GuardComparison::new(&robot, guard, sample);
     let check_piece =
         |index| comparison.compare_piece(index, &|checked_rows| bar.inc(checked_rows));
@@ -76,13 +74,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let proof = Proof::from_tallies(&robot, guard, pieces);
 
-    let mut out = io::stdout().lock();
-    if args.json {
-        json::write_line(&mut out, &proof)?;
-    } else {
-        print_table(&proof, sample, &mut out)?;
-    }
-    out.flush()?;
+    json::print_json_or_text(args.json, &proof, || format_table(&proof, sample))?;
     match proof.wrong_count() {
         0 => Ok(()),
         wrong_count => Err(Failure::Operation(format!(
@@ -91,22 +83,19 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
 }
 
-fn print_table(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::Result<()> {
-    writeln!(
-        out,
-        "                                      largest error          decisions differ within"
-    )?;
-    writeln!(
-        out,
-        "part        servos          pairs   type-2   type-1      mm    margin      mm   wrong"
-    )?;
+fn format_table(proof: &Proof, sample: PairSample) -> String {
+    let mut text = String::new();
+    text +=
+        "                                      largest error          decisions differ within\n";
+    text +=
+        "part        servos          pairs   type-2   type-1      mm    margin      mm   wrong\n";
     for finding in &proof.findings {
         let tally = &finding.tally;
         let format_value = |value: Option<f64>, digits: usize| {
             value.map_or("-".to_string(), |value| format!("{value:.digits$}"))
         };
-        writeln!(
-            out,
+        _ = writeln!(
+            text,
             "{:<11} {:<7} {:>13} {:>8} {:>8} {:>7} {:>9} {:>7} {:>7}",
             finding.part,
             finding.servos.join(" "),
@@ -117,34 +106,33 @@ fn print_table(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::R
             format_value(tally.max_margin_difference, 6),
             format_value(tally.max_length_difference, 4),
             tally.wrong_count
-        )?;
+        );
     }
     for finding in &proof.findings {
         if let Some(example) = &finding.tally.example {
-            writeln!(out, "{}: {example}", finding.part)?;
+            _ = writeln!(text, "{}: {example}", finding.part);
         }
     }
-    let sample_text = if sample.one_in == 1 {
-        "every pair of positions".to_string()
-    } else {
-        format!("one pair of positions in {}", sample.one_in)
+    let sample_text = match sample.one_in {
+        1 => "every pair of positions".to_string(),
+        one_in => format!("one pair of positions in {one_in}"),
     };
-    writeln!(
-        out,
+    _ = writeln!(
+        text,
         "\n{sample_text}, in steps of 0.0055 deg, of a robot with tables {:08x}",
         proof.hash
-    )?;
+    );
     if proof.wrong_count() == 0 {
-        writeln!(
-            out,
+        let certified_count = group_digits(proof.certified_count() as f64, 0);
+        _ = writeln!(
+            text,
             "the guard decides every pose correctly that is more than {:.4} (a sine) or {LENGTH_BAND_STEPS} length steps from a limit",
             proof.margin_band
-        )?;
-        writeln!(
-            out,
-            "the guard accepts all {} pairs in the robot's cells, where the firmware skips the guard",
-            group_digits(proof.certified_count() as f64, 0)
-        )?;
+        );
+        _ = writeln!(
+            text,
+            "the guard accepts all {certified_count} pairs in the robot's cells, where the firmware skips the guard"
+        );
     }
-    Ok(())
+    text
 }

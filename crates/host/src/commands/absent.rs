@@ -6,26 +6,34 @@ use super::command_entry::CommandEntry;
 use crate::Failure;
 use crate::shared::suggestion::format_suggestion;
 
-/// Describes the commands that need `feature`, for messages.
-pub(super) fn describe_feature(feature: &str) -> &'static str {
-    match feature {
-        "simulator" => "the simulator",
-        "paper" => "the commands that compute",
-        "console" => "the commands for a board on USB",
-        "parts" => "the parts to print",
-        _ => "",
-    }
+/// The features: their names, descriptions of the commands that need them, and true for the features of this build.
+const FEATURES: [(&str, &str, bool); 4] = [
+    ("simulator", "the simulator", cfg!(feature = "simulator")),
+    (
+        "paper",
+        "the commands that compute",
+        cfg!(feature = "paper"),
+    ),
+    (
+        "console",
+        "the commands for a board on USB",
+        cfg!(feature = "console"),
+    ),
+    ("parts", "the parts to print", cfg!(feature = "parts")),
+];
+
+/// Describes the commands that need the accepted features, for messages.
+pub(super) fn describe_features(is_accepted: impl Fn(&str) -> bool) -> String {
+    let accepted_features = FEATURES.iter().filter(|(name, ..)| is_accepted(name));
+    let descriptions: Vec<&str> = accepted_features.map(|(_, text, _)| *text).collect();
+    descriptions.join(" and ")
 }
 
 /// True if this build has `feature`.
 fn is_in_build(feature: &str) -> bool {
-    let features = [
-        ("simulator", cfg!(feature = "simulator")),
-        ("paper", cfg!(feature = "paper")),
-        ("console", cfg!(feature = "console")),
-        ("parts", cfg!(feature = "parts")),
-    ];
-    features.contains(&(feature, true))
+    FEATURES
+        .iter()
+        .any(|(name, _, is_built)| *name == feature && *is_built)
 }
 
 /// Lists the commands that are missing from this build, for the help; empty for a complete build.
@@ -35,27 +43,23 @@ pub(super) fn list_absent(commands: &[CommandEntry]) -> String {
 
 /// Lists the commands that are missing from a build with only the features that `has_feature` accepts.
 fn list_absent_in_build(commands: &[CommandEntry], has_feature: impl Fn(&str) -> bool) -> String {
-    let absent_commands = commands.iter().filter(|command| {
-        !command
-            .needed_features
-            .iter()
-            .all(|feature| has_feature(feature))
-    });
+    let is_absent = |command: &&CommandEntry| {
+        let mut features = command.needed_features.iter();
+        features.any(|feature| !has_feature(feature))
+    };
+    let absent_commands = commands.iter().filter(is_absent);
     let names: Vec<String> = absent_commands.map(CommandEntry::name).collect();
     if names.is_empty() {
         return String::new();
     }
-    let features = ["simulator", "paper", "console", "parts"].into_iter();
-    let absent_features = features.filter(|feature| !has_feature(feature));
-    let absent_features: Vec<&str> = absent_features.map(describe_feature).collect();
+    let names = names.join(", ");
+    let absent_features = describe_features(|feature| !has_feature(feature));
     let platform_note = match has_feature("simulator") {
         true => "",
         false => " The simulator runs on Linux.",
     };
     format!(
-        "Not in this program: {}. It was built without {}.{platform_note}\n\n",
-        names.join(", "),
-        absent_features.join(" and ")
+        "Not in this program: {names}. It was built without {absent_features}.{platform_note}\n\n"
     )
 }
 
@@ -94,19 +98,14 @@ fn absent_command_failure(
     needed_features: &[&str],
     has_feature: impl Fn(&str) -> bool,
 ) -> Failure {
-    let absent_features: Vec<&str> = needed_features
-        .iter()
-        .filter(|feature| !has_feature(feature))
-        .map(|feature| describe_feature(feature))
-        .collect();
-    let is_simulator_absent = needed_features.contains(&"simulator") && !has_feature("simulator");
-    let advice = match is_simulator_absent && !cfg!(target_os = "linux") {
+    let is_absent = |feature: &str| needed_features.contains(&feature) && !has_feature(feature);
+    let absent_features = describe_features(is_absent);
+    let advice = match is_absent("simulator") && !cfg!(target_os = "linux") {
         true => "the simulator runs on Linux",
         false => "`make cli` builds every command",
     };
     Failure::Input(format!(
-        "`lizard {name}` is missing: this program was built without {}; {advice}",
-        absent_features.join(" and ")
+        "`lizard {name}` is missing: this program was built without {absent_features}; {advice}"
     ))
 }
 
@@ -135,10 +134,9 @@ mod tests {
     use super::*;
 
     fn absence_message(word: &str, features: &[&str]) -> String {
-        explain_absence_in_build(&[word.into(), "--json".into()], KNOWN_COMMANDS, |feature| {
-            features.contains(&feature)
-        })
-        .to_string()
+        let words = [word.into(), "--json".into()];
+        let has_feature = |feature: &str| features.contains(&feature);
+        explain_absence_in_build(&words, KNOWN_COMMANDS, has_feature).to_string()
     }
 
     #[test]
@@ -168,15 +166,14 @@ mod tests {
 
     #[test]
     fn the_absence_message_omits_features_of_the_build() {
-        assert!(
-            absence_message("tune", &["simulator"]).contains("without the commands that compute;")
-        );
-        assert!(absence_message("tune", &["paper"]).contains("without the simulator;"));
-        let message = absence_message("tune", &[]);
-        assert!(
-            message.contains("the simulator and the commands that compute;"),
-            "{message}"
-        );
+        for (features, absent) in [
+            (&["simulator"][..], "without the commands that compute;"),
+            (&["paper"][..], "without the simulator;"),
+            (&[][..], "the simulator and the commands that compute;"),
+        ] {
+            let message = absence_message("tune", features);
+            assert!(message.contains(absent), "{message}");
+        }
     }
 
     #[test]

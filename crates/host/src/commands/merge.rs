@@ -90,9 +90,8 @@ impl MergedParts {
     fn join(parts: Vec<PartOutput>) -> Result<Self, Failure> {
         let refuse = |reason: String| Err(Failure::Input(reason));
         let Some(first) = parts.first() else {
-            return refuse(
-                "no parts given; `lizard merge --help` shows how to compute them".to_owned(),
-            );
+            let reason = "no parts given; `lizard merge --help` shows how to compute them";
+            return refuse(reason.to_owned());
         };
         let (part_count, piece_count) = (first.part.part_count, first.piece_count);
         let mut merged = Self {
@@ -121,14 +120,12 @@ impl MergedParts {
                 || part.part.part_count != part_count
                 || part.piece_count != piece_count
             {
-                return refuse(format!(
-                    "part {name} has different options from another part"
-                ));
+                let reason = format!("part {name} has different options from another part");
+                return refuse(reason);
             }
             if part.robot != merged.robot {
-                return refuse(format!(
-                    "part {name} has a different robot from another part"
-                ));
+                let reason = format!("part {name} has a different robot from another part");
+                return refuse(reason);
             }
             let index = part.part.number as usize - 1;
             if std::mem::replace(&mut is_given[index], true) {
@@ -175,10 +172,8 @@ mod tests {
     }
 
     fn refusal_message(parts: Vec<PartOutput>) -> String {
-        match MergedParts::join(parts) {
-            Ok(_) => panic!("the parts must be refused"),
-            Err(failure) => failure.to_string(),
-        }
+        let failure = MergedParts::join(parts).err();
+        failure.expect("the parts must be refused").to_string()
     }
 
     #[test]
@@ -188,38 +183,22 @@ mod tests {
             change(&mut second);
             refusal_message(vec![part_output("1/2"), second])
         };
-        assert_eq!(
-            refusal_message(vec![part_output("1/2")]),
-            "part 2/2 is missing"
-        );
-        assert_eq!(
-            refusal_message(vec![
-                part_output("1/2"),
-                part_output("1/2"),
-                part_output("2/2")
-            ]),
-            "part 1/2 is given twice"
-        );
-        assert_eq!(
-            message_after(|part| part.robot = "other".to_owned()),
-            "part 2/2 has a different robot from another part"
-        );
-        assert_eq!(
-            message_after(|part| part.options = Value::Bool(true)),
-            "part 2/2 has different options from another part"
-        );
+        let missing_part = vec![part_output("1/2")];
+        assert_eq!(refusal_message(missing_part), "part 2/2 is missing");
+        let duplicate_part = ["1/2", "1/2", "2/2"].map(part_output).into();
+        assert_eq!(refusal_message(duplicate_part), "part 1/2 is given twice");
+        let message = message_after(|part| part.robot = "other".to_owned());
+        assert_eq!(message, "part 2/2 has a different robot from another part");
+        let message = message_after(|part| part.options = Value::Bool(true));
+        assert_eq!(message, "part 2/2 has different options from another part");
         assert_eq!(
             message_after(|part| part.command = "fit".to_owned()),
             "part 2/2 is from `lizard fit`, but another part is from `lizard prove`"
         );
-        assert!(
-            message_after(|part| part.version = "0.0.1".to_owned())
-                .contains("is from version 0.0.1")
-        );
+        let message = message_after(|part| part.version = "0.0.1".to_owned());
+        assert!(message.contains("is from version 0.0.1"), "{message}");
         assert!(refusal_message(Vec::new()).starts_with("no parts given"));
-        assert!(
-            MergedParts::join(vec![part_output("2/2"), part_output("1/2")]).is_ok(),
-            "parts are accepted in any order"
-        );
+        // Parts are accepted in any order.
+        assert!(MergedParts::join(["2/2", "1/2"].map(part_output).into()).is_ok());
     }
 }

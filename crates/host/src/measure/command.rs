@@ -7,7 +7,7 @@ use lizard_measure::{Gaits, Report, compute_board_height};
 
 use super::picture;
 use super::recording::{RecordingArgs, parse_height};
-use crate::shared::progress::Spinner;
+use crate::shared::progress::create_spinner;
 use crate::shared::robot_args::find_moving_gait;
 use crate::shared::{files, json};
 use crate::{Failure, RobotArgs};
@@ -67,7 +67,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let gaits = Gaits::predict(&robot, &named_gaits.collect::<Result<Vec<_>, _>>()?, pace);
     let height = args.height.unwrap_or_else(|| compute_board_height(&robot));
     let setup = args.recording.setup(height);
-    let spinner = Spinner::new("reading the frames");
+    let spinner = create_spinner("reading the frames");
     let analyse_video = |path: &PathBuf| args.recording.analyse(path, setup);
     let videos = args.videos.iter().map(analyse_video);
     let videos = videos.collect::<Result<Vec<_>, Failure>>()?;

@@ -10,7 +10,7 @@ use serde::Deserialize;
 use super::keys_report::{KeysReport, format_report};
 use crate::shared::files;
 use crate::shared::json;
-use crate::shared::progress::Spinner;
+use crate::shared::progress::create_spinner;
 use crate::{Failure, RobotArgs};
 
 /// Largest difference between a gait's cycle times in two robot.toml files that count as the same robot, s.
@@ -84,7 +84,7 @@ pub fn identify_keys(args: KeysArgs) -> Result<(), Failure> {
         movements.append(&mut read_movements(path, &robot)?);
     }
     files::check_replaceable(&args.output)?;
-    let spinner = Spinner::new("simulating the gaits");
+    let spinner = create_spinner("simulating the gaits");
     let to_failure = |error: IdentifyError| Failure::Input(error.to_string());
     let identified = identify(&robot, &movements, &|count, walk| {
         (0..count).into_par_iter().map(walk).collect()

@@ -84,11 +84,9 @@ struct GaitReport {
 
 impl KeysReport {
     pub(super) fn new(identified: &Identification, output_path: Option<&Path>) -> Self {
-        let Identification {
-            card, card_error, ..
-        } = identified;
-        let value_and_error =
-            |component: fn(&CardPose) -> f64| [component(card), component(card_error)];
+        let value_and_error = |component: fn(&CardPose) -> f64| {
+            [&identified.card, &identified.card_error].map(component)
+        };
         let GoodnessOfFit {
             value_count,
             chi_squares: [chi_square_before, chi_square, chi_square_all_free],
@@ -143,14 +141,12 @@ impl KeyReport {
 
 impl GaitReport {
     fn new(result: &MovementResult) -> Self {
+        let errors = result.measured.error;
         Self {
             gait: result.measured.gait.clone(),
             pace_percent: 100.0 * result.measured.pace,
             measured: result.measured.mean,
-            error: result
-                .measured
-                .error
-                .map(|error| Some(error).filter(|error| error.is_finite())),
+            error: errors.map(|error| Some(error).filter(|error| error.is_finite())),
             predicted_before: result.predicted_before,
             predicted_after: result.predicted_after,
         }
@@ -197,10 +193,7 @@ pub(super) fn format_report(identified: &Identification, output_path: Option<&Pa
     match output_path {
         Some(path) => {
             let path = path.display();
-            let _ = writeln!(
-                text,
-                "{path} has the values above; next: lizard gaits --robot {path}"
-            );
+            text += &format!("{path} has the values above; next: lizard gaits --robot {path}\n");
         }
         None => text += "No key was changed, so no file was written.\n",
     }
@@ -224,16 +217,13 @@ fn format_key(result: &KeyResult) -> String {
             format!("would be {value:.digits$}, which is not allowed; unchanged")
         }
     };
-    format!(
-        "{name:<35}{:>10}{:>10}{:>9.digits$}  {verdict}\n",
-        format!("{:?}", result.file_value),
-        if result.verdict == Verdict::Changed {
-            format!("{:.digits$}", result.new_value)
-        } else {
-            "-".to_owned()
-        },
-        result.error,
-    )
+    let file_value = format!("{:?}", result.file_value);
+    let new_value = match result.verdict {
+        Verdict::Changed => format!("{:.digits$}", result.new_value),
+        _ => "-".to_owned(),
+    };
+    let error = result.error;
+    format!("{name:<35}{file_value:>10}{new_value:>10}{error:>9.digits$}  {verdict}\n")
 }
 
 /// Formats the paragraph about the goodness of the fit.
@@ -275,10 +265,8 @@ fn format_goodness(identified: &Identification) -> String {
     } else if freedom < 1.0 {
         text += "These values are too few to judge the model: record more gaits.\n";
     } else {
-        let _ = writeln!(
-            text,
-            "The model explains these movements. The largest deviation is {deviation}."
-        );
+        text +=
+            &format!("The model explains these movements. The largest deviation is {deviation}.\n");
         if error_factor >= 1.05 {
             let _ = writeln!(
                 text,

@@ -5,8 +5,8 @@ use svg::node::element::Group;
 
 use crate::shared::plot::{Axis, Plot, draw_legend_entry};
 use crate::shared::shapes::{
-    Anchor, GREY, SERVO_COLOURS, add_outline, add_title, circle, line, rectangle, render_svg, text,
-    text_middle, text_start,
+    Anchor, GREY, SERVO_COLOURS, add_outline, add_title, rectangle, render_svg, text, text_middle,
+    text_start,
 };
 
 /// Width of the page, px.
@@ -41,23 +41,13 @@ pub(super) fn draw(report: &Report) -> String {
         "mean of a cycle in a video, with two standard errors, and the prediction",
     );
     group = draw_legend_entry(group, (PATH_X, 92.0), MEASURED_COLOUR, "none", "measured");
-    group = draw_legend_entry(
-        group,
-        (PATH_X + 150.0, 92.0),
-        PREDICTED_COLOUR,
-        "none",
-        "predicted",
-    );
+    let point = (PATH_X + 150.0, 92.0);
+    group = draw_legend_entry(group, point, PREDICTED_COLOUR, "none", "predicted");
+    let row_y = |row: usize| TITLE_HEIGHT + ROW_HEIGHT * row as f64;
     for (row, gait) in report.gaits.iter().enumerate() {
-        group = draw_gait(group, gait, TITLE_HEIGHT + ROW_HEIGHT * row as f64);
+        group = draw_gait(group, gait, row_y(row));
     }
-    render_svg(
-        (
-            PAGE_WIDTH,
-            TITLE_HEIGHT + ROW_HEIGHT * report.gaits.len() as f64,
-        ),
-        group,
-    )
+    render_svg((PAGE_WIDTH, row_y(report.gaits.len())), group)
 }
 
 /// Draws a gait's row with its upper edge at `top`.
@@ -71,18 +61,13 @@ fn draw_gait(group: Group, gait: &GaitReport, top: f64) -> Group {
 
 /// Draws the path within a cycle on the floor; x points forward, y to the left, mm.
 fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
-    let predicted: Vec<(f64, f64)> = gait
-        .predicted_path
-        .iter()
-        .map(|pose| (pose.forward, pose.left))
-        .collect();
-    let mut points: Vec<(f64, f64)> = gait
-        .mean_path
-        .iter()
-        .map(|point| (point.forward.mean, point.left.mean))
-        .collect();
-    points.insert(0, (0.0, 0.0));
-    points.push((gait.forward.mean, gait.left.mean));
+    let predicted = gait.predicted_path.iter();
+    let predicted: Vec<_> = predicted.map(|pose| (pose.forward, pose.left)).collect();
+    let mean_points = gait.mean_path.iter();
+    let mut points = vec![(0.0, 0.0)];
+    points.extend(mean_points.map(|point| (point.forward.mean, point.left.mean)));
+    let last_point = (gait.forward.mean, gait.left.mean);
+    points.push(last_point);
     let extent_of = |component: fn(&(f64, f64)) -> f64| {
         let values = predicted.iter().chain(&points).map(component);
         values.fold([0.0f64; 2], |[min, max], value| {
@@ -106,10 +91,8 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
         y_range: axis_range(min_y, max_y, PANEL_HEIGHT),
     };
     let tick_step = compute_tick_step(scale * PATH_WIDTH);
-    let (forward_axis, left_axis) = (
-        Axis::new(tick_step, "ahead, mm"),
-        Axis::new(tick_step, "left, mm"),
-    );
+    let [forward_axis, left_axis] =
+        ["ahead, mm", "left, mm"].map(|name| Axis::new(tick_step, name));
     let group = plot.draw_grid(group, &forward_axis, &left_axis);
     let mut group = plot
         .draw_axes(group, &forward_axis, &left_axis)
@@ -118,43 +101,26 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
         let (x, y) = (point.forward.mean, point.left.mean);
         let [error_x, error_y] = [&point.forward, &point.left]
             .map(|component| ERROR_BAR_STANDARD_ERRORS * component.standard_error);
-        group = group
-            .add(line(
-                plot.to_page_point(x - error_x, y),
-                plot.to_page_point(x + error_x, y),
-                MEASURED_COLOUR,
-                1.0,
-            ))
-            .add(line(
-                plot.to_page_point(x, y - error_y),
-                plot.to_page_point(x, y + error_y),
-                MEASURED_COLOUR,
-                1.0,
-            ));
+        for (start, end) in [
+            ((x - error_x, y), (x + error_x, y)),
+            ((x, y - error_y), (x, y + error_y)),
+        ] {
+            group = group.add(plot.line(start, end, MEASURED_COLOUR, 1.0));
+        }
     }
-    group = group.add(plot.curve(&points, MEASURED_COLOUR, 2.0));
-    let (start, last_point) = (plot.to_page_point(0.0, 0.0), points[points.len() - 1]);
+    let start = plot.circle((0.0, 0.0), 5.0, "white");
     group
-        .add(add_outline(
-            circle(start, 5.0, "white"),
-            MEASURED_COLOUR,
-            2.0,
-        ))
-        .add(circle(
-            plot.to_page_point(last_point.0, last_point.1),
-            5.0,
-            MEASURED_COLOUR,
-        ))
+        .add(plot.curve(&points, MEASURED_COLOUR, 2.0))
+        .add(add_outline(start, MEASURED_COLOUR, 2.0))
+        .add(plot.circle(last_point, 5.0, MEASURED_COLOUR))
 }
 
 /// Draws the components of the movement in a cycle as bars.
 fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
     let components = gait.components();
     let ends = components.iter().flat_map(|component| {
-        let error_ends = [
-            component.mean - ERROR_BAR_STANDARD_ERRORS * component.standard_error,
-            component.mean + ERROR_BAR_STANDARD_ERRORS * component.standard_error,
-        ];
+        let half_length = ERROR_BAR_STANDARD_ERRORS * component.standard_error;
+        let error_ends = [component.mean - half_length, component.mean + half_length];
         error_ends.into_iter().chain(component.predicted)
     });
     let [min, max] = ends.fold([0.0f64; 2], |[min, max], end| [min.min(end), max.max(end)]);
@@ -184,40 +150,22 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
         let error_ends = [-ERROR_BAR_STANDARD_ERRORS, ERROR_BAR_STANDARD_ERRORS]
             .map(|errors| component.mean + errors * component.standard_error);
         let x = interval_x + 0.34;
-        group = group.add(line(
-            plot.to_page_point(x, error_ends[0]),
-            plot.to_page_point(x, error_ends[1]),
-            "black",
-            1.5,
-        ));
+        let [low, high] = error_ends.map(|end| (x, end));
+        group = group.add(plot.line(low, high, "black", 1.5));
         for end in error_ends {
-            group = group.add(line(
-                plot.to_page_point(x - 0.05, end),
-                plot.to_page_point(x + 0.05, end),
-                "black",
-                1.5,
-            ));
+            group = group.add(plot.line((x - 0.05, end), (x + 0.05, end), "black", 1.5));
         }
         let point_below = |lines: f64| {
             let (x, y) = plot.to_page_point(interval_x + 0.5, plot.y_range.0);
             (x, y + 20.0 + 18.0 * lines)
         };
+        let verdict = component.format_verdict();
         group = group
             .add(text_middle(COMPONENT_LABELS[i], point_below(0.0), 15.0))
-            .add(text(
-                &component.format_verdict(),
-                point_below(1.0),
-                13.0,
-                GREY,
-                Anchor::Middle,
-            ));
+            .add(text(&verdict, point_below(1.0), 13.0, GREY, Anchor::Middle));
     }
-    group = group.add(line(
-        plot.to_page_point(plot.x_range.0, 0.0),
-        plot.to_page_point(plot.x_range.1, 0.0),
-        "black",
-        1.0,
-    ));
+    let (left, right) = ((plot.x_range.0, 0.0), (plot.x_range.1, 0.0));
+    group = group.add(plot.line(left, right, "black", 1.0));
     plot.draw_axes(group, &name_axis, &value_axis)
 }
 
@@ -225,8 +173,7 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
 fn compute_tick_step(range: f64) -> f64 {
     let max_step = range / 4.0;
     let power = 10f64.powf(max_step.log10().floor());
-    let factor = [5.0, 2.0]
-        .into_iter()
-        .find(|factor| factor * power <= max_step);
+    let mut factors = [5.0, 2.0].into_iter();
+    let factor = factors.find(|factor| factor * power <= max_step);
     factor.unwrap_or(1.0) * power
 }

@@ -13,7 +13,7 @@ use super::measured_key::{self, MeasuredKey};
 use super::recording::{RecordingArgs, parse_height, parse_number};
 use super::steps::{self, parse_servo};
 use super::video::video_failure;
-use crate::shared::progress::Spinner;
+use crate::shared::progress::create_spinner;
 use crate::shared::{files, json};
 use crate::{Failure, RobotArgs};
 
@@ -133,7 +133,7 @@ pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
         rotor_time_constant: robot.servo_type().rotor_time_constant_ms / 1000.0,
     };
     let setup = args.recording.setup(args.height);
-    let spinner = Spinner::new("reading the frames");
+    let spinner = create_spinner("reading the frames");
     let analyse_video = |path: &Path| -> Result<(AnalysedVideo, MeasuredServo), Failure> {
         let NamedVideo { name, analysis } = args.recording.analyse(path, setup)?;
         let measured_servo = MeasuredServo::from_path(&analysis.path, jig)
@@ -185,54 +185,31 @@ impl Report {
         let us_per_degree = servo.us_per_degree;
         let mut keys = Vec::new();
         let mut push_key = |name, decimals, estimate: Estimate, robot_value: f64, scale: f64| {
-            keys.push(
-                MeasuredKey::new("servo", name, decimals, estimate, robot_value * scale)
-                    .with_scale(1.0 / scale),
-            );
+            let key = MeasuredKey::new("servo", name, decimals, estimate, robot_value * scale);
+            keys.push(key.with_scale(1.0 / scale));
         };
         let seconds_per_60_deg = divide_by_estimate(60.0, measured_servo.rate);
-        push_key(
-            "s_per_60_deg",
-            4,
-            seconds_per_60_deg,
-            servo_type.s_per_60_deg,
-            1.0 / supply_ratio,
-        );
+        let robot_value = servo_type.s_per_60_deg;
+        let scale = 1.0 / supply_ratio;
+        push_key("s_per_60_deg", 4, seconds_per_60_deg, robot_value, scale);
         if let Some(stall_torque) = stall_torque_n_mm {
-            push_key(
-                "stall_kg_cm",
-                2,
-                scale_estimate(stall_torque, 1.0 / N_MM_PER_KG_CM),
-                servo_type.stall_torque_kg_cm,
-                supply_ratio,
-            );
+            let stall_kg_cm = scale_estimate(stall_torque, 1.0 / N_MM_PER_KG_CM);
+            let robot_value = servo_type.stall_torque_kg_cm;
+            push_key("stall_kg_cm", 2, stall_kg_cm, robot_value, supply_ratio);
         }
         if let Some(width) = measured_servo.dead_band.width {
-            push_key(
-                "dead_band_us",
-                1,
-                scale_estimate(width, us_per_degree.abs()),
-                servo_type.dead_band_us,
-                1.0,
-            );
+            let width_us = scale_estimate(width, us_per_degree.abs());
+            push_key("dead_band_us", 1, width_us, servo_type.dead_band_us, 1.0);
         }
         if let Some(rotor_time_constant) = measured_servo.rotor_time_constant {
-            push_key(
-                "spin_up_ms",
-                1,
-                scale_estimate(rotor_time_constant, 1000.0),
-                servo_type.rotor_time_constant_ms,
-                1.0,
-            );
+            let spin_up_ms = scale_estimate(rotor_time_constant, 1000.0);
+            let robot_value = servo_type.rotor_time_constant_ms;
+            push_key("spin_up_ms", 1, spin_up_ms, robot_value, 1.0);
         }
         let table = format!("servo.{name}");
-        keys.push(MeasuredKey::new(
-            &table,
-            "us_per_degree",
-            2,
-            divide_by_estimate(us_per_degree, measured_servo.gain),
-            us_per_degree,
-        ));
+        let gain = divide_by_estimate(us_per_degree, measured_servo.gain);
+        let gain_key = MeasuredKey::new(&table, "us_per_degree", 2, gain, us_per_degree);
+        keys.push(gain_key);
         let value_and_error = |estimate: Estimate| [estimate.value, estimate.standard_error];
         let dead_band = &measured_servo.dead_band;
         Self {
@@ -272,25 +249,20 @@ impl Report {
     fn format_text(&self) -> String {
         let [[ccw_rate, _], [cw_rate, _]] = self.rates;
         let [hysteresis, hysteresis_error] = self.hysteresis;
+        let cause = match hysteresis < 0.0 {
+            true => " by overshoot",
+            false => "",
+        };
+        let still_us = self.largest_ignored_step_us;
+        let hysteresis = hysteresis.abs();
+        let table = measured_key::format_table(&self.keys);
         let mut text = format!(
             "{} at {} V, {:.0} frames per second; card {:.0} mm above the strips, {:.0} mm according to its size\n\n\
-             {}\n\
-             counter-clockwise {ccw_rate:.0} deg/s, clockwise {cw_rate:.0} deg/s; a step of {:.1} us did not move the \
+             {table}\n\
+             counter-clockwise {ccw_rate:.0} deg/s, clockwise {cw_rate:.0} deg/s; a step of {still_us:.1} us did not move the \
              servo\n\
-             hysteresis {:.2} +- {hysteresis_error:.2} deg{}\n",
-            self.servo,
-            self.volts,
-            self.frame_rate,
-            self.height,
-            self.estimated_height,
-            measured_key::format_table(&self.keys),
-            self.largest_ignored_step_us,
-            hysteresis.abs(),
-            if hysteresis < 0.0 {
-                " by overshoot"
-            } else {
-                ""
-            },
+             hysteresis {hysteresis:.2} +- {hysteresis_error:.2} deg{cause}\n",
+            self.servo, self.volts, self.frame_rate, self.height, self.estimated_height
         );
         if self.is_reversed {
             text +=

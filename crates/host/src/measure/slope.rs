@@ -12,7 +12,7 @@ use super::measured_key::{self, MeasuredKey};
 use super::recording::{RecordingArgs, parse_height};
 use super::video::video_failure;
 use crate::shared::json;
-use crate::shared::progress::Spinner;
+use crate::shared::progress::create_spinner;
 use crate::{Failure, RobotArgs};
 
 /// Measure the friction of the robot's pads in videos of a tilted board, for robot.toml
@@ -71,18 +71,15 @@ pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let height = args.height.unwrap_or_else(|| compute_board_height(&robot));
     let setup = args.recording.setup(height);
-    let spinner = Spinner::new("reading the frames");
+    let spinner = create_spinner("reading the frames");
     let measure_slide = |path: &PathBuf| {
         let NamedVideo { name, analysis } = args.recording.analyse(path, setup)?;
         let slide =
             MeasuredSlide::from_video(&analysis).map_err(|error| video_failure(&name, &error))?;
         Ok((name, slide))
     };
-    let slides: Vec<(String, MeasuredSlide)> = args
-        .videos
-        .iter()
-        .map(measure_slide)
-        .collect::<Result<_, Failure>>()?;
+    let slides = args.videos.iter().map(measure_slide);
+    let slides = slides.collect::<Result<Vec<_>, Failure>>()?;
     drop(spinner);
     let report = Report::new(&robot, &slides);
     json::print_json_or_text(args.json, &report, || report.format_text())
@@ -104,26 +101,20 @@ fn average(estimates: &[Estimate]) -> Option<Estimate> {
 impl Report {
     fn new(robot: &Robot, slides: &[(String, MeasuredSlide)]) -> Self {
         let average_friction = |is_head_first: bool| {
-            let slides = slides
-                .iter()
-                .filter(|(_, slide)| slide.is_head_first == is_head_first);
+            let slides = slides.iter().map(|(_, slide)| slide);
+            let slides = slides.filter(|slide| slide.is_head_first == is_head_first);
             average(
                 &slides
-                    .map(|(_, slide)| slide.sliding_friction)
+                    .map(|slide| slide.sliding_friction)
                     .collect::<Vec<_>>(),
             )
         };
         let (forward, backward) = (average_friction(true), average_friction(false));
         let mut keys = Vec::new();
         let ground = robot.ground();
+        let new_key = |name, estimate, value| MeasuredKey::new("ground", name, 3, estimate, value);
         if let Some(forward) = forward {
-            keys.push(MeasuredKey::new(
-                "ground",
-                "friction",
-                3,
-                forward,
-                ground.friction_coefficient,
-            ));
+            keys.push(new_key("friction", forward, ground.friction_coefficient));
             if let Some(backward) = backward {
                 let value = backward.value / forward.value;
                 let [backward_error, forward_error] =
@@ -132,13 +123,8 @@ impl Report {
                     value,
                     standard_error: value * backward_error.hypot(forward_error),
                 };
-                keys.push(MeasuredKey::new(
-                    "ground",
-                    "friction_back_over_forward",
-                    3,
-                    ratio,
-                    ground.friction_ratio,
-                ));
+                let name = "friction_back_over_forward";
+                keys.push(new_key(name, ratio, ground.friction_ratio));
             }
         }
         let value_and_error = |estimate: Estimate| [estimate.value, estimate.standard_error];

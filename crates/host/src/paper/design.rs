@@ -115,18 +115,14 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let proportions = args.complete_proportions().map_err(Failure::Input)?;
     let l0 = args.l0.unwrap_or(20.0);
     let robot = args.spread.robot.load()?;
-    let mut out = BufWriter::new(io::stdout().lock());
-    if args.chart {
-        print_chart_points(&args, &mut out)?;
-    } else if args.search {
-        print_ranking(&args, &robot, l0, proportions, &mut out)?;
-    } else {
+    if !args.chart && !args.search {
         let report = Report::new(proportions, l0);
-        if args.json {
-            json::write_line(&mut out, &report)?;
-        } else {
-            out.write_all(report.to_text(&robot).as_bytes())?;
-        }
+        return json::print_json_or_text(args.json, &report, || report.to_text(&robot));
+    }
+    let mut out = BufWriter::new(io::stdout().lock());
+    match args.chart {
+        true => print_chart_points(&args, &mut out)?,
+        false => print_ranking(&args, &robot, l0, proportions, &mut out)?,
     }
     Ok(out.flush()?)
 }
@@ -209,7 +205,7 @@ LCI in MIC     mean {:.3}, least {:.3}, most {:.3}; above {CLAIMED_LCI} on {:.1}
                 text += &format_claim_verdict(lci, performance.r_mic);
             }
         }
-        let links = robot.lizard().links;
+        let (links, leg) = (robot.lizard().links, robot.lizard().leg);
         text += &format!(
             "
 link                          mm   from
@@ -222,14 +218,7 @@ l10, l15                {:8.2}   robot.toml; the paper gives no rule
 lg10, lg12              {:8.2}   robot.toml; the paper gives no rule
 lg1, lg13               {:8.2}   robot.toml; the paper gives no rule
 ",
-            self.l0,
-            self.l1,
-            self.l2,
-            self.l1,
-            links.l12,
-            links.l10,
-            robot.lizard().leg.ground,
-            robot.lizard().leg.crank,
+            self.l0, self.l1, self.l2, self.l1, links.l12, links.l10, leg.ground, leg.crank
         );
         text
     }
@@ -251,13 +240,9 @@ fn format_claim_verdict(lci: &LciStatistics, r_mic: f64) -> String {
 /// Computes the points of the performance charts on a grid of `step`, and shows a progress bar.
 pub fn compute_points(step: f64, ring_count: usize) -> Vec<ChartPoint> {
     let points = grid_points(step);
-    let bar = create_progress_bar(
-        points.len(),
-        "performance charts {bar:40} {pos}/{len} {eta}",
-    );
-    let points = compute_chart_points(points, ring_count, &|| bar.inc(1));
-    bar.finish_and_clear();
-    points
+    let template = "performance charts {bar:40} {pos}/{len} {eta}";
+    let bar = create_progress_bar(points.len(), template);
+    compute_chart_points(points, ring_count, &|| bar.inc(1))
 }
 
 fn print_chart_points(args: &Args, out: &mut impl Write) -> Result<(), Failure> {
@@ -269,20 +254,13 @@ fn print_chart_points(args: &Args, out: &mut impl Write) -> Result<(), Failure> 
         out,
         "r1,r2,r3,area,r_mic,y_mic,lci_mean,lci_least,lci_most,share_above_0.7,radius_above_0.7"
     )?;
-    for ChartPoint {
-        proportions,
-        performance,
-    } in points
-    {
+    for point in points {
+        let Proportions { r1, r2, r3 } = point.proportions;
+        let performance = point.performance;
         write!(
             out,
-            "{:.4},{:.4},{:.4},{:.6},{:.6},{:.6}",
-            proportions.r1,
-            proportions.r2,
-            proportions.r3,
-            performance.area,
-            performance.r_mic,
-            performance.y_mic
+            "{r1:.4},{r2:.4},{r3:.4},{:.6},{:.6},{:.6}",
+            performance.area, performance.r_mic, performance.y_mic
         )?;
         match performance.lci {
             Some(lci) => writeln!(
@@ -377,10 +355,8 @@ fn print_ranking(
             // The given design may have the best value of a criterion.
             let best_values = BestValues::from_designs(designs.iter().chain([&given_design]));
             given_design.score = best_values.score(&given_design);
-            let rank = 1 + designs
-                .iter()
-                .filter(|design| design.score > given_design.score + 1e-9)
-                .count();
+            let is_better = |design: &&Design| design.score > given_design.score + 1e-9;
+            let rank = 1 + designs.iter().filter(is_better).count();
             writeln!(out, "\nthe given design:")?;
             write_row(out, &rank.to_string(), &given_design)?;
         }

@@ -63,18 +63,14 @@ struct ModeSolution {
 /// # Errors
 /// Fails if a point is out of reach, or if the output cannot be written.
 pub fn print(robot: &Robot, end_points: [Option<Vector>; 2], is_json: bool) -> Result<(), Failure> {
-    let [head, tail] = end_points;
-    let head = head.map(|point| solve_end(robot, End::Head, point));
-    let tail = tail.map(|point| solve_end(robot, End::Tail, point));
-    let report = combine_ends(robot, head, tail);
+    let report = combine_ends(robot, end_points);
     json::print_json_or_text(is_json, &report, || format_text(&report))?;
-    let unreachable = [("head", &report.head), ("tail", &report.tail)]
-        .into_iter()
-        .find_map(|(name, five_bar)| Some((name, five_bar.as_ref()?.why.as_ref()?)));
-    match unreachable {
-        Some((name, reason)) => Err(Failure::Operation(format!("{name}: {reason}"))),
-        None => Ok(()),
+    for (name, five_bar) in [("head", report.head), ("tail", report.tail)] {
+        if let Some(reason) = five_bar.and_then(|five_bar| five_bar.why) {
+            return Err(Failure::Operation(format!("{name}: {reason}")));
+        }
     }
+    Ok(())
 }
 
 /// Solves the five-bar of the head or tail for a point, in all working modes.
@@ -82,10 +78,8 @@ fn solve_end(robot: &Robot, end: End, point: Vector) -> FiveBarSolutions {
     let local_point = robot.lizard().to_end(end, point);
     let (working_modes, reason) = match robot.lizard().end(end).inverse(local_point) {
         Ok(inverse_solutions) => {
-            let solutions = inverse_solutions
-                .into_iter()
-                .map(|solution| check_solution(robot, end, local_point, solution));
-            (solutions.collect(), None)
+            let check = |solution| check_solution(robot, end, local_point, solution);
+            (inverse_solutions.into_iter().map(check).collect(), None)
         }
         Err(infeasible) => (Vec::new(), Some(infeasible.to_string())),
     };
@@ -104,40 +98,31 @@ fn check_solution(
     solution: InverseSolution,
 ) -> ModeSolution {
     let five_bar = robot.lizard().end(end);
-    let pose = five_bar.forward_in_mode(
-        solution.assembly_mode,
-        solution.theta_left,
-        solution.theta_right,
-    );
+    let [left, right] = [solution.theta_left, solution.theta_right];
+    let pose = five_bar.forward_in_mode(solution.assembly_mode, left, right);
     let (error_mm, margin) = match &pose {
         Ok(pose) => ((pose.end_point - local_point).length(), pose.margin()),
         Err(_) => (0.0, 0.0),
     };
-    let angles = [solution.theta_left, solution.theta_right].map(|theta| end.mirror_angle(theta));
-    let mut reasons: Vec<String> = end
-        .servos()
-        .into_iter()
-        .zip(angles)
-        .filter_map(|(servo, angle)| violations::find_travel_violation(robot, servo, angle))
-        .collect();
+    let angles = [left, right].map(|theta| end.mirror_angle(theta));
+    let mut reasons = Vec::new();
+    for (servo, angle) in end.servos().into_iter().zip(angles) {
+        reasons.extend(violations::find_travel_violation(robot, servo, angle));
+    }
     let is_behind = solution.assembly_mode == AssemblyMode::Behind;
     if is_behind {
-        reasons.push(
-            "another assembly mode: the end point would be behind the crank tips".to_string(),
-        );
+        let reason = "another assembly mode: the end point would be behind the crank tips";
+        reasons.push(reason.to_string());
     }
-    if let Err(infeasible) = &pose {
-        reasons.push(infeasible.to_string());
-    }
-    if let Ok(pose) = &pose {
-        // Behind the crank tips, the type-2 margin is negative, which the reason above already states.
-        let is_already_stated = |check| is_behind && Check::TYPE2.contains(&check);
-        let violations = robot.limits().end_violations(end, pose);
-        reasons.extend(
-            violations
-                .filter(|violation| !is_already_stated(violation.check))
-                .map(|violation| violation.to_string()),
-        );
+    match &pose {
+        Err(infeasible) => reasons.push(infeasible.to_string()),
+        Ok(pose) => {
+            // Behind the crank tips, the type-2 margin is negative, which the reason above already states.
+            let is_already_stated = |check| is_behind && Check::TYPE2.contains(&check);
+            let violations = robot.limits().end_violations(end, pose);
+            let violations = violations.filter(|violation| !is_already_stated(violation.check));
+            reasons.extend(violations.map(|violation| violation.to_string()));
+        }
     }
     ModeSolution {
         left_elbow: name_elbow(solution.working_mode.left),
@@ -159,30 +144,23 @@ fn name_elbow(elbow: Elbow) -> &'static str {
     }
 }
 
-/// Combines the solutions of head and tail into one pose and checks the pose.
-fn combine_ends(
-    robot: &Robot,
-    head: Option<FiveBarSolutions>,
-    tail: Option<FiveBarSolutions>,
-) -> Report {
+/// Solves head and tail for their points, combines the solutions into one pose and checks the pose.
+fn combine_ends(robot: &Robot, [head, tail]: [Option<Vector>; 2]) -> Report {
+    let head = head.map(|point| solve_end(robot, End::Head, point));
+    let tail = tail.map(|point| solve_end(robot, End::Tail, point));
     let mut angles = robot.servos().map(|servo| servo.neutral);
     let mut is_complete = true;
+    let mut reasons: Vec<String> = Vec::new();
     for (five_bar, end) in [(&head, End::Head), (&tail, End::Tail)] {
-        match five_bar
-            .as_ref()
-            .map(|five_bar| five_bar.working_modes.first())
-        {
-            Some(Some(outward_mode)) => {
+        let Some(five_bar) = five_bar else { continue };
+        match five_bar.working_modes.first() {
+            Some(outward_mode) => {
                 let [left, right] = end.servos();
                 angles[left] = outward_mode.theta_left;
                 angles[right] = outward_mode.theta_right;
             }
-            Some(None) => is_complete = false,
-            None => {}
+            None => is_complete = false,
         }
-    }
-    let mut reasons: Vec<String> = Vec::new();
-    for five_bar in [&head, &tail].into_iter().flatten() {
         reasons.extend(five_bar.why.clone());
     }
     if is_complete {
@@ -214,11 +192,8 @@ fn format_text(report: &Report) -> String {
     ] {
         let Some(five_bar) = five_bar else { continue };
         let [x, y] = five_bar.point;
-        text += &format!(
-            "{name} at ({:.3}, {:.3}) mm\n",
-            round_to_decimals(x, 3),
-            round_to_decimals(y, 3)
-        );
+        let [x, y] = [x, y].map(|value| round_to_decimals(value, 3));
+        text += &format!("{name} at ({x:.3}, {y:.3}) mm\n");
         if let Some(reason) = &five_bar.why {
             text += &format!("  {reason}\n\n");
             continue;

@@ -150,23 +150,11 @@ pub fn format_row(
         let _ = write!(line, " {:8.3}", round_to_decimals(angle, 3));
     }
     let solution = match outcome {
-        Err(infeasible) => {
-            let _ = write!(line, " | {infeasible}");
-            return line;
-        }
+        Err(infeasible) => return line + &format!(" | {infeasible}"),
         Ok(solution) => solution,
     };
-    let (head, tail) = (solution.head_point(), solution.tail_point());
     let (min_check, min_margin) = solution.margins.min();
-    for values in [
-        [
-            solution.theta2(),
-            solution.theta3(),
-            solution.theta6(),
-            solution.theta7(),
-        ],
-        [head.x, head.y, tail.x, tail.y],
-    ] {
+    for values in [passive_angles(solution), end_coordinates(solution)] {
         line.push_str(" |");
         for value in values {
             let _ = write!(line, " {:8.3}", round_to_decimals(value, 3));
@@ -179,11 +167,24 @@ pub fn format_row(
         round_to_decimals(solution.right.s, 2),
         round_to_decimals(min_margin, 4),
     );
-    match violations::find_pose_violations(robot, solution).first() {
-        None => line.push_str("safe"),
-        Some(reason) => line.push_str(reason),
-    }
-    line
+    let reasons = violations::find_pose_violations(robot, solution);
+    line + reasons.first().map_or("safe", String::as_str)
+}
+
+/// Returns theta2, theta3, theta6 and theta7, degrees.
+fn passive_angles(solution: &Solution) -> [f64; 4] {
+    [
+        solution.theta2(),
+        solution.theta3(),
+        solution.theta6(),
+        solution.theta7(),
+    ]
+}
+
+/// Returns x and y of the head point and the tail point, mm.
+fn end_coordinates(solution: &Solution) -> [f64; 4] {
+    let (head, tail) = (solution.head_point(), solution.tail_point());
+    [head.x, head.y, tail.x, tail.y]
 }
 
 /// Formats a pose as a page of text.
@@ -199,60 +200,36 @@ pub fn format_page(
         "servos   A1 theta1 {a1:9.3}   A2 theta4 {a2:9.3}   A3 theta8 {a3:9.3}   A4 theta5 {a4:9.3}  deg\n"
     );
     let solution = match outcome {
-        Err(infeasible) => {
-            let _ = writeln!(page, "\nno solution: {infeasible}");
-            return page;
-        }
+        Err(infeasible) => return page + &format!("\nno solution: {infeasible}\n"),
         Ok(solution) => solution,
     };
-    let (head, tail) = (solution.head_point(), solution.tail_point());
-    let legs = solution.legs.map(|leg| round_3(leg.follower_angle()));
+    let [theta2, theta3, theta6, theta7] = passive_angles(solution).map(round_3);
+    let [head_x, head_y, tail_x, tail_y] = end_coordinates(solution).map(round_3);
+    let [left_s, right_s] = [&solution.left, &solution.right].map(|slider| round_3(slider.s));
+    let [left_phi, right_phi] =
+        [&solution.left, &solution.right].map(|slider| round_3(slider.phi()));
+    let [lf, rf, rh, lh] = solution.legs.map(|leg| round_3(leg.follower_angle()));
     let round_4 = |margin: f64| round_to_decimals(margin, 4);
     let margins = &solution.margins;
+    let [head_margin, tail_margin] = margins.type2.map(round_4);
+    let [margin_a1, margin_a2, margin_a3, margin_a4] = margins.type1.map(round_4);
+    let [margin_lf, margin_rf, margin_rh, margin_lh] = margins.leg.map(round_4);
     let _ = write!(
         page,
         "
-head     ({:8.3}, {:8.3}) mm   theta2 {:8.3}   theta3 {:8.3} deg
-tail     ({:8.3}, {:8.3}) mm   theta6 {:8.3}   theta7 {:8.3} deg
-left     s {:+8.3} mm   phi {:8.3} deg
-right    s {:+8.3} mm   phi {:8.3} deg
-legs     followers  LF {:8.3}   RF {:8.3}   RH {:8.3}   LH {:8.3} deg
+head     ({head_x:8.3}, {head_y:8.3}) mm   theta2 {theta2:8.3}   theta3 {theta3:8.3} deg
+tail     ({tail_x:8.3}, {tail_y:8.3}) mm   theta6 {theta6:8.3}   theta7 {theta7:8.3} deg
+left     s {left_s:+8.3} mm   phi {left_phi:8.3} deg
+right    s {right_s:+8.3} mm   phi {right_phi:8.3} deg
+legs     followers  LF {lf:8.3}   RF {rf:8.3}   RH {rh:8.3}   LH {lh:8.3} deg
 
 margins  (0 is singular, 1 is best)  limits {} {} {}
-         type-2    head {:+.4}   tail {:+.4}
-         type-1    A1   {:+.4}   A2   {:+.4}   A3 {:+.4}   A4 {:+.4}
-         legs      LF   {:+.4}   RF   {:+.4}   RH {:+.4}   LH {:+.4}
+         type-2    head {head_margin:+.4}   tail {tail_margin:+.4}
+         type-1    A1   {margin_a1:+.4}   A2   {margin_a2:+.4}   A3 {margin_a3:+.4}   A4 {margin_a4:+.4}
+         legs      LF   {margin_lf:+.4}   RF   {margin_rf:+.4}   RH {margin_rh:+.4}   LH {margin_lh:+.4}
 
 ",
-        round_3(head.x),
-        round_3(head.y),
-        round_3(solution.theta2()),
-        round_3(solution.theta3()),
-        round_3(tail.x),
-        round_3(tail.y),
-        round_3(solution.theta6()),
-        round_3(solution.theta7()),
-        round_3(solution.left.s),
-        round_3(solution.left.phi()),
-        round_3(solution.right.s),
-        round_3(solution.right.phi()),
-        legs[0],
-        legs[1],
-        legs[2],
-        legs[3],
-        limits.type2,
-        limits.type1,
-        limits.leg,
-        round_4(margins.type2[0]),
-        round_4(margins.type2[1]),
-        round_4(margins.type1[0]),
-        round_4(margins.type1[1]),
-        round_4(margins.type1[2]),
-        round_4(margins.type1[3]),
-        round_4(margins.leg[0]),
-        round_4(margins.leg[1]),
-        round_4(margins.leg[2]),
-        round_4(margins.leg[3]),
+        limits.type2, limits.type1, limits.leg
     );
     let reasons = violations::find_pose_violations(robot, solution);
     if reasons.is_empty() {
@@ -262,14 +239,8 @@ margins  (0 is singular, 1 is best)  limits {} {} {}
             "safe     yes, the least margin is {min_check} {min_margin:.4}"
         );
     } else {
-        for (i, reason) in reasons.iter().enumerate() {
-            let prefix = if i == 0 {
-                "safe     no, "
-            } else {
-                "             "
-            };
-            let _ = writeln!(page, "{prefix}{reason}");
-        }
+        let reasons = reasons.join("\n             ");
+        let _ = writeln!(page, "safe     no, {reasons}");
     }
     page
 }

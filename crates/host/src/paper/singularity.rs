@@ -1,9 +1,7 @@
 //! `lizard pose --show singularities`: prints the matrices K and K*, the factors of det K*, and the nearest
 //! singularities.
 
-use lizard_kinematics::{
-    BlockDeterminants, End, FiveBar, SingularPose, Singularity, Solution, wrap,
-};
+use lizard_kinematics::{End, FiveBar, SingularPose, Singularity, Solution, wrap};
 use lizard_robot::Robot;
 use nalgebra::SMatrix;
 use serde::Serialize;
@@ -121,35 +119,28 @@ pub fn print(robot: &Robot, solution: &Solution, is_json: bool) -> Result<(), Fa
 fn compute_report(robot: &Robot, solution: &Solution) -> Report {
     let k_star = solution.passive_matrix();
     let matrix = SMatrix::<f64, 8, 8>::from_fn(|row, column| k_star[row][column]);
-    let blocks @ BlockDeterminants {
-        head,
-        tail,
-        left,
-        right,
-    } = solution.block_determinants();
+    let blocks = solution.block_determinants();
     let leg = robot.lizard().leg;
+    let leg_determinant = -leg.coupler * leg.follower;
+    let leg_determinants = solution.legs.map(|pose| leg_determinant * pose.direction.y);
     let mut nearest = vec![];
     for end in End::ALL {
         let (five_bar, servos, sign) = (robot.lizard().end(end), end.servos(), end.sign());
         let angles = end.pick(solution.pose.into()).map(|angle| sign * angle);
-        for kind in [
-            Singularity::Couplers,
-            Singularity::LeftArm,
-            Singularity::RightArm,
+        let describe_arm =
+            |servo: usize| format!("{end} type 1, A{} arm straight or folded", servo + 1);
+        for (kind, description) in [
+            (
+                Singularity::Couplers,
+                format!("{end} type 2, the end point comes loose"),
+            ),
+            (Singularity::LeftArm, describe_arm(servos[0])),
+            (Singularity::RightArm, describe_arm(servos[1])),
         ] {
             if let Some((distance, pose)) = find_nearest_singularity(&five_bar, kind, angles) {
                 let mut turns = [0.0; 4];
                 turns[servos[0]] = sign * wrap(pose.theta_left - angles[0]);
                 turns[servos[1]] = sign * wrap(pose.theta_right - angles[1]);
-                let description = match kind {
-                    Singularity::Couplers => format!("{end} type 2, the end point comes loose"),
-                    Singularity::LeftArm => {
-                        format!("{end} type 1, A{} arm straight or folded", servos[0] + 1)
-                    }
-                    Singularity::RightArm => {
-                        format!("{end} type 1, A{} arm straight or folded", servos[1] + 1)
-                    }
-                };
                 nearest.push(NearestSingularity {
                     description,
                     distance,
@@ -176,14 +167,12 @@ fn compute_report(robot: &Robot, solution: &Solution) -> Report {
         determinant: matrix.determinant(),
         factored_determinant: blocks.determinant(),
         block_determinants: BlockReport {
-            head,
-            tail,
-            left,
-            right,
+            head: blocks.head,
+            tail: blocks.tail,
+            left: blocks.left,
+            right: blocks.right,
         },
-        leg_determinants: solution
-            .legs
-            .map(|pose| -leg.coupler * leg.follower * pose.direction.y),
+        leg_determinants,
         nearest,
     }
 }
@@ -197,10 +186,8 @@ pub fn find_nearest_singularity(
     angles: [f64; 2],
 ) -> Option<(f64, SingularPose)> {
     let add_distance = |pose: SingularPose| {
-        let (left, right) = (
-            wrap(pose.theta_left - angles[0]),
-            wrap(pose.theta_right - angles[1]),
-        );
+        let left = wrap(pose.theta_left - angles[0]);
+        let right = wrap(pose.theta_right - angles[1]);
         (left.hypot(right), pose)
     };
     let choose_nearer =
@@ -232,6 +219,8 @@ pub fn find_nearest_singularity(
 
 fn format_text(report: &Report) -> String {
     let blocks = &report.block_determinants;
+    let format_determinant = |det: f64| format!("{:+.1}", round_to_decimals(det, 1));
+    let leg_determinants = report.leg_determinants.map(format_determinant);
     let mut text = format!(
         "K: rows are the loop equations, columns the servos' angles (mm per radian)\n{}\n\
          K*: the same rows, columns are the passive joints (mm per radian; for s, mm per mm)\n{}\n\
@@ -250,20 +239,16 @@ fn format_text(report: &Report) -> String {
         round_to_decimals(blocks.tail, 2),
         round_to_decimals(blocks.left, 2),
         round_to_decimals(blocks.right, 2),
-        report
-            .leg_determinants
-            .map(|det| format!("{:+.1}", round_to_decimals(det, 1)))
-            .join(" "),
+        leg_determinants.join(" "),
     );
     text += "nearest singularities, and the turns of A1, A2, A3, A4 that reach them\n";
     for singularity in &report.nearest {
-        let turns = singularity
-            .turns
-            .map(|angle| format!("{:+8.2}", round_to_decimals(angle, 2)))
-            .join(" ");
+        let format_turn = |angle: f64| format!("{:+8.2}", round_to_decimals(angle, 2));
+        let turns = singularity.turns.map(format_turn).join(" ");
+        let description = &singularity.description;
         text += &format!(
-            "  {:7.2} deg  {turns}   {}\n",
-            singularity.distance, singularity.description
+            "  {:7.2} deg  {turns}   {description}\n",
+            singularity.distance
         );
     }
     text

@@ -154,15 +154,11 @@ fn list_joint_rates(derivatives: &Derivatives) -> [(f64, f64); 12] {
 /// Computes rates and accelerations in closed form, and compares them with finite differences of neighbouring poses.
 fn compute_rows(lizard: &Lizard, solution: &Solution, servo_motion: &ServoMotion) -> Vec<Row> {
     let start_angles = <[f64; 4]>::from(solution.pose);
-    let largest_magnitude = |values: &[f64; 4]| {
-        values
-            .iter()
-            .fold(0.0f64, |max, value| max.max(value.abs()))
-    };
+    let largest_magnitude = |values: [f64; 4]| values.map(f64::abs).into_iter().fold(0.0, f64::max);
     // If the servos stand still, the quotients are infinite and do not limit the step.
     let step_s = MAX_STEP_S
-        .min(MAX_STEP_TURN_DEG / largest_magnitude(&servo_motion.rates))
-        .min((MAX_STEP_TURN_DEG / largest_magnitude(&servo_motion.accelerations)).sqrt());
+        .min(MAX_STEP_TURN_DEG / largest_magnitude(servo_motion.rates))
+        .min((MAX_STEP_TURN_DEG / largest_magnitude(servo_motion.accelerations)).sqrt());
     let compute_values = |steps: f64| {
         let t = steps * step_s;
         let angles: [f64; 4] = std::array::from_fn(|i| {
@@ -170,10 +166,8 @@ fn compute_rows(lizard: &Lizard, solution: &Solution, servo_motion: &ServoMotion
                 + servo_motion.rates[i] * t
                 + servo_motion.accelerations[i] * t * t / 2.0
         });
-        lizard
-            .solve(&Pose::from(angles))
-            .ok()
-            .map(|solution| list_joint_values(&solution))
+        let solution = lizard.solve(&Pose::from(angles)).ok()?;
+        Some(list_joint_values(&solution))
     };
     let neighbours = match [-2.0, -1.0, 1.0, 2.0].map(compute_values) {
         [Some(a), Some(b), Some(c), Some(d)] => Some([a, b, c, d]),

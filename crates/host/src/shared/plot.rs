@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use svg::node::element::{Group, Path, Polyline};
+use svg::node::element::{Circle, Group, Line, Path, Polyline};
 
 use crate::shared::shapes::{
-    DARK, GRID_COLOUR, add_outline, curve, line, rectangle, text_end, text_middle, text_start,
+    DARK, GRID_COLOUR, add_outline, circle, curve, line, rectangle, text_end, text_middle,
+    text_start,
 };
 
 /// Viridis in ten bands of evenly increasing lightness, legible in grey print and for colour-blind people.
@@ -72,68 +73,42 @@ impl Plot {
 
     /// Adds a grid in the background.
     pub fn draw_grid(&self, mut group: Group, x_axis: &Axis, y_axis: &Axis) -> Group {
+        let ((left, top), (right, bottom)) = (self.corner, self.lower_right_corner());
         for value in compute_ticks(self.x_range, x_axis.tick_step) {
             let page_x = self.to_page_point(value, 0.0).0;
-            group = group.add(line(
-                (page_x, self.corner.1),
-                (page_x, self.lower_right_corner().1),
-                GRID_COLOUR,
-                1.0,
-            ));
+            group = group.add(line((page_x, top), (page_x, bottom), GRID_COLOUR, 1.0));
         }
         for value in compute_ticks(self.y_range, y_axis.tick_step) {
             let page_y = self.to_page_point(0.0, value).1;
-            group = group.add(line(
-                (self.corner.0, page_y),
-                (self.lower_right_corner().0, page_y),
-                GRID_COLOUR,
-                1.0,
-            ));
+            group = group.add(line((left, page_y), (right, page_y), GRID_COLOUR, 1.0));
         }
         group
     }
 
     /// Adds the frame, and the ticks, numbers and names of both axes.
     pub fn draw_axes(&self, mut group: Group, x_axis: &Axis, y_axis: &Axis) -> Group {
-        let (right, bottom) = self.lower_right_corner();
-        group = group.add(add_outline(
-            rectangle(self.corner, self.size, "none"),
-            DARK,
-            1.0,
-        ));
+        let ((left, top), (right, bottom)) = (self.corner, self.lower_right_corner());
+        let frame = rectangle(self.corner, self.size, "none");
+        group = group.add(add_outline(frame, DARK, 1.0));
         for value in compute_ticks(self.x_range, x_axis.tick_step) {
             let page_x = self.to_page_point(value, 0.0).0;
+            let label = format_tick(value, x_axis.tick_step);
             group = group
                 .add(line((page_x, bottom), (page_x, bottom + 6.0), DARK, 1.0))
-                .add(text_middle(
-                    &format_tick(value, x_axis.tick_step),
-                    (page_x, bottom + 23.0),
-                    15.0,
-                ));
+                .add(text_middle(&label, (page_x, bottom + 23.0), 15.0));
         }
         for value in compute_ticks(self.y_range, y_axis.tick_step) {
             let page_y = self.to_page_point(0.0, value).1;
+            let label = format_tick(value, y_axis.tick_step);
             group = group
-                .add(line(
-                    (self.corner.0 - 6.0, page_y),
-                    (self.corner.0, page_y),
-                    DARK,
-                    1.0,
-                ))
-                .add(text_end(
-                    &format_tick(value, y_axis.tick_step),
-                    (self.corner.0 - 10.0, page_y + 5.0),
-                    15.0,
-                ));
+                .add(line((left - 6.0, page_y), (left, page_y), DARK, 1.0))
+                .add(text_end(&label, (left - 10.0, page_y + 5.0), 15.0));
         }
-        let x_name_point = ((self.corner.0 + right) / 2.0, bottom + 50.0);
-        let y_name_point = (self.corner.0 - 58.0, (self.corner.1 + bottom) / 2.0);
-        group.add(text_middle(x_axis.name, x_name_point, 17.0)).add(
-            text_middle(y_axis.name, y_name_point, 17.0).set(
-                "transform",
-                format!("rotate(-90 {} {})", y_name_point.0, y_name_point.1),
-            ),
-        )
+        let (name_x, name_y) = (left - 58.0, (top + bottom) / 2.0);
+        let x_name = text_middle(x_axis.name, ((left + right) / 2.0, bottom + 50.0), 17.0);
+        let y_name = text_middle(y_axis.name, (name_x, name_y), 17.0);
+        let rotation = format!("rotate(-90 {name_x} {name_y})");
+        group.add(x_name).add(y_name.set("transform", rotation))
     }
 
     /// Adds a map of coloured cells. `cell_counts` are the numbers of columns and rows. `colour_at` returns the colour
@@ -156,12 +131,9 @@ impl Plot {
             let mut first_column = 0;
             let mut fill = cell_colour(0);
             for column in 1..=cell_counts.0 {
-                let next_fill = if column < cell_counts.0 {
-                    cell_colour(column)
-                } else {
-                    None
-                };
-                if column < cell_counts.0 && next_fill == fill {
+                let is_cell = column < cell_counts.0;
+                let next_fill = if is_cell { cell_colour(column) } else { None };
+                if is_cell && next_fill == fill {
                     continue;
                 }
                 if let Some(fill) = fill {
@@ -183,13 +155,21 @@ impl Plot {
         group
     }
 
+    /// Returns a straight line between two points in the plot's coordinates.
+    pub fn line(&self, start: (f64, f64), end: (f64, f64), colour: &str, width: f64) -> Line {
+        let [start, end] = [start, end].map(|(x, y)| self.to_page_point(x, y));
+        line(start, end, colour, width)
+    }
+
+    /// Returns a circle from its centre in the plot's coordinates and its radius, px.
+    pub fn circle(&self, (x, y): (f64, f64), radius: f64, fill: &str) -> Circle {
+        circle(self.to_page_point(x, y), radius, fill)
+    }
+
     /// Returns an open curve through points in the plot's coordinates.
     pub fn curve(&self, points: &[(f64, f64)], colour: &str, width: f64) -> Polyline {
-        let points: Vec<_> = points
-            .iter()
-            .map(|&(x, y)| self.to_page_point(x, y))
-            .collect();
-        curve(&points, colour, width)
+        let points = points.iter().map(|&(x, y)| self.to_page_point(x, y));
+        curve(&points.collect::<Vec<_>>(), colour, width)
     }
 }
 
@@ -202,10 +182,9 @@ fn compute_ticks(range: (f64, f64), step: f64) -> impl Iterator<Item = f64> {
 
 /// Formats a tick's value with as many decimals as the step needs.
 fn format_tick(value: f64, step: f64) -> String {
-    let decimals = (0..4)
-        .find(|&decimals| (step * 10f64.powi(decimals)).fract().abs() < 1e-9)
-        .unwrap_or(4);
-    format!("{:.1$}", value + 0.0, decimals as usize)
+    let is_enough = |decimals: &i32| (step * 10f64.powi(*decimals)).fract().abs() < 1e-9;
+    let decimals = (0..4).find(is_enough).unwrap_or(4) as usize;
+    format!("{:.decimals$}", value + 0.0)
 }
 
 /// A colour scale for a quantity.
@@ -245,11 +224,8 @@ impl ColourScale {
         for i in 0..=band_count {
             let value = self.min + (self.max - self.min) * i as f64 / band_count as f64;
             let top = corner.1 + height - i as f64 * band_height;
-            group = group.add(text_start(
-                &format!("{value:.decimals$}"),
-                (corner.0 + 30.0, top + 5.0),
-                14.0,
-            ));
+            let label = format!("{value:.decimals$}");
+            group = group.add(text_start(&label, (corner.0 + 30.0, top + 5.0), 14.0));
         }
         group
             .add(rectangle(corner, (22.0, height), "none").set("stroke", DARK))

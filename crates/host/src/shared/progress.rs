@@ -13,20 +13,9 @@ pub fn create_progress_bar(length: usize, template: &str) -> ProgressBar {
     ProgressBar::new(length as u64).with_style(style)
 }
 
-/// A display of the elapsed time, for a computation without steps. It disappears when the value is dropped.
-pub struct Spinner(ProgressBar);
-
-impl Spinner {
-    /// Shows `message`, followed by the elapsed time.
-    pub fn new(message: &'static str) -> Self {
-        let spinner = create_progress_bar(0, "{spinner} {msg}, {elapsed}").with_message(message);
-        spinner.enable_steady_tick(Duration::from_millis(100));
-        Self(spinner)
-    }
-}
-
-impl Drop for Spinner {
-    fn drop(&mut self) {
-        self.0.finish_and_clear();
-    }
+/// Shows `message` and the elapsed time, for a computation without steps. Dropping the value clears the display.
+pub fn create_spinner(message: &'static str) -> ProgressBar {
+    let spinner = create_progress_bar(0, "{spinner} {msg}, {elapsed}").with_message(message);
+    spinner.enable_steady_tick(Duration::from_millis(100));
+    spinner
 }

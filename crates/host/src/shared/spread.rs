@@ -41,10 +41,9 @@ impl FromStr for Part {
         let (Ok(number), Ok(part_count)) = (number.parse(), part_count.parse()) else {
             return Err(format_error());
         };
-        if (1..=MAX_PARTS).contains(&part_count) && (1..=part_count).contains(&number) {
-            Ok(Self { number, part_count })
-        } else {
-            Err(format_error())
+        match (1..=MAX_PARTS).contains(&part_count) && (1..=part_count).contains(&number) {
+            true => Ok(Self { number, part_count }),
+            false => Err(format_error()),
         }
     }
 }
@@ -72,9 +71,8 @@ impl Part {
 
     /// Returns the number of this part's pieces if all parts together have `total_count` pieces.
     pub fn count_pieces(self, total_count: usize) -> usize {
-        (0..total_count)
-            .filter(|piece| self.has_piece(*piece))
-            .count()
+        let pieces = (0..total_count).filter(|piece| self.has_piece(*piece));
+        pieces.count()
     }
 
     /// Computes this part's pieces and prints them.
@@ -171,16 +169,10 @@ impl SpreadArgs {
         let Some(merged) = &self.merged else {
             return Ok(None);
         };
-        let values = merged.iter().zip(0..);
-        if merged.len() != piece_count
-            || values
-                .clone()
-                .any(|((index, _), expected_index)| *index != expected_index)
-        {
+        if !merged.keys().copied().eq(0..piece_count) {
             return Err(mismatched_parts_failure());
         }
-        let deserialize = |((_, value), _): ((&usize, &Value), usize)| T::deserialize(value);
-        let pieces: Result<Vec<T>, _> = values.map(deserialize).collect();
+        let pieces: Result<Vec<T>, _> = merged.values().map(T::deserialize).collect();
         pieces.map(Some).map_err(|_| mismatched_parts_failure())
     }
 
@@ -200,10 +192,9 @@ impl SpreadArgs {
                 .compute_and_print(command, &self.robot, piece_count, compute_piece)
                 .map(|()| None);
         }
+        let compute_all = || (0..piece_count).map(compute_piece).collect();
         let pieces = self.read_merged(piece_count)?;
-        Ok(Some(pieces.unwrap_or_else(|| {
-            (0..piece_count).map(compute_piece).collect()
-        })))
+        Ok(Some(pieces.unwrap_or_else(compute_all)))
     }
 
     /// Returns the number of pieces that this run computes, for a progress bar.
@@ -229,27 +220,17 @@ mod tests {
     fn every_piece_belongs_to_exactly_one_part() {
         for part_count in [1, 2, 3, 7, 40] {
             for piece in 0..20 {
-                let parts = (1..=part_count).filter(|number| {
-                    Part {
-                        number: *number,
-                        part_count,
-                    }
-                    .has_piece(piece)
-                });
-                assert_eq!(parts.count(), 1, "piece {piece} of {part_count} parts");
+                let parts = (1..=part_count).map(|number| Part { number, part_count });
+                let owners = parts.filter(|part| part.has_piece(piece));
+                assert_eq!(owners.count(), 1, "piece {piece} of {part_count} parts");
             }
         }
     }
 
     #[test]
     fn only_valid_parts_are_parsed() {
-        assert_eq!(
-            "2/8".parse(),
-            Ok(Part {
-                number: 2,
-                part_count: 8
-            })
-        );
+        let (number, part_count) = (2, 8);
+        assert_eq!("2/8".parse(), Ok(Part { number, part_count }));
         for invalid_text in [
             "",
             "2",
@@ -262,10 +243,8 @@ mod tests {
             "1/1000001",
         ] {
             let message = invalid_text.parse::<Part>().expect_err(invalid_text);
-            assert!(
-                message.starts_with("expected K/N with K from 1 to N"),
-                "{invalid_text}: {message}"
-            );
+            let start = "expected K/N with K from 1 to N";
+            assert!(message.starts_with(start), "{invalid_text}: {message}");
         }
     }
 }

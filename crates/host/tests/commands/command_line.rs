@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::process::Command;
 
-use lizard_time_limit::TIME_LIMIT;
-
-use crate::program::{assert_contains, repo_root, robot_path, run, scratch_folder};
+use crate::program::{
+    assert_contains, read_cases, repo_root, run, run_command, run_line, run_line_in, scratch_folder,
+};
 
 fn run_successfully(arguments: &[&str]) -> String {
     run(arguments).expect_success()
@@ -34,21 +34,18 @@ fn help_groups_all_commands_by_purpose() {
     let positions = headings.map(|heading| help.find(&format!("\n{heading}:\n")).expect(heading));
     assert!(positions.is_sorted(), "{help}");
     assert!(help.contains("\n  merge, completions\n"), "{help}");
-    let command_counts = headings[..5]
-        .iter()
-        .map(|heading| find_first_words(&help, heading).len());
+    let count_commands = |heading: &&str| find_first_words(&help, heading).len();
+    let command_count: usize = headings[..5].iter().map(count_commands).sum();
     // Two more commands, `merge` and `completions`, are for scripts.
-    assert!(command_counts.sum::<usize>() + 2 <= 20, "{help}");
+    assert!(command_count + 2 <= 20, "{help}");
     assert!(find_first_words(&help, "Drive the robot").contains(&"console".to_owned()));
     assert_eq!(run_successfully(&["help"]), help);
 }
 
 #[test]
 fn monitor_is_an_alias_of_console() {
-    assert_eq!(
-        run_successfully(&["monitor", "--help"]),
-        run_successfully(&["console", "--help"])
-    );
+    let print_help = |command: &str| run_successfully(&[command, "--help"]);
+    assert_eq!(print_help("monitor"), print_help("console"));
     let help = run_successfully(&["help"]);
     let line = help.lines().find(|line| line.contains(" console "));
     assert!(line.is_some_and(|line| line.contains("[also: monitor]")));
@@ -71,7 +68,7 @@ fn a_deprecated_command_prints_the_same_output_and_names_the_new_command() {
         ("bench --help", "sim bench --help"),
         ("man --help", "completions man --help"),
     ] {
-        let [old, new] = [old, new].map(|line| run(&line.split(' ').collect::<Vec<_>>()));
+        let [old, new] = [old, new].map(|line| run_line_in(scratch_folder(), line));
         assert!(old.stdout == new.stdout, "{old:?}");
         assert_contains(
             &old.stderr,
@@ -106,30 +103,18 @@ fn a_message_about_a_very_long_word_shows_only_its_start() {
 
 #[test]
 fn the_refusal_of_a_mistyped_word_suggests_the_correct_word() {
-    let paper = &robot_path("paper");
-    for (arguments, expected) in [
-        (&["claibrate"][..], "'calibrate'"),
-        (&["sim", "--durration", "5"], "'--duration'"),
-        (&["draw", "--wirring"], "'--wiring'"),
-        (&["sim", "--fidelity", "stok"], "'stock'"),
-        (
-            &["sim", "--gait", "wlak", "--robot", paper],
-            "; did you mean `walk`?",
-        ),
-        (
-            &["twin", "--gait", "trott", "--robot", paper],
-            "; did you mean `trot`?",
-        ),
-        (
-            &["tune", "--gait", "wakl", "--robot", paper],
-            "; did you mean `walk`?",
-        ),
-        (
-            &["gaits", "--trace", "arc-lfet", "--robot", paper],
-            "; did you mean `arc-left`?",
-        ),
-    ] {
-        run(arguments).expect_refusal_with(expected);
+    let cases = "
+        claibrate => 'calibrate'
+        sim --durration 5 => '--duration'
+        draw --wirring => '--wiring'
+        sim --fidelity stok => 'stock'
+        sim --gait wlak --robot robots/paper.toml => ; did you mean `walk`?
+        twin --gait trott --robot robots/paper.toml => ; did you mean `trot`?
+        tune --gait wakl --robot robots/paper.toml => ; did you mean `walk`?
+        gaits --trace arc-lfet --robot robots/paper.toml => ; did you mean `arc-left`?
+    ";
+    for (line, expected) in read_cases(cases) {
+        run_line(line, "").expect_refusal_with(expected);
     }
 }
 
@@ -144,11 +129,7 @@ fn complete_in_bash(script: &Path, typed_line: &str, index: usize) -> Vec<String
         index - 1
     );
     let mut bash = Command::new("bash");
-    bash.args(["--norc", "-c", &line]);
-    let output = TIME_LIMIT.run_command(&mut bash, b"").expect("bash runs");
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{error}");
-    let text = String::from_utf8_lossy(&output.stdout);
+    let text = run_command(bash.args(["--norc", "-c", &line]), "").expect_success();
     text.lines().map(str::to_owned).collect()
 }
 
@@ -156,8 +137,8 @@ fn complete_in_bash(script: &Path, typed_line: &str, index: usize) -> Vec<String
 #[cfg(unix)]
 fn bash_completes_commands_and_options() {
     let script = scratch_folder().join("lizard.bash");
-    std::fs::write(&script, run_successfully(&["completions", "bash"]))
-        .expect("the file is written");
+    let script_text = run_successfully(&["completions", "bash"]);
+    std::fs::write(&script, script_text).expect("the file is written");
     let root = repo_root().display().to_string();
     let files = [format!("{root}/robot.toml"), format!("{root}/robots/")];
     for (line, index, expected) in [
@@ -219,11 +200,8 @@ fn info_ports_prints_a_list_as_json_and_as_text() {
     let ports = run(&["info", "ports", "--json"]).expect_json();
     let ports = ports.as_array().expect("the value is an array");
     let text = run_successfully(&["info", "ports"]);
-    assert_eq!(
-        text.contains("no USB serial port"),
-        ports.is_empty(),
-        "{text}"
-    );
+    let has_no_port = text.contains("no USB serial port");
+    assert_eq!(has_no_port, ports.is_empty(), "{text}");
     assert!(text.lines().count() >= ports.len().max(1), "{text}");
 }
 

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use lizard_robot::Robot;
 
-use crate::program::{robot_path, run_in};
+use crate::program::{assert_contains, robot_path, run_line_in};
 
 /// An image of 20 bytes, as avr-objcopy writes it.
 const HEX: &str = "\
@@ -21,31 +21,27 @@ const BOOT_LOADER_START: usize = 0x7e00;
 #[test]
 fn flash_without_built_firmware_fails_only_because_the_port_is_missing() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    for options in [&[][..], &["--only-robot"], &["--robot", "large"]] {
-        let arguments = [&["flash", "/dev/no-such-port"], options].concat();
-        run_in(folder.path(), &arguments, "").expect_refusal_with("no-such-port");
+    for options in ["", "--only-robot", "--robot large"] {
+        let line = format!("flash /dev/no-such-port {options}");
+        run_line_in(folder.path(), &line).expect_refusal_with("no-such-port");
     }
 }
 
 #[test]
 fn flash_image_writes_the_image_of_any_robot_in_an_empty_folder() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    for (name, options) in [("large", &[][..]), ("unequal", &["--only-robot"])] {
-        let file_arguments = ["flash", "image", "--robot", name, "--output", "x.hex"];
-        let arguments = [&file_arguments, options].concat();
+    for (name, options) in [("large", ""), ("unequal", "--only-robot")] {
+        let command = format!("flash image --robot {name} {options}");
         let start = Instant::now();
-        let outcome = run_in(folder.path(), &arguments, "");
+        let outcome = run_line_in(folder.path(), &format!("{command} --output x.hex"));
         let duration = start.elapsed();
         assert!(duration < Duration::from_secs(20), "{duration:?}");
         assert_eq!(outcome.stderr, "");
         let output = outcome.expect_success();
-        assert!(
-            output.starts_with("x.hex: ") && output.contains(&format!("robot {name} ")),
-            "{output}"
-        );
+        assert!(output.starts_with("x.hex: "), "{output}");
+        assert_contains(&output, &format!("robot {name} "));
         let text = fs::read_to_string(folder.path().join("x.hex")).expect("the file is readable");
-        let pipe_arguments = [&["flash", "image", "--robot", name], options].concat();
-        let piped_text = run_in(folder.path(), &pipe_arguments, "").expect_success();
+        let piped_text = run_line_in(folder.path(), &command).expect_success();
         assert!(piped_text == text, "the piped image equals the file");
         // The simulator's HEX reader shares no code with the writer.
         let image = simulated_uno::Image::parse_hex(&text).expect("the image is Intel HEX");
@@ -60,8 +56,8 @@ fn flash_image_writes_the_image_of_any_robot_in_an_empty_folder() {
 #[test]
 fn flash_image_prints_its_summary_as_json() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let arguments = ["flash", "image", "--robot", "large", "--output", "x.hex"];
-    let summary = run_in(folder.path(), &[&arguments[..], &["--json"]].concat(), "").expect_json();
+    let line = "flash image --robot large --output x.hex --json";
+    let summary = run_line_in(folder.path(), line).expect_json();
     let robot = Robot::load(robot_path("large")).expect("the robot file is valid");
     let hash = robot.firmware().hash();
     assert_eq!(
@@ -74,15 +70,15 @@ fn flash_image_prints_its_summary_as_json() {
             "robot_space": BOOT_LOADER_START - ROBOT_START,
         })
     );
-    run_in(folder.path(), &["flash", "image", "--json"], "").expect_refusal_with("--output");
+    run_line_in(folder.path(), "flash image --json").expect_refusal_with("--output");
 }
 
 #[test]
 fn flash_image_refuses_an_invalid_robot_and_writes_no_file() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     fs::write(folder.path().join("x.toml"), "[servo]\n").expect("the file is written");
-    let arguments = ["flash", "image", "--robot", "x.toml", "--output", "x.hex"];
-    run_in(folder.path(), &arguments, "").expect_refusal_with("x.toml");
+    let line = "flash image --robot x.toml --output x.hex";
+    run_line_in(folder.path(), line).expect_refusal_with("x.toml");
     assert!(!folder.path().join("x.hex").exists());
 }
 
@@ -91,8 +87,8 @@ fn flash_image_refuses_an_invalid_robot_and_writes_no_file() {
 fn the_refusal_of_a_missing_port_names_the_port() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     fs::write(folder.path().join("a.hex"), HEX).expect("the file is written");
-    let arguments = ["flash", "/dev/no-such-port", "--image", "a.hex"];
-    let message = run_in(folder.path(), &arguments, "").expect_refusal();
+    let line = "flash /dev/no-such-port --image a.hex";
+    let message = run_line_in(folder.path(), line).expect_refusal();
     let expected_start =
         "lizard: /dev/no-such-port does not exist; USB serial ports of this machine: ";
     assert!(message.starts_with(expected_start), "{message}");
@@ -102,14 +98,12 @@ fn the_refusal_of_a_missing_port_names_the_port() {
 fn an_invalid_image_is_refused_before_a_port_is_opened() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     fs::write(folder.path().join("partial.hex"), &HEX[..60]).expect("the file is written");
-    let arguments = ["flash", "/dev/no-such-port", "--image", "partial.hex"];
-    let message = run_in(folder.path(), &arguments, "").expect_refusal();
-    assert!(
-        message.starts_with("lizard: partial.hex: line 2 is not Intel HEX"),
-        "{message}"
-    );
-    for conflicting_options in [&["--robot", "robot.toml"][..], &["--only-robot"]] {
-        let all_arguments = [&arguments[..], conflicting_options].concat();
-        run_in(folder.path(), &all_arguments, "").expect_refusal_with("cannot be used with");
+    let command = "flash /dev/no-such-port --image partial.hex";
+    let message = run_line_in(folder.path(), command).expect_refusal();
+    let expected_start = "lizard: partial.hex: line 2 is not Intel HEX";
+    assert!(message.starts_with(expected_start), "{message}");
+    for conflicting_options in ["--robot robot.toml", "--only-robot"] {
+        let line = format!("{command} {conflicting_options}");
+        run_line_in(folder.path(), &line).expect_refusal_with("cannot be used with");
     }
 }

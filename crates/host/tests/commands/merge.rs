@@ -23,9 +23,8 @@ fn merge_prints_the_output_of_a_single_process() {
         let arguments = with_paper(arguments);
         let single_output = run_line(&arguments, "").expect_success();
         assert!(single_output.len() > 100, "{arguments}: {single_output}");
-        let merged_output =
-            run_line("merge", compute_parts(&arguments, part_count)).expect_success();
-        assert_eq!(merged_output, single_output, "{arguments}");
+        let merge = run_line("merge", compute_parts(&arguments, part_count));
+        assert_eq!(merge.expect_success(), single_output, "{arguments}");
     }
 }
 
@@ -36,18 +35,15 @@ fn merge_refuses_parts_that_are_not_one_complete_computation() {
     let (last_part, first_part) = parts.split_once('\n').expect("the parts are two lines");
     let merge_with_last_part =
         |other_part: &str| run_line("merge", format!("{last_part}\n{other_part}"));
-    assert_eq!(
-        merge_with_last_part("").expect_refusal(),
-        "lizard: part 1/2 is missing"
-    );
+    let refusal = merge_with_last_part("").expect_refusal();
+    assert_eq!(refusal, "lizard: part 1/2 is missing");
     let other_robot = "design --search --step 0.1 --robot robots/unequal.toml --part 1/2";
     let other_robot = run_line(other_robot, "").expect_success();
-    assert_eq!(
-        merge_with_last_part(&other_robot).expect_refusal(),
-        "lizard: part 1/2 has a different robot from another part"
-    );
-    let other_step =
-        run_line(&with_paper("design --search --step 0.2 --part 1/2"), "").expect_success();
+    let refusal = merge_with_last_part(&other_robot).expect_refusal();
+    let expected = "lizard: part 1/2 has a different robot from another part";
+    assert_eq!(refusal, expected);
+    let other_step = with_paper("design --search --step 0.2 --part 1/2");
+    let other_step = run_line(&other_step, "").expect_success();
     merge_with_last_part(&other_step).expect_refusal_with("different options");
     // A killed job leaves a partial line.
     let partial_line = &first_part[..first_part.len() / 2];

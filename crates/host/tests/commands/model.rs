@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use crate::program::{assert_contains, run, scratch_folder};
+use crate::program::{assert_contains, read_cases, run, run_line_in, scratch_folder};
 
 /// Returns a path at which no file exists.
 fn unused_path(name: &str) -> PathBuf {
@@ -19,9 +19,9 @@ fn a_mujoco_file_has_servos_feet_and_one_home_pose() {
     run(&["model", &path]).expect_success();
     let text = fs::read_to_string(&file).expect("the file is readable");
     for fragment in [
-        "<position name=\"A1\"",
-        "<position name=\"A4\"",
-        "<geom name=\"pad LH\"",
+        r#"<position name="A1""#,
+        r#"<position name="A4""#,
+        r#"<geom name="pad LH""#,
     ] {
         assert_eq!(text.matches(fragment).count(), 1, "{fragment}");
     }
@@ -63,10 +63,9 @@ fn model_writes_the_meshes_named_in_a_urdf_or_sdf() {
         let output = run(&["model", &file.display().to_string()]).expect_success();
         assert!(output.contains("my-meshes"), "{output}");
         let text = fs::read_to_string(&file).expect("the file is readable");
-        let names = text.split("my-meshes/").skip(1);
-        let names: Vec<&str> = names
-            .filter_map(|rest| Some(rest.split_once(".stl")?.0))
-            .collect();
+        let texts_after = text.split("my-meshes/").skip(1);
+        let names = texts_after.filter_map(|rest| Some(rest.split_once(".stl")?.0));
+        let names: Vec<&str> = names.collect();
         assert!(names.len() > 30, "{names:?}");
         for name in names {
             let mesh = folder.path().join(format!("new/my-meshes/{name}.stl"));
@@ -83,21 +82,13 @@ fn model_writes_the_meshes_named_in_a_urdf_or_sdf() {
 #[test]
 fn model_refuses_options_that_a_format_does_not_support_and_writes_no_file() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    for (name, options, expected) in [
-        ("a.urfd", &[][..], "unknown file extension"),
-        (
-            "a.urdf",
-            &["--drive", "walk"],
-            "--drive requires a MuJoCo file",
-        ),
-        (
-            "a.xml",
-            &["--mesh-address", "x"],
-            "--mesh-address requires .urdf or .sdf",
-        ),
-    ] {
-        let file = folder.path().join(name).display().to_string();
-        run(&[&["model", &file], options].concat()).expect_refusal_with(expected);
+    let cases = "
+        model a.urfd => unknown file extension
+        model a.urdf --drive walk => --drive requires a MuJoCo file
+        model a.xml --mesh-address x => --mesh-address requires .urdf or .sdf
+    ";
+    for (line, expected) in read_cases(cases) {
+        run_line_in(folder.path(), line).expect_refusal_with(expected);
     }
     let remaining_files = folder.path().read_dir().expect("the folder is readable");
     assert_eq!(remaining_files.count(), 0);

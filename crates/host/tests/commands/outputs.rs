@@ -1,16 +1,9 @@
 //! Tests that commands overwrite no input, and that a killed command leaves no file.
 
 use std::fs;
-use std::path::Path;
 use std::process::Command;
 
-use lizard_time_limit::TIME_LIMIT;
-
-use crate::program::{Outcome, read_file, run_in};
-
-fn run_line_in(folder: &Path, line: &str) -> Outcome {
-    run_in(folder, &line.split(' ').collect::<Vec<_>>(), "")
-}
+use crate::program::{assert_contains, read_cases, read_file, run_command, run_line_in};
 
 #[test]
 fn no_command_overwrites_its_input_or_a_robot_file() {
@@ -34,25 +27,20 @@ fn no_command_overwrites_its_input_or_a_robot_file() {
         fs::hard_link(folder_path.join("my.toml"), folder_path.join(link))
             .expect("a hard link is created");
     }
-    for (line, protected_file) in [
-        ("flash image --robot my.toml --output my.toml", "my.toml"),
-        (
-            "flash image --robot my.toml --output ./x/../my.toml",
-            "my.toml",
-        ),
-        (
-            "flash image --robot large --output robot.toml",
-            "robot.toml",
-        ),
-        ("flash image --robot large --output broken", "broken"),
-        ("draw --robot my.toml --output my.toml", "my.toml"),
-        ("draw --robot my.toml --output robot.toml", "robot.toml"),
-        ("model my.urdf --robot my.toml", "my.urdf"),
-        ("console replay a.jsonl --svg a.jsonl", "a.jsonl"),
-        ("sim --duration 4 --svg robot.toml", "robot.toml"),
-        ("sim --script a.txt --svg a.txt", "a.txt"),
-        ("draw charts charts --robot my.toml", "top-view.svg"),
-    ] {
+    let lines_and_protected_files = "
+        flash image --robot my.toml --output my.toml => my.toml
+        flash image --robot my.toml --output ./x/../my.toml => my.toml
+        flash image --robot large --output robot.toml => robot.toml
+        flash image --robot large --output broken => broken
+        draw --robot my.toml --output my.toml => my.toml
+        draw --robot my.toml --output robot.toml => robot.toml
+        model my.urdf --robot my.toml => my.urdf
+        console replay a.jsonl --svg a.jsonl => a.jsonl
+        sim --duration 4 --svg robot.toml => robot.toml
+        sim --script a.txt --svg a.txt => a.txt
+        draw charts charts --robot my.toml => top-view.svg
+    ";
+    for (line, protected_file) in read_cases(lines_and_protected_files) {
         fs::create_dir_all(folder_path.join("x")).expect("the folder is created");
         let outcome = run_line_in(folder_path, line);
         let error = outcome.stderr;
@@ -63,9 +51,9 @@ fn no_command_overwrites_its_input_or_a_robot_file() {
         );
     }
     for (name, text) in files {
-        let current_text =
-            fs::read_to_string(folder_path.join(name)).expect("the file is readable");
-        assert!(current_text == text, "{name} has changed");
+        let current_text = fs::read_to_string(folder_path.join(name));
+        let is_unchanged = current_text.expect("the file is readable") == text;
+        assert!(is_unchanged, "{name} has changed");
     }
     assert!(!folder_path.join("my-meshes").exists());
 }
@@ -78,17 +66,14 @@ fn new_writes_a_valid_robot_file_and_replaces_no_file() {
     assert!(output.contains("lizard gaits --robot my.toml"), "{output}");
     let file = folder_path.join("my.toml");
     let text = fs::read_to_string(&file).expect("the file is readable");
-    assert!(
-        text.contains("\n[gait.walk]\n") && text.contains("# "),
-        "{text}"
-    );
+    for part in ["\n[gait.walk]\n", "# "] {
+        assert_contains(&text, part);
+    }
     run_line_in(folder_path, "gaits --robot my.toml").expect_success();
     fs::write(&file, "mine").expect("the file is written");
     let refusal = run_line_in(folder_path, "new my.toml").expect_refusal();
-    assert_eq!(
-        refusal,
-        "lizard: my.toml already exists; choose another name"
-    );
+    let expected = "lizard: my.toml already exists; choose another name";
+    assert_eq!(refusal, expected);
     let current_text = fs::read_to_string(&file).expect("the file is readable");
     assert_eq!(current_text, "mine");
     let outcome = run_line_in(folder_path, "new no/folder/my.toml");
@@ -119,10 +104,9 @@ fn a_command_killed_while_writing_leaves_no_file() {
     // The system kills a program that writes more than 8 KiB into a file.
     let script = "ulimit -c 0 -f 8; exec \"$0\" flash image --robot large --output x.hex";
     let mut bash = Command::new("bash");
-    bash.args(["-c", script, env!("CARGO_BIN_EXE_lizard")])
-        .current_dir(folder.path());
-    let output = TIME_LIMIT.run_command(&mut bash, b"").expect("bash runs");
-    assert_eq!(output.status.code(), None, "no signal: {output:?}");
+    bash.args(["-c", script, env!("CARGO_BIN_EXE_lizard")]);
+    let outcome = run_command(bash.current_dir(folder.path()), "");
+    assert_eq!(outcome.code, None, "no signal: {outcome:?}");
     let remaining_files = fs::read_dir(folder.path()).expect("the folder is readable");
     assert_eq!(remaining_files.count(), 0);
 }

@@ -30,9 +30,8 @@ impl Outcome {
     pub fn expect_json_lines(self) -> Vec<serde_json::Value> {
         let output = self.expect_success();
         let values = output.lines().map(serde_json::from_str);
-        values
-            .collect::<Result<_, _>>()
-            .expect("the output is JSON")
+        let values: Result<_, _> = values.collect();
+        values.expect("the output is JSON")
     }
 
     /// Checks that the run refused its input and printed nothing to standard output; returns the message.
@@ -56,6 +55,12 @@ pub fn assert_contains(text: &str, expected: &str) {
         text.contains(expected),
         "expected {expected:?}, got: {text}"
     );
+}
+
+/// Reads a table of texts. Each line has an input and its expected message, separated by ` => `.
+pub fn read_cases(table: &str) -> impl Iterator<Item = (&str, &str)> {
+    let lines = table.trim().lines().map(str::trim_start);
+    lines.map(|line| line.split_once(" => ").expect(line))
 }
 
 /// Creates an empty folder in the scratch folder.
@@ -88,9 +93,8 @@ pub fn read_value<'a>(text: &'a str, key: &str) -> &'a str {
 
 /// Reads a length in a robot file, mm.
 pub fn read_length(text: &str, key: &str) -> f64 {
-    read_value(text, key)
-        .parse()
-        .expect("the value is a number")
+    let value = read_value(text, key).parse();
+    value.expect("the value is a number")
 }
 
 /// Returns the scratch folder of all tests.
@@ -148,6 +152,11 @@ pub fn run_line(line: &str, input: impl AsRef<[u8]>) -> Outcome {
     run_in(&repo_root(), &arguments, input)
 }
 
+/// Runs a command line in a folder without standard input.
+pub fn run_line_in(folder: &Path, line: &str) -> Outcome {
+    run_in(folder, &line.split_whitespace().collect::<Vec<_>>(), "")
+}
+
 /// Runs the program in the scratch folder without standard input.
 pub fn run(arguments: &[&str]) -> Outcome {
     run_in(scratch_folder(), arguments, "")
@@ -156,10 +165,14 @@ pub fn run(arguments: &[&str]) -> Outcome {
 /// Runs the program in a folder with the given standard input.
 pub fn run_in(folder: &Path, arguments: &[&str], input: impl AsRef<[u8]>) -> Outcome {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
-    command.args(arguments).current_dir(folder);
+    run_command(command.args(arguments).current_dir(folder), input)
+}
+
+/// Runs a command with the given standard input.
+pub fn run_command(command: &mut Command, input: impl AsRef<[u8]>) -> Outcome {
     // A program that stops at invalid input closes its standard input early, which is not an error here.
-    let output = TIME_LIMIT.run_command(&mut command, input.as_ref());
-    let output = output.expect("lizard runs and exits");
+    let output = TIME_LIMIT.run_command(command, input.as_ref());
+    let output = output.expect("the program runs and exits");
     Outcome {
         code: output.status.code(),
         stdout: String::from_utf8(output.stdout).expect("the output is UTF-8"),

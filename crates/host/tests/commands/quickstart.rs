@@ -3,7 +3,7 @@
 use lizard_core::virtual_board::RunningRobot;
 use lizard_robot::Robot;
 
-use crate::program::read_file;
+use crate::program::{assert_contains, read_file};
 
 /// Returns true if a line matches the page's line, in which a final `...` stands for any text.
 fn matches_page(line: &str, page_line: &str) -> bool {
@@ -70,11 +70,7 @@ fn the_firmware_prints_every_message_of_the_troubleshooting_table() {
                 continue;
             };
             for phrase in answer.split("...") {
-                let phrase = phrase.trim_matches([' ', ',']);
-                assert!(
-                    messages.contains(phrase),
-                    "the firmware does not print {phrase:?}"
-                );
+                assert_contains(&messages, phrase.trim_matches([' ', ',']));
             }
         }
     }

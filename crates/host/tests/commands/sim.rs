@@ -76,21 +76,16 @@ fn a_routine_continues_when_its_inputs_are_pressed() {
         matches!(wait_starts_ms[..], [start_ms] if (2_040.0..2_100.0).contains(&start_ms)),
         "waits start at {wait_starts_ms:?} ms"
     );
-    assert_eq!(
-        pressed_report["servos"][0]["width_error"], 0,
-        "{}",
-        pressed_report["servos"]
-    );
+    let servos = &pressed_report["servos"];
+    assert_eq!(servos[0]["width_error"], 0, "{servos}");
     let report_without_presses = simulate(&[]);
     let wait_counts =
         ["button", "nose"].map(|input| find_wait_times_ms(&report_without_presses, input).len());
     assert_eq!(wait_counts, [1, 0]);
-    let message =
-        run(&["sim", "--robot", &robot_path("paper"), "--press", "nose@1"]).expect_refusal();
-    assert_eq!(
-        message,
-        "lizard: robot.toml has no [input.nose] for --press"
-    );
+    let arguments = ["sim", "--robot", &robot_path("paper"), "--press", "nose@1"];
+    let message = run(&arguments).expect_refusal();
+    let expected = "lizard: robot.toml has no [input.nose] for --press";
+    assert_eq!(message, expected);
 }
 
 #[test]

@@ -47,17 +47,12 @@ fn a_round_of_a_routine_matches_the_prediction_of_lizard_gaits() {
 fn robots_with_grained_pads_walk_and_turn_as_fast_as_docs_state() {
     let page = read_file("docs/gaits.md");
     for (name, servo, friction, is_fast) in [
-        ("SG-90", "model = \"SG-90\"", "0.7", true),
-        (
-            "copy on 4.2 V",
-            "model = \"copy\"\nvolts = 4.2",
-            "1.0",
-            true,
-        ),
+        ("SG-90", "\"SG-90\"", "0.7", true),
+        ("copy on 4.2 V", "\"copy\"\nvolts = 4.2", "1.0", true),
         // With this servo, `run` stays below 90 mm/s.
-        ("digital", "model = \"digital\"", "0.7", false),
+        ("digital", "\"digital\"", "0.7", false),
     ] {
-        let servo = format!("[servo]\n{servo}\n[servo.A1]");
+        let servo = format!("[servo]\nmodel = {servo}\n[servo.A1]");
         let friction_key = format!("friction = {friction}");
         let changes = [("[servo.A1]", &*servo), ("# friction = 0.7", &friction_key)];
         let robot = TemporaryRobot::from_file("robots/grain.toml", "grain", &changes);

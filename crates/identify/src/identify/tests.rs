@@ -44,8 +44,7 @@ fn default_file_values() -> Values {
 /// Simulates a camera's measurement of a robot, with a mounting error of the card and with random errors.
 fn measure_robot(values: &Values, card: CardPose, rng: &mut Rng) -> Vec<MeasuredMovement> {
     let movements = compute_travels(values).into_iter().map(|travel| {
-        let card_travel = card.convert_travel(travel);
-        let components = [card_travel.forward, card_travel.left, card_travel.turn];
+        let components = card.convert_travel(travel);
         MeasuredMovement {
             gait: "walk".to_owned(),
             pace: 1.0,
@@ -58,9 +57,16 @@ fn measure_robot(values: &Values, card: CardPose, rng: &mut Rng) -> Vec<Measured
 }
 
 fn random_card(rng: &mut Rng) -> CardPose {
-    CardPose::PRIOR_ERRORS
-        .map(|prior_error| prior_error * random_deviate(rng))
-        .into()
+    let errors = CardPose::PRIOR_ERRORS.map(|prior_error| prior_error * random_deviate(rng));
+    errors.into()
+}
+
+/// Identifies the keys with a model, from the values of the hypothetical robot.toml.
+fn solve_with(
+    model: &dyn Fn(&Values) -> Vec<Travel>,
+    movements: &[MeasuredMovement],
+) -> Identification {
+    solve(movements, default_file_values(), model).expect("the fit converges")
 }
 
 #[test]
@@ -74,17 +80,15 @@ fn changed_keys_are_found_within_two_standard_errors_in_95_percent_and_correct_k
         let mut true_values = default_file_values();
         let is_changed: [bool; KEY_COUNT] = std::array::from_fn(|_| rng.bool());
         for i in (0..KEY_COUNT).filter(|&i| is_changed[i]) {
-            true_values[i] += KEYS[i].prior_error()
-                * if i == PLAY_INDEX {
-                    rng.f64()
-                } else {
-                    random_deviate(&mut rng).max(-1.5).abs()
-                };
+            let deviate = match i {
+                PLAY_INDEX => rng.f64(),
+                _ => random_deviate(&mut rng).max(-1.5).abs(),
+            };
+            true_values[i] += KEYS[i].prior_error() * deviate;
         }
         let card = random_card(&mut rng);
         let movements = measure_robot(&true_values, card, &mut rng);
-        let result =
-            solve(&movements, default_file_values(), &compute_travels).expect("the fit converges");
+        let result = solve_with(&compute_travels, &movements);
         explained_count += i32::from(result.goodness.is_explained);
         for i in 0..KEY_COUNT {
             let key = &result.keys[i];
@@ -131,14 +135,8 @@ fn at_a_fold_of_the_model_the_error_follows_the_flatter_side() {
     for (movement, travel) in movements.iter_mut().zip(compute_travels(&true_values)) {
         movement.mean = [travel.forward, travel.left, travel.turn];
     }
-    let find_twist_error = |model: &dyn Fn(&Values) -> Vec<Travel>| {
-        solve(&movements, default_file_values(), model)
-            .expect("the fit converges")
-            .keys[TWIST_INDEX]
-            .error
-    };
-    let folded_error = find_twist_error(&folded_model);
-    let smooth_error = find_twist_error(&compute_travels);
+    let folded_error = solve_with(&folded_model, &movements).keys[TWIST_INDEX].error;
+    let smooth_error = solve_with(&compute_travels, &movements).keys[TWIST_INDEX].error;
     assert!(
         folded_error > 1.2 * smooth_error,
         "folded model: {folded_error}, smooth model: {smooth_error}"
@@ -158,21 +156,16 @@ fn a_key_without_effect_keeps_its_value_and_is_undetermined() {
     let card = random_card(&mut rng);
     let mut movements = measure_robot(&true_values, card, &mut rng);
     for (movement, travel) in movements.iter_mut().zip(model_without_key_5(&true_values)) {
-        let card_travel = card.convert_travel(travel);
-        movement.mean = [card_travel.forward, card_travel.left, card_travel.turn];
+        movement.mean = card.convert_travel(travel);
     }
-    let result =
-        solve(&movements, default_file_values(), &model_without_key_5).expect("the fit converges");
+    let result = solve_with(&model_without_key_5, &movements);
     let mut expected = vec![Verdict::Unchanged; KEY_COUNT];
     (expected[0], expected[5]) = (Verdict::Changed, Verdict::Undetermined);
     let verdicts: Vec<Verdict> = result.keys.iter().map(|key| key.verdict).collect();
     assert_eq!(verdicts, expected);
-    assert_eq!(result.keys[5].new_value, result.keys[5].file_value);
-    assert!(
-        result.keys[5].error > 0.9 * KEYS[5].prior_error(),
-        "{:?}",
-        result.keys[5]
-    );
+    let key_5 = &result.keys[5];
+    assert_eq!(key_5.new_value, key_5.file_value);
+    assert!(key_5.error > 0.9 * KEYS[5].prior_error(), "{key_5:?}");
 }
 
 #[test]
@@ -186,15 +179,12 @@ fn two_keys_with_the_same_effect_are_reported_as_correlated() {
     };
     let mut rng = Rng::with_seed(1);
     let movements = measure_robot(&default_file_values(), CardPose::default(), &mut rng);
-    let result =
-        solve(&movements, default_file_values(), &equal_effect_model).expect("the fit converges");
+    let result = solve_with(&equal_effect_model, &movements);
     let [(a, b, correlation)] = result.correlated_pairs[..] else {
         panic!("{:?}", result.correlated_pairs);
     };
-    assert_eq!(
-        (a.full_name(), b.full_name()),
-        (KEYS[2].full_name(), KEYS[3].full_name())
-    );
+    let expected = [&KEYS[2], &KEYS[3]];
+    assert_eq!([a, b].map(Key::full_name), expected.map(Key::full_name));
     assert!(correlation < -0.9, "correlation {correlation}");
 }
 
@@ -202,24 +192,15 @@ fn two_keys_with_the_same_effect_are_reported_as_correlated() {
 fn a_movement_that_no_key_explains_is_reported_and_enlarges_the_errors() {
     let mut rng = Rng::with_seed(2);
     let mut movements = measure_robot(&default_file_values(), CardPose::default(), &mut rng);
-    let good_result =
-        solve(&movements, default_file_values(), &compute_travels).expect("the fit converges");
+    let good_result = solve_with(&compute_travels, &movements);
     assert!(good_result.goodness.is_explained && good_result.goodness.error_factor == 1.0);
     movements[3].mean[0] += 4.0;
-    let bad_result =
-        solve(&movements, default_file_values(), &compute_travels).expect("the fit converges");
-    let GoodnessOfFit {
-        is_explained,
-        error_factor,
-        largest_residual,
-        ..
-    } = bad_result.goodness;
-    assert!(
-        !is_explained && error_factor > 5.0,
-        "{:?}",
-        bad_result.goodness
-    );
-    assert_eq!((largest_residual.0, largest_residual.1), (3, 0));
+    let bad_result = solve_with(&compute_travels, &movements);
+    let goodness = bad_result.goodness;
+    let is_error_enlarged = !goodness.is_explained && goodness.error_factor > 5.0;
+    assert!(is_error_enlarged, "{goodness:?}");
+    let (movement, component, _) = goodness.largest_residual;
+    assert_eq!((movement, component), (3, 0));
     for (bad_key, good_key) in bad_result.keys.iter().zip(&good_result.keys) {
         assert!(
             bad_key.error > 4.0 * good_key.error,
@@ -238,17 +219,15 @@ fn a_negative_play_is_impossible_and_keeps_the_file_value() {
         compute_travels(&values)
     };
     // The movements are shifted opposite to the effect of 0.5 deg of play, so that the best fit is at -0.5 deg.
-    for ((movement, base_travel), play_travel) in movements
-        .iter_mut()
-        .zip(compute_with_play(0.0))
-        .zip(compute_with_play(0.5))
-    {
+    let travel_pairs = compute_with_play(0.0)
+        .into_iter()
+        .zip(compute_with_play(0.5));
+    for (movement, (base_travel, play_travel)) in movements.iter_mut().zip(travel_pairs) {
         movement.mean[0] -= play_travel.forward - base_travel.forward;
         movement.mean[1] -= play_travel.left - base_travel.left;
         movement.mean[2] -= play_travel.turn - base_travel.turn;
     }
-    let result =
-        solve(&movements, default_file_values(), &compute_travels).expect("the fit converges");
+    let result = solve_with(&compute_travels, &movements);
     let play_key = &result.keys[PLAY_INDEX];
     assert_eq!(play_key.new_value, 0.0);
     assert!(

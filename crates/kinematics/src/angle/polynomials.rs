@@ -107,10 +107,8 @@ impl Polynomial {
             next_coefficients[0] += difference;
             coefficients = next_coefficients;
         }
-        coefficients
-            .iter()
-            .map(|coefficient| coefficient.to_f64().value())
-            .collect()
+        let to_f64 = |coefficient: &Number| coefficient.to_f64().value();
+        coefficients.iter().map(to_f64).collect()
     }
 
     /// Computes the largest relative error of the approximation with these coefficients.

@@ -85,9 +85,8 @@ impl FiveBar {
     /// # Errors
     /// Fails as [`FiveBar::inverse`] and [`FiveBar::forward`] do.
     pub fn pose_at_point(&self, point: Vector) -> Result<FiveBarPose, Fault> {
-        let (left, right, mode) = self
-            .solve_arms(point)?
-            .directions_in_mode(WorkingMode::OUTWARD);
+        let arms = self.solve_arms(point)?;
+        let (left, right, mode) = arms.directions_in_mode(WorkingMode::OUTWARD);
         self.close(mode, left, right)
     }
 
@@ -98,22 +97,16 @@ impl FiveBar {
         }
         let from_left_shaft = point - self.left_shaft();
         let from_right_shaft = point - self.right_shaft();
+        let (crank, coupler) = (self.left_crank_length, self.left_coupler_length);
+        let left_cranks = crank_directions(from_left_shaft, crank, coupler, true)?;
+        let (crank, coupler) = (self.right_crank_length, self.right_coupler_length);
+        let right_cranks = crank_directions(from_right_shaft, crank, coupler, false)?;
         Ok(Arms {
             five_bar: *self,
             from_left_shaft,
             from_right_shaft,
-            left_cranks: crank_directions(
-                from_left_shaft,
-                self.left_crank_length,
-                self.left_coupler_length,
-                true,
-            )?,
-            right_cranks: crank_directions(
-                from_right_shaft,
-                self.right_crank_length,
-                self.right_coupler_length,
-                false,
-            )?,
+            left_cranks,
+            right_cranks,
         })
     }
 }

@@ -169,37 +169,26 @@ fn the_loop_closes_near_the_poses_at_which_the_papers_a_vanishes() {
 
 #[test]
 fn fault_messages_state_the_distances_and_limits() {
-    for (x, y, message) in [
-        (
-            0.0,
-            90.0,
-            "the point is 90.554 mm from the left shaft, but must be between 20.000 and 80.000 mm away",
-        ),
-        (
-            10.0,
-            5.0,
-            "the point is 5.000 mm from the right shaft, but must be between 20.000 and 80.000 mm away",
-        ),
-        (f64::NAN, 5.0, "a value is not a finite number"),
+    let range = "between 20.000 and 80.000 mm away";
+    for (x, y, distance) in [
+        (0.0, 90.0, "90.554 mm from the left shaft"),
+        (10.0, 5.0, "5.000 mm from the right shaft"),
     ] {
         let fault = PAPER_HEAD.inverse(Vector::new(x, y)).unwrap_err();
+        let message = format!("the point is {distance}, but must be {range}");
         assert_eq!(fault.to_string(), message);
     }
-    for (couplers, cranks, distances) in [
-        (
-            [10.0, 15.0],
-            [180.0, 0.0],
-            "80.000 mm apart, but the couplers reach only 25.000 mm",
-        ),
-        (
-            [80.0, 50.0],
-            [90.0, 90.0],
-            "20.000 mm apart, but the couplers need at least 30.000 mm",
-        ),
+    let fault = PAPER_HEAD.inverse(Vector::new(f64::NAN, 5.0)).unwrap_err();
+    assert_eq!(fault.to_string(), "a value is not a finite number");
+    for (couplers, cranks, distance, limit) in [
+        ([10.0, 15.0], [180.0, 0.0], "80.000", "reach only 25.000"),
+        ([80.0, 50.0], [90.0, 90.0], "20.000", "need at least 30.000"),
     ] {
         let five_bar = FiveBar::new([20.0, 30.0, couplers[0], couplers[1], 30.0]);
         let fault = five_bar.forward(cranks[0], cranks[1]).unwrap_err();
-        assert_eq!(fault.to_string(), format!("the crank tips are {distances}"));
+        let message =
+            format!("the crank tips are {distance} mm apart, but the couplers {limit} mm");
+        assert_eq!(fault.to_string(), message);
     }
     let fault = PAPER_HEAD.forward(f64::INFINITY, 0.0).unwrap_err();
     assert_eq!(fault, Fault::NotFinite);

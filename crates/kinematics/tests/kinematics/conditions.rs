@@ -35,6 +35,7 @@ fn compute_expected_values(
     // Vectors along the sliders.
     let left_span = a1 + cis(t1 + 90.0) * l.l14 - (a4 + cis(t5 - 90.0) * l.l11);
     let right_span = a2 + cis(t4 - 90.0) * l.l19 - (a3 + cis(t8 + 90.0) * l.l16);
+    let length = |span: Vector| span.x.hypot(span.y);
     Some(BTreeMap::from([
         ("type2_head", sine_between(head - p1, head - p4)),
         ("type2_tail", sine_between(tail - p8, tail - p5)),
@@ -46,14 +47,8 @@ fn compute_expected_values(
         ("leg_rf", t4.to_radians().sin()),
         ("leg_rh", -t8.to_radians().sin()),
         ("leg_lh", -t5.to_radians().sin()),
-        (
-            "stroke_left",
-            left_span.x.hypot(left_span.y) - l.l12 - l.l13,
-        ),
-        (
-            "stroke_right",
-            right_span.x.hypot(right_span.y) - l.l17 - l.l18,
-        ),
+        ("stroke_left", length(left_span) - l.l12 - l.l13),
+        ("stroke_right", length(right_span) - l.l17 - l.l18),
         ("uncrossed_head", p4.x - p1.x),
         ("uncrossed_tail", p8.x - p5.x),
     ]))

@@ -49,9 +49,7 @@ fn is_finite_pose(pose: &FiveBarPose) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 20_000, ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(20_000))]
 
     #[test]
     fn a_five_bar_of_any_size_has_a_finite_pose_or_a_fault(five_bar in any_five_bar(), left in any::<f64>(), right in -180.0..180.0f64) {

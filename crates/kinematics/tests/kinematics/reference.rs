@@ -68,19 +68,12 @@ pub fn end_point_by_cosines(
     theta_right: f64,
 ) -> Option<[f64; 2]> {
     let (a, b) = (theta_left * PI / 180.0, theta_right * PI / 180.0);
-    let (half_base, l1, l4) = (
-        five_bar.base / 2.0,
-        five_bar.left_crank_length,
-        five_bar.right_crank_length,
-    );
+    let half_base = five_bar.base / 2.0;
+    let (l1, l4) = (five_bar.left_crank_length, five_bar.right_crank_length);
+    let (l2, l3) = (five_bar.left_coupler_length, five_bar.right_coupler_length);
     let left = Vector::new(l1 * a.cos() - half_base, l1 * a.sin());
     let right = Vector::new(l4 * b.cos() + half_base, l4 * b.sin());
-    let point = circle_intersection(
-        left,
-        five_bar.left_coupler_length,
-        right,
-        five_bar.right_coupler_length,
-    )?;
+    let point = circle_intersection(left, l2, right, l3)?;
     Some([point.x, point.y])
 }
 

@@ -21,9 +21,7 @@ fn the_papers_head_has_the_expected_workspace_and_inscribed_circle() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 64, ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
     fn the_workspace_consists_of_the_reachable_points(five_bar in any_symmetrical_five_bar()) {
@@ -138,18 +136,15 @@ fn max_clearance_on_grid(five_bar: &FiveBar) -> (f64, f64) {
 #[test]
 fn with_a_wide_base_the_inscribed_circle_is_centred_between_the_shafts() {
     // Crank and coupler are 0.5 and 0.75 times half the base.
-    let five_bar = FiveBar::new([20.0, 5.0, 7.5, 7.5, 5.0]);
-    let circle = Workspace::for_five_bar(&five_bar)
-        .inscribed_circle()
-        .unwrap();
+    let workspace = Workspace::for_five_bar(&FiveBar::new([20.0, 5.0, 7.5, 7.5, 5.0]));
+    let circle = workspace.inscribed_circle().unwrap();
     assert_eq!((circle.centre, circle.radius), (Vector::new(0.0, 0.0), 2.5));
 }
 
 #[test]
 fn the_conditioning_index_vanishes_where_the_inscribed_circle_touches_the_rim() {
-    let circle = Workspace::for_five_bar(&PAPER_HEAD)
-        .inscribed_circle()
-        .unwrap();
+    let workspace = Workspace::for_five_bar(&PAPER_HEAD);
+    let circle = workspace.inscribed_circle().unwrap();
     for shaft in [PAPER_HEAD.left_shaft(), PAPER_HEAD.right_shaft()] {
         let shaft_to_centre = circle.centre - shaft;
         for side in [1.0, -1.0] {
@@ -157,11 +152,8 @@ fn the_conditioning_index_vanishes_where_the_inscribed_circle_touches_the_rim() 
                 circle.centre + shaft_to_centre * (side * circle.radius / shaft_to_centre.length());
             let solution = PAPER_HEAD.inverse(rim_point).unwrap()[0];
             assert_eq!(solution.working_mode, WorkingMode::OUTWARD);
-            let pose = PAPER_HEAD.forward_in_mode(
-                solution.assembly_mode,
-                solution.theta_left,
-                solution.theta_right,
-            );
+            let (left, right) = (solution.theta_left, solution.theta_right);
+            let pose = PAPER_HEAD.forward_in_mode(solution.assembly_mode, left, right);
             let index = pose.unwrap().lci();
             assert!(index < 1e-6, "the index is {index}");
         }

@@ -4,6 +4,8 @@
 use lizard_kinematics::{Circle, FiveBar, Vector, Workspace};
 use serde::Serialize;
 
+use crate::bisection::bisect;
+
 /// The lower bound that the paper claims for the local conditioning index.
 pub const CLAIMED_LCI: f64 = 0.7;
 
@@ -94,15 +96,11 @@ impl LciStatistics {
             }
         }
         let sample_count = (ring_count * spoke_count) as f64;
+        let first_step = circle.radius / ring_count as f64;
         Self {
             mean: sum / sample_count,
             min: min_index,
-            max: find_max_index(
-                five_bar,
-                circle,
-                (max_index, max_point),
-                circle.radius / ring_count as f64,
-            ),
+            max: find_max_index(five_bar, circle, (max_index, max_point), first_step),
             share_above: count_above as f64 / sample_count,
             radius_above: Self::find_radius_above(five_bar, circle, ring_count),
         }
@@ -121,20 +119,11 @@ impl LciStatistics {
                 else {
                     return circle.radius;
                 };
-                let (mut inner_radius, mut outer_radius) =
-                    ((first_below as f64 - 1.0) * step, first_below as f64 * step);
                 if first_below == 0 {
                     return 0.0;
                 }
-                for _ in 0..30 {
-                    let middle = (inner_radius + outer_radius) / 2.0;
-                    if is_above_claim(middle) {
-                        inner_radius = middle;
-                    } else {
-                        outer_radius = middle;
-                    }
-                }
-                inner_radius
+                let inner_radius = (first_below as f64 - 1.0) * step;
+                bisect(inner_radius, first_below as f64 * step, 30, is_above_claim)
             })
             .fold(circle.radius, f64::min)
     }

@@ -54,11 +54,10 @@ impl Proportions {
         let sum = r1 + r2 + r3;
         if (sum - PROPORTION_SUM).abs() > 1e-9 {
             let factor = PROPORTION_SUM / sum;
+            let [r1, r2, r3] = [r1, r2, r3].map(|length| length * factor);
             return Err(format!(
-                "r1 + r2 + r3 is {sum:.6}, but must be {PROPORTION_SUM}; the same shape has r1 {:.6}, r2 {:.6}, r3 {:.6}",
-                r1 * factor,
-                r2 * factor,
-                r3 * factor
+                "r1 + r2 + r3 is {sum:.6}, but must be {PROPORTION_SUM}; the same shape has r1 {r1:.6}, \
+                 r2 {r2:.6}, r3 {r3:.6}"
             ));
         }
         Ok(Self { r1, r2, r3 })

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::proportions::{Proportions, grid_points};
+use crate::bisection::bisect;
 
 /// The requirements for every design.
 #[derive(Clone, Copy)]
@@ -85,11 +86,8 @@ impl Search {
 
     /// Computes the designs of one piece that meet the requirements. Calls `report_progress` after each point.
     pub fn compute_piece(&self, index: usize, report_progress: &(dyn Fn() + Sync)) -> Vec<Design> {
-        let points = self
-            .points
-            .chunks(PIECE_SIZE)
-            .nth(index)
-            .unwrap_or_default();
+        let mut pieces = self.points.chunks(PIECE_SIZE);
+        let points = pieces.nth(index).unwrap_or_default();
         let designs = points.par_iter().filter_map(|point| {
             let design = find_design(*point, &self.requirements);
             report_progress();
@@ -102,7 +100,15 @@ impl Search {
 /// Merges the designs of all pieces and ranks them, best first.
 pub fn merge_and_rank(pieces: Vec<Vec<Design>>) -> Vec<Design> {
     let mut designs = pieces.concat();
-    rank_designs(&mut designs);
+    let best_values = BestValues::from_designs(designs.iter());
+    let all_designs = designs.clone();
+    for design in &mut designs {
+        design.score = best_values.score(design);
+        design.is_pareto_optimal = !all_designs.iter().any(|other| {
+            other.lci > design.lci && other.margin > design.margin && other.stride > design.stride
+        });
+    }
+    designs.sort_by(|a, b| b.score.total_cmp(&a.score));
     designs
 }
 
@@ -114,12 +120,9 @@ pub fn find_design(proportions: Proportions, requirements: &Requirements) -> Opt
     if five_bar.left_crank_length.min(five_bar.left_coupler_length) < requirements.min_link_mm {
         return None;
     }
-    let (neutral, sweep) = (90..=170)
-        .map(|neutral| {
-            let neutral = f64::from(neutral);
-            (neutral, find_max_sweep(&five_bar, neutral, requirements))
-        })
-        .reduce(|best, next| if next.1 > best.1 { next } else { best })?;
+    let sweep_at = |neutral: f64| (neutral, find_max_sweep(&five_bar, neutral, requirements));
+    let sweeps = (90..=170).map(f64::from).map(sweep_at);
+    let (neutral, sweep) = sweeps.reduce(|best, next| if next.1 > best.1 { next } else { best })?;
     if sweep < requirements.sweep_deg {
         return None;
     }
@@ -139,19 +142,11 @@ pub fn find_design(proportions: Proportions, requirements: &Requirements) -> Opt
 
 /// Finds the largest sweep about a neutral angle within all limits, degrees.
 fn find_max_sweep(five_bar: &FiveBar, neutral: f64, requirements: &Requirements) -> f64 {
-    let (mut safe_deg, mut unsafe_deg) = (0.0, requirements.travel_deg.min(89.9));
-    if !is_within_limits(five_bar, neutral, safe_deg, requirements) {
-        return 0.0;
+    let is_safe = |sweep_deg: f64| is_within_limits(five_bar, neutral, sweep_deg, requirements);
+    match is_safe(0.0) {
+        true => bisect(0.0, requirements.travel_deg.min(89.9), 9, is_safe),
+        false => 0.0,
     }
-    for _ in 0..9 {
-        let middle_deg = (safe_deg + unsafe_deg) / 2.0;
-        if is_within_limits(five_bar, neutral, middle_deg, requirements) {
-            safe_deg = middle_deg;
-        } else {
-            unsafe_deg = middle_deg;
-        }
-    }
-    safe_deg
 }
 
 /// Sample positions across the sweep, from -1 to 1.
@@ -165,12 +160,18 @@ fn is_within_limits(
     requirements: &Requirements,
 ) -> bool {
     let limits = &requirements.limits;
-    let slider = create_slider(five_bar, requirements);
+    // The slider of a side, whose arms are as long as the cranks, as in the paper.
+    let slider = Slider {
+        front_offset: 0.0,
+        base: requirements.chassis_length_mm,
+        front_arm: five_bar.left_crank_length,
+        rear_arm: five_bar.left_crank_length,
+        nominal_length: 0.0,
+    };
     // theta5 in the tail's frame equals theta1, because the tail mirrors the head.
     let slider_span = |front: f64, rear: f64| {
-        slider
-            .forward(-rear - 90.0, front + 90.0)
-            .map_or(f64::NAN, |pose| pose.d)
+        let pose = slider.forward(-rear - 90.0, front + 90.0);
+        pose.map_or(f64::NAN, |pose| pose.d)
     };
     let nominal_span = slider_span(neutral, neutral);
     SWEEP_SAMPLES.iter().all(|&left_fraction| {
@@ -184,17 +185,6 @@ fn is_within_limits(
                     .is_ok_and(|pose| limits.end_violations(End::Head, &pose).next().is_none())
         })
     })
-}
-
-/// Creates the slider of a side, whose arms are as long as the cranks, as in the paper.
-fn create_slider(five_bar: &FiveBar, requirements: &Requirements) -> Slider {
-    Slider {
-        front_offset: 0.0,
-        base: requirements.chassis_length_mm,
-        front_arm: five_bar.left_crank_length,
-        rear_arm: five_bar.left_crank_length,
-        nominal_length: 0.0,
-    }
 }
 
 /// Computes the smallest margin and the mean conditioning index within a sweep.
@@ -213,10 +203,8 @@ fn compute_margin_and_lci(five_bar: &FiveBar, neutral: f64, sweep: f64) -> (f64,
             }
         }
     }
-    (
-        min_margin,
-        lci_sum / (SWEEP_SAMPLES.len() * SWEEP_SAMPLES.len()) as f64,
-    )
+    let sample_count = (SWEEP_SAMPLES.len() * SWEEP_SAMPLES.len()) as f64;
+    (min_margin, lci_sum / sample_count)
 }
 
 /// The best value of each criterion among designs, to which their scores are relative.
@@ -246,17 +234,4 @@ impl BestValues {
         let stride_ratio = design.stride / self.stride;
         (lci_ratio * margin_ratio * stride_ratio).cbrt()
     }
-}
-
-/// Scores the designs and sorts them, best first.
-fn rank_designs(designs: &mut [Design]) {
-    let best_values = BestValues::from_designs(designs.iter());
-    let all_designs = designs.to_vec();
-    for design in designs.iter_mut() {
-        design.score = best_values.score(design);
-        design.is_pareto_optimal = !all_designs.iter().any(|other| {
-            other.lci > design.lci && other.margin > design.margin && other.stride > design.stride
-        });
-    }
-    designs.sort_by(|a, b| b.score.total_cmp(&a.score));
 }

@@ -1,7 +1,5 @@
 //! The result for one printed equation, as numbers and in words.
 
-use std::fmt::Write as _;
-
 use serde::Serialize;
 
 /// The errors of an equation and of its correction.
@@ -55,12 +53,8 @@ impl EquationResult {
     pub fn format_error(&self) -> String {
         let mut text = self.format_max_error();
         if let Some((max_error, special_case)) = self.special_case {
-            let unit = self.unit;
-            let _ = write!(
-                text,
-                "; {} {unit} at {special_case}",
-                format_three_digits(max_error)
-            );
+            let (error, unit) = (format_three_digits(max_error), self.unit);
+            text += &format!("; {error} {unit} at {special_case}");
         }
         text
     }
@@ -74,11 +68,8 @@ impl EquationResult {
         if self.no_real_value_fraction >= 0.999_95 {
             text = "no real value".to_string();
         } else if self.no_real_value_fraction > 0.0 {
-            let _ = write!(
-                text,
-                ", no real value at {:.0} % of poses",
-                100.0 * self.no_real_value_fraction
-            );
+            let percentage = 100.0 * self.no_real_value_fraction;
+            text += &format!(", no real value at {percentage:.0} % of poses");
         }
         text
     }

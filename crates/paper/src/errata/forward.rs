@@ -2,10 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use lizard_kinematics::{End, Links, Vector};
+use lizard_kinematics::{End, FiveBarPose, Links, Vector};
 
 use super::equation::Equation;
-use super::sample::{Sample, angle_error_deg, half_angle_tangent, polar};
+use super::sample::{Sample, angle_error_deg, polar, solve_half_angle};
+use crate::bisection::bisect;
 
 /// The equations in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
@@ -28,30 +29,20 @@ pub const EQUATIONS: &[Equation] = &[
         "deg",
         |sample| {
             let (a, b, c) = abc_coefficients(sample, sample.theta()[4]);
-            Some(angle_error_deg(
-                2.0 * half_angle_tangent(a, b, c, -1.0)?.atan(),
-                sample.theta()[3],
-            ))
+            let printed_theta3 = solve_half_angle(a, b, c, -1.0)?;
+            Some(angle_error_deg(printed_theta3, sample.theta()[3]))
         },
     )
     .with_correction(
         "the intersection of two circles, as in `kinematics` (error: mm of loop closure)",
         |sample| {
-            let Some(theta4_at_zero_a) = find_theta4_at_zero_a(sample) else {
-                return Some(0.0);
-            };
-            let theta1 = sample.solution.pose.theta1;
-            let Ok(pose) = sample
-                .lizard
-                .end(End::Head)
-                .forward(theta1, theta4_at_zero_a * 180.0 / PI)
-            else {
+            let Some((theta4, pose)) = solve_near_zero_a(sample, 0.0) else {
                 return Some(0.0);
             };
             let (theta2, theta3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
             let [theta1, theta2, theta3] =
-                [theta1, theta2, theta3].map(|degrees| degrees * (PI / 180.0));
-            Some(head_gap(sample, [theta1, theta2, theta3, theta4_at_zero_a]))
+                [sample.solution.pose.theta1, theta2, theta3].map(|degrees| degrees * (PI / 180.0));
+            Some(head_gap(sample, [theta1, theta2, theta3, theta4]))
         },
     )
     .with_special_case("θ4 within 1e-9° of A = 0", error_near_zero_a),
@@ -80,16 +71,9 @@ pub const EQUATIONS: &[Equation] = &[
         "R6 + R7 - R8 - R9 - R5 = 0",
         "mm",
         |sample| {
-            let (links, theta) = (&sample.lizard.links, sample.theta());
-            Some(loop_gap(
-                [
-                    (links.l6, theta[5]),
-                    (links.l7, theta[6]),
-                    (links.l8, theta[7]),
-                    (links.l9, theta[8]),
-                ],
-                links.l5,
-            ))
+            let (lengths, theta) = (sample.lizard.links.to_array(), sample.theta());
+            let links = [6, 7, 8, 9].map(|i| (lengths[i], theta[i - 1]));
+            Some(loop_gap(links, lengths[5]))
         },
     ),
     Equation::new(
@@ -224,35 +208,28 @@ fn find_theta4_at_zero_a(sample: &Sample) -> Option<f64> {
     let angle_at = |i: i32| f64::from(i) * FRAC_PI_2 / 90.0;
     let start =
         (-90..90).find(|&i| coefficient_a(angle_at(i)) * coefficient_a(angle_at(i + 1)) < 0.0)?;
-    let (mut low, mut high) = (angle_at(start), angle_at(start + 1));
-    for _ in 0..60 {
-        let middle = (low + high) / 2.0;
-        if coefficient_a(low) * coefficient_a(middle) <= 0.0 {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    Some(low)
+    let (low, high) = (angle_at(start), angle_at(start + 1));
+    let is_below = |theta4: f64| coefficient_a(low) * coefficient_a(theta4) > 0.0;
+    Some(bisect(low, high, 60, is_below))
+}
+
+/// Solves the head for the sample's theta1 and for the theta4 (rad) that exceeds the one at which A is 0 by
+/// `offset_deg`; `None` if there is no such theta4 or no solution.
+fn solve_near_zero_a(sample: &Sample, offset_deg: f64) -> Option<(f64, FiveBarPose)> {
+    let theta4 = find_theta4_at_zero_a(sample)? + offset_deg * PI / 180.0;
+    let head = sample.lizard.end(End::Head);
+    let pose = head.forward(sample.solution.pose.theta1, theta4 * 180.0 / PI);
+    Some((theta4, pose.ok()?))
 }
 
 /// Computes the error of the printed theta3 close to the theta4 at which A is 0; 0 if there is no such theta4.
 fn error_near_zero_a(sample: &Sample) -> Option<f64> {
-    let Some(theta4_at_zero_a) = find_theta4_at_zero_a(sample) else {
-        return Some(0.0);
-    };
-    let theta4 = theta4_at_zero_a + (sample.random[0] - 0.5) * 2e-9 * PI / 180.0;
-    let Ok(exact_pose) = sample
-        .lizard
-        .end(End::Head)
-        .forward(sample.solution.pose.theta1, theta4 * 180.0 / PI)
-    else {
+    let offset_deg = (sample.random[0] - 0.5) * 2e-9;
+    let Some((theta4, exact_pose)) = solve_near_zero_a(sample, offset_deg) else {
         return Some(0.0);
     };
     let (a, b, c) = abc_coefficients(sample, theta4);
-    let printed_theta3 = 2.0 * half_angle_tangent(a, b, c, -1.0)?.atan();
-    Some(angle_error_deg(
-        printed_theta3,
-        exact_pose.theta_right_coupler() * PI / 180.0,
-    ))
+    let printed_theta3 = solve_half_angle(a, b, c, -1.0)?;
+    let exact_theta3 = exact_pose.theta_right_coupler() * PI / 180.0;
+    Some(angle_error_deg(printed_theta3, exact_theta3))
 }

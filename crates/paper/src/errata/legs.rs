@@ -3,7 +3,7 @@
 use lizard_kinematics::{Leg, Vector};
 
 use super::equation::Equation;
-use super::sample::{Sample, angle_error_deg, half_angle_tangent, polar};
+use super::sample::{Sample, angle_error_deg, polar, solve_half_angle};
 
 /// The equations in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
@@ -39,18 +39,10 @@ pub const EQUATIONS: &[Equation] = &[
         "4.2 H, legs 2 to 4",
         "H = -2 sin θ1",
         "deg in θ_lg13 with the corrected root",
-        |sample| {
-            let h = Some(-2.0 * sample.theta()[1].sin());
-            let front = follower_error(sample, &[4], -1.0, h);
-            let hind = follower_error(sample, HIND_LEGS, 1.0, h);
-            Some(front?.max(hind?))
-        },
+        |sample| error_of_legs_2_to_4(sample, Some(-2.0 * sample.theta()[1].sin())),
     )
     .with_correction("H = -2 sin θ_lgi", |sample| {
-        Some(
-            follower_error(sample, &[4], -1.0, None)?
-                .max(follower_error(sample, HIND_LEGS, 1.0, None)?),
-        )
+        error_of_legs_2_to_4(sample, None)
     }),
     Equation::new(
         "4.2 θ_lg12, front legs",
@@ -111,11 +103,15 @@ fn follower_error(
         let g = cos_theta - ground / crank - ground * cos_theta / follower + constant_term;
         let h = h_override.unwrap_or(-2.0 * theta.sin());
         let i = ground / crank - (ground / follower + 1.0) * cos_theta + constant_term;
-        Some(angle_error_deg(
-            2.0 * half_angle_tangent(g, h, i, root_sign)?.atan(),
-            theta,
-        ))
+        let printed_angle = solve_half_angle(g, h, i, root_sign)?;
+        Some(angle_error_deg(printed_angle, theta))
     })
+}
+
+/// Computes the largest error of the follower's angle of legs 2 to 4, with the corrected root.
+fn error_of_legs_2_to_4(sample: &Sample, h_override: Option<f64>) -> Option<f64> {
+    let front = follower_error(sample, &[4], -1.0, h_override)?;
+    Some(front.max(follower_error(sample, HIND_LEGS, 1.0, h_override)?))
 }
 
 /// Computes the error of the coupler's angle from J, K and L. In a parallelogram, the true angle is 0. `term_sign` is
@@ -136,9 +132,6 @@ fn coupler_error(sample: &Sample, legs: &[usize], term_sign: f64, root_sign: f64
             cos_theta - ground / crank + term_sign * ground * cos_theta / coupler + constant_term;
         let k = -2.0 * theta.sin();
         let l = ground / crank + (term_sign * ground / coupler - 1.0) * cos_theta + constant_term;
-        Some(angle_error_deg(
-            2.0 * half_angle_tangent(j, k, l, root_sign)?.atan(),
-            0.0,
-        ))
+        Some(angle_error_deg(solve_half_angle(j, k, l, root_sign)?, 0.0))
     })
 }

@@ -13,7 +13,7 @@ mod table;
 
 use rayon::prelude::*;
 
-use equation::{Equation, FormErrors};
+use equation::{Equation, ErrorFn, FormErrors};
 use sample::Sample;
 
 pub use equation_result::EquationResult;
@@ -24,16 +24,14 @@ pub const SAMPLE_COUNT: u32 = 20_000;
 
 /// The paper's equations, in the order of the paper.
 fn all_equations() -> Vec<&'static Equation> {
-    [
+    let sections = [
         synthesis::EQUATIONS,
         inverse::EQUATIONS,
         forward::EQUATIONS,
         legs::EQUATIONS,
         singular::EQUATIONS,
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    ];
+    sections.into_iter().flatten().collect()
 }
 
 /// The number of equations that [`evaluate_equations`] evaluates.
@@ -48,11 +46,11 @@ pub fn evaluate_equations(
     report_progress: &(dyn Fn() + Sync),
 ) -> Vec<EquationResult> {
     let samples: Vec<Sample> = Sample::generate(sample_count as usize).collect();
+    let evaluate = |error_fn: ErrorFn| FormErrors::evaluate(error_fn, &samples);
     let evaluate_equation = |equation: &Equation| {
-        let printed = FormErrors::evaluate(equation.printed_error, &samples);
-        let corrected = equation
-            .correction
-            .map(|(_, error_fn)| FormErrors::evaluate(error_fn, &samples));
+        let printed = evaluate(equation.printed_error);
+        let corrected = equation.correction.map(|(_, error_fn)| evaluate(error_fn));
+        let clockwise = equation.clockwise_error.map(evaluate);
         report_progress();
         EquationResult {
             location: equation.location,
@@ -63,17 +61,13 @@ pub fn evaluate_equations(
             unit: equation.unit,
             special_case: equation
                 .special_case
-                .map(|(name, error_fn)| (FormErrors::evaluate(error_fn, &samples).max, name)),
-            holds_clockwise: equation
-                .clockwise_error
-                .map(|error_fn| FormErrors::evaluate(error_fn, &samples).holds()),
+                .map(|(name, error_fn)| (evaluate(error_fn).max, name)),
+            holds_clockwise: clockwise.map(|errors| errors.holds()),
             corrected_form: equation.correction.map(|(form, _)| form),
             corrected_max_error: corrected.map(|errors| errors.max),
             corrected_holds: corrected.map(|errors| errors.holds()),
         }
     };
-    all_equations()
-        .into_par_iter()
-        .map(evaluate_equation)
-        .collect()
+    let equations = all_equations().into_par_iter();
+    equations.map(evaluate_equation).collect()
 }

@@ -102,11 +102,12 @@ pub fn angle_error_deg(a: f64, b: f64) -> f64 {
     lizard_kinematics::wrap((a - b) * 180.0 / PI).abs()
 }
 
-/// Computes the tangent of half an angle with the quadratic formula. `root_sign` selects the root. `None` if the roots
-/// are not real. A radicand of zero may be slightly negative from rounding.
-pub fn half_angle_tangent(a: f64, b: f64, c: f64, root_sign: f64) -> Option<f64> {
+/// Computes an angle (rad) from the tangent of its half, with the quadratic formula. `root_sign` selects the root.
+/// `None` if the roots are not real. A radicand of zero may be slightly negative from rounding.
+pub fn solve_half_angle(a: f64, b: f64, c: f64, root_sign: f64) -> Option<f64> {
     let radicand = b * b - 4.0 * a * c;
-    (radicand > -1e-12).then(|| (-b + root_sign * radicand.max(0.0).sqrt()) / (2.0 * a))
+    let tangent = (-b + root_sign * radicand.max(0.0).sqrt()) / (2.0 * a);
+    (radicand > -1e-12).then(|| 2.0 * tangent.atan())
 }
 
 /// A SplitMix64 generator, whose numbers, and therefore the table of errata, are the same on every run and host.

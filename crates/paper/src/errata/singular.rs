@@ -93,22 +93,11 @@ pub const EQUATIONS: &[Equation] = &[
         "5.1 singular head",
         "sin(θ2 + θ3) = 0",
         "in the sine",
-        |sample| {
-            let theta = sample.theta();
-            Some(((theta[2] + theta[3]).sin().abs() - sample.solution.margins.type2[0]).abs())
-        },
+        |sample| margin_error(sample, 0, |theta| theta[2] + theta[3]),
     )
-    .with_clockwise_error(|sample| {
-        let theta = sample.theta();
-        Some(((theta[2] + PI - theta[3]).sin().abs() - sample.solution.margins.type2[0]).abs())
-    })
+    .with_clockwise_error(|sample| margin_error(sample, 0, |theta| theta[2] + PI - theta[3]))
     .with_correction("sin(θ3 - θ2) = 0", |sample| {
-        let theta = sample.theta();
-        // l2 l3 = 2500 mm^2.
-        Some(
-            ((theta[3] - theta[2]).sin() - determinant_sine(&passive_block(sample, 0), 2500.0))
-                .abs(),
-        )
+        determinant_error(sample, 0, |theta| theta[3] - theta[2])
     })
     .with_special_case(
         "the neutral pose, which the equation flags as singular",
@@ -121,22 +110,11 @@ pub const EQUATIONS: &[Equation] = &[
         "5.1 singular tail",
         "sin(θ6 + θ7) = 0",
         "in the sine",
-        |sample| {
-            let theta = sample.theta();
-            Some(((theta[6] + theta[7]).sin().abs() - sample.solution.margins.type2[1]).abs())
-        },
+        |sample| margin_error(sample, 1, |theta| theta[6] + theta[7]),
     )
-    .with_clockwise_error(|sample| {
-        let theta = sample.theta();
-        Some(((theta[6] + PI - theta[7]).sin().abs() - sample.solution.margins.type2[1]).abs())
-    })
+    .with_clockwise_error(|sample| margin_error(sample, 1, |theta| theta[6] + PI - theta[7]))
     .with_correction("sin(θ7 - θ6) = 0", |sample| {
-        let theta = sample.theta();
-        // l7 l8 = 2500 mm^2.
-        Some(
-            ((theta[7] - theta[6]).sin() - determinant_sine(&passive_block(sample, 2), 2500.0))
-                .abs(),
-        )
+        determinant_error(sample, 2, |theta| theta[7] - theta[6])
     }),
     Equation::new(
         "5.1 singular left side",
@@ -181,12 +159,8 @@ pub const EQUATIONS: &[Equation] = &[
         |sample| {
             let (leg, theta) = (&sample.lizard.leg, sample.theta()[1]);
             // The columns for θ_lg12 = 0 and θ_lg13 = θ_lg1.
-            let columns = [
-                0.0,
-                leg.follower * theta.sin(),
-                leg.coupler,
-                -leg.follower * theta.cos(),
-            ];
+            let (sin, cos) = theta.sin_cos();
+            let columns = [0.0, leg.follower * sin, leg.coupler, -leg.follower * cos];
             let true_sine = (0.0 - theta).sin();
             Some((-determinant_sine(&columns, leg.coupler * leg.follower) - true_sine).abs())
         },
@@ -196,19 +170,15 @@ pub const EQUATIONS: &[Equation] = &[
 /// Computes theta1 in the neutral pose, where every slider has its nominal length, degrees.
 fn neutral_theta1(sample: &Sample) -> f64 {
     let links = &sample.lizard.links;
-    ((links.l12 + links.l13 - links.l10) / (links.l11 + links.l14))
-        .acos()
-        .to_degrees()
+    let cos = (links.l12 + links.l13 - links.l10) / (links.l11 + links.l14);
+    cos.acos().to_degrees()
 }
 
 /// Computes the head's type-2 margin and theta2 + theta3 (radians), both in the neutral pose.
 fn neutral_margin_and_sum(sample: &Sample) -> Option<(f64, f64)> {
     let theta1 = neutral_theta1(sample);
-    let pose = sample
-        .lizard
-        .end(End::Head)
-        .forward(theta1, 180.0 - theta1)
-        .ok()?;
+    let head = sample.lizard.end(End::Head);
+    let pose = head.forward(theta1, 180.0 - theta1).ok()?;
     let sum = pose.theta_left_coupler() + pose.theta_right_coupler();
     Some((pose.type2, sum.to_radians()))
 }
@@ -224,38 +194,26 @@ struct Block {
     length_indices: [usize; 2],
 }
 
-const K_HEAD: Block = Block {
-    true_block: |sample| active_block(sample, 0, 0, 1),
-    angle_indices: [1, 4],
-    length_indices: [1, 4],
-};
-const K_TAIL: Block = Block {
-    true_block: |sample| active_block(sample, 2, 3, 2),
-    angle_indices: [5, 8],
-    length_indices: [6, 9],
-};
-const K_STAR_HEAD: Block = Block {
-    true_block: |sample| passive_block(sample, 0),
-    angle_indices: [2, 3],
-    length_indices: [2, 3],
-};
-const K_STAR_TAIL: Block = Block {
-    true_block: |sample| passive_block(sample, 2),
-    angle_indices: [6, 7],
-    length_indices: [7, 8],
-};
-const K_LEFT: Block = Block {
-    true_block: |sample| active_block(sample, 4, 3, 0).map(|v| -v),
-    angle_indices: [5, 1],
-    length_indices: [11, 14],
-};
-const K_RIGHT: Block = Block {
-    true_block: |sample| active_block(sample, 6, 2, 1).map(|v| -v),
-    angle_indices: [8, 4],
-    length_indices: [16, 19],
-};
+const K_HEAD: Block = Block::new(|sample| active_block(sample, 0, [0, 1]), [1, 4], [1, 4]);
+const K_TAIL: Block = Block::new(|sample| active_block(sample, 2, [3, 2]), [5, 8], [6, 9]);
+const K_STAR_HEAD: Block = Block::new(|sample| passive_block(sample, 0), [2, 3], [2, 3]);
+const K_STAR_TAIL: Block = Block::new(|sample| passive_block(sample, 2), [6, 7], [7, 8]);
+const K_LEFT: Block = Block::new(|sample| side_block(sample, 4, [3, 0]), [5, 1], [11, 14]);
+const K_RIGHT: Block = Block::new(|sample| side_block(sample, 6, [2, 1]), [8, 4], [16, 19]);
 
 impl Block {
+    const fn new(
+        true_block: fn(&Sample) -> [f64; 4],
+        angle_indices: [usize; 2],
+        length_indices: [usize; 2],
+    ) -> Self {
+        Self {
+            true_block,
+            angle_indices,
+            length_indices,
+        }
+    }
+
     /// Computes the largest error of the block with this sign before the right bar's sine: -1.0 as printed, 1.0 as
     /// corrected.
     fn error(&self, sample: &Sample, sign: f64) -> Option<f64> {
@@ -296,37 +254,42 @@ impl Block {
 
 /// Computes the largest difference between entries of two 2x2 blocks, given by rows.
 fn max_difference(true_block: &[f64; 4], block: &[f64; 4]) -> f64 {
-    true_block
-        .iter()
-        .zip(block)
-        .fold(0.0, |max, (a, b)| max.max((a - b).abs()))
+    let entries = true_block.iter().zip(block);
+    entries.fold(0.0, |max, (a, b)| max.max((a - b).abs()))
 }
 
 /// Returns a block of the true K: rows `row` and `row + 1`, and the columns of two servos.
-fn active_block(
-    sample: &Sample,
-    row: usize,
-    first_column: usize,
-    second_column: usize,
-) -> [f64; 4] {
+fn active_block(sample: &Sample, row: usize, [first, second]: [usize; 2]) -> [f64; 4] {
     let k = sample.solution.active_matrix();
-    [
-        k[row][first_column],
-        k[row][second_column],
-        k[row + 1][first_column],
-        k[row + 1][second_column],
-    ]
+    let (upper, lower) = (k[row], k[row + 1]);
+    [upper[first], upper[second], lower[first], lower[second]]
+}
+
+/// Returns the block of the true K for a slider's side with the signs of the paper's form.
+fn side_block(sample: &Sample, row: usize, columns: [usize; 2]) -> [f64; 4] {
+    active_block(sample, row, columns).map(|entry| -entry)
 }
 
 /// Returns the 2x2 block on the diagonal of the true K* whose first column is `column`.
 fn passive_block(sample: &Sample, column: usize) -> [f64; 4] {
     let k = sample.solution.passive_matrix();
-    [
-        k[column][column],
-        k[column][column + 1],
-        k[column + 1][column],
-        k[column + 1][column + 1],
-    ]
+    let (upper, lower, next) = (k[column], k[column + 1], column + 1);
+    [upper[column], upper[next], lower[column], lower[next]]
+}
+
+/// Computes the difference between the sine of `angle` (rad) and the type-2 margin of an end: 0 for the head, 1 for the
+/// tail.
+fn margin_error(sample: &Sample, end: usize, angle: fn([f64; 17]) -> f64) -> Option<f64> {
+    let sine = angle(sample.theta()).sin();
+    Some((sine.abs() - sample.solution.margins.type2[end]).abs())
+}
+
+/// Computes the difference between the sine of `angle` (rad) and the sine from the determinant of the couplers' block
+/// that begins at `column`.
+fn determinant_error(sample: &Sample, column: usize, angle: fn([f64; 17]) -> f64) -> Option<f64> {
+    // l2 l3 = l7 l8 = 2500 mm^2.
+    let true_sine = determinant_sine(&passive_block(sample, column), 2500.0);
+    Some((angle(sample.theta()).sin() - true_sine).abs())
 }
 
 /// Returns sin(right angle - left angle) of a coupler block, from the block's determinant. `length_product` is the

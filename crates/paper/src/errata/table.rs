@@ -14,11 +14,8 @@ pub fn format_text(results: &[EquationResult], sample_count: u32) -> String {
     );
     for result in results {
         let mark = if result.holds { "holds" } else { "FAILS" };
-        let _ = write!(
-            text,
-            "\n{mark}  {}\n       printed    {}\n",
-            result.location, result.printed_form
-        );
+        let (location, printed) = (result.location, result.printed_form);
+        text += &format!("\n{mark}  {location}\n       printed    {printed}\n");
         if !result.holds || result.special_case.is_some() {
             let _ = writeln!(text, "       worst      {}", result.format_error());
         }
@@ -69,14 +66,9 @@ at the same poses and holds.
             (Some(form), _) => format!("{} (fails too)", escape_cell(form)),
             _ => "-".to_string(),
         };
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} | {} | {corrected} |",
-            escape_cell(result.location),
-            escape_cell(result.printed_form),
-            result.verdict(),
-            escape_cell(&result.format_error())
-        );
+        let [location, printed] = [result.location, result.printed_form].map(escape_cell);
+        let (verdict, error) = (result.verdict(), escape_cell(&result.format_error()));
+        text += &format!("| {location} | {printed} | {verdict} | {error} | {corrected} |\n");
     }
     text
 }

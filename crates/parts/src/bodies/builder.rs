@@ -120,10 +120,8 @@ impl<'a> AssemblyBuilder<'a> {
 
     /// Makes a hole in which a screw can turn.
     pub fn clearance_hole(&self, centre: Vector) -> Shape {
-        Shape::disc(
-            centre,
-            self.parts.screw.diameter / 2.0 + self.parts.fit / 2.0,
-        )
+        let radius = self.parts.screw.diameter / 2.0 + self.parts.fit / 2.0;
+        Shape::disc(centre, radius)
     }
 
     /// Makes a hole into which a screw cuts its thread.
@@ -186,11 +184,8 @@ impl<'a> AssemblyBuilder<'a> {
         allowed_contacts: &[&str],
     ) {
         let hole = self.clearance_hole(centre);
-        let ring = Prism::new(
-            [Shape::disc(centre, hole.radius + self.parts.wall)],
-            [hole],
-            z,
-        );
+        let disc = Shape::disc(centre, hole.radius + self.parts.wall);
+        let ring = Prism::new([disc], [hole], z);
         self.add_printed(name, mount, [ring]);
         self.allow_contact(allowed_contacts);
     }

@@ -80,20 +80,15 @@ fn seat_outline(builder: &AssemblyBuilder, servo: usize, margin: f64) -> Shape {
     Shape::rectangle(case_middle(builder, servo), size, 1.0)
 }
 
-/// Makes the cut-outs for a servo in the plate and in its seat: first for case and lead, then the holes for the screws.
-fn make_servo_cutouts(builder: &AssemblyBuilder, servo: usize) -> Vec<Shape> {
+/// Makes the cut-outs for a servo in the plate and in its seat: for case and lead, and the holes for the screws.
+fn make_servo_cutouts(builder: &AssemblyBuilder, servo: usize) -> [[Shape; 2]; 2] {
     let (parts, outward) = (builder.parts, End::from_servo(servo).sign());
-    let notch = leads::make_lead_notch(
-        &parts.servo,
-        case_middle(builder, servo),
-        parts.fit,
-        outward,
-    );
-    let mut shapes = vec![case_outline(builder, servo, parts.fit), notch];
-    shapes.extend(
-        flange_hole_positions(builder, servo).map(|position| Shape::disc(position, PILOT_RADIUS)),
-    );
-    shapes
+    let middle = case_middle(builder, servo);
+    let notch = leads::make_lead_notch(&parts.servo, middle, parts.fit, outward);
+    let openings = [case_outline(builder, servo, parts.fit), notch];
+    let hole_positions = flange_hole_positions(builder, servo);
+    let holes = hole_positions.map(|position| Shape::disc(position, PILOT_RADIUS));
+    [openings, holes]
 }
 
 fn standoff_positions() -> [Vector; 4] {
@@ -106,19 +101,12 @@ fn add_plate(builder: &mut AssemblyBuilder) {
     let plate = layout.plate;
     let seats = [0, 1, 2, 3].map(|servo| seat_outline(builder, servo, 0.0));
     // First all openings, then all holes: the files list the shapes in this order, and must not change.
-    let servo_cutouts: Vec<_> = (0..4)
-        .map(|servo| make_servo_cutouts(builder, servo))
-        .collect();
-    let openings = servo_cutouts.iter().flat_map(|shapes| &shapes[..2]);
-    let all_cutouts: Vec<_> = openings
-        .chain(servo_cutouts.iter().flat_map(|shapes| &shapes[2..]))
-        .cloned()
-        .collect();
-    let base = Shape::rectangle(
-        Vector::default(),
-        plate.half_size * 2.0,
-        plate.corner_radius,
-    );
+    let servo_cutouts = [0, 1, 2, 3].map(|servo| make_servo_cutouts(builder, servo));
+    let openings = servo_cutouts.iter().flat_map(|[openings, _]| openings);
+    let screw_holes = servo_cutouts.iter().flat_map(|[_, holes]| holes);
+    let all_cutouts: Vec<_> = openings.chain(screw_holes).cloned().collect();
+    let size = plate.half_size * 2.0;
+    let base = Shape::rectangle(Vector::default(), size, plate.corner_radius);
     let mut filled = vec![base];
     let mut through_holes = all_cutouts.clone();
     // The half widths of bars that start at the same point differ by 0.01 mm, so that no two bar ends coincide.
@@ -137,14 +125,11 @@ fn add_plate(builder: &mut AssemblyBuilder) {
     through_holes.extend(leads::make_wire_holes());
     through_holes.extend(fittings::make_plate_slots(builder));
     let [low, high] = stack.plate;
+    let mark_bottom = high - mark::MARK_DEPTH;
     let engraved_cuts = [&through_holes[..], &make_number_strokes(builder)].concat();
     let prisms = [
-        Prism::new(
-            filled.clone(),
-            through_holes,
-            [low, high - mark::MARK_DEPTH],
-        ),
-        Prism::new(filled, engraved_cuts, [high - mark::MARK_DEPTH, high]),
+        Prism::new(filled.clone(), through_holes, [low, mark_bottom]),
+        Prism::new(filled, engraved_cuts, [mark_bottom, high]),
         Prism::new(seats, all_cutouts, stack.seat),
     ];
     builder.add_printed("plate", Mount::Chassis, prisms);
@@ -165,21 +150,15 @@ pub fn make_corner_prisms(builder: &AssemblyBuilder, servo: usize) -> Vec<Prism>
         filled.push(Shape::bar(from, to, plate.arm_half_width - 0.01));
         filled.push(Shape::bar(to, middle, plate.arm_half_width - 0.02));
     }
-    let servo_cutouts = make_servo_cutouts(builder, servo);
+    let servo_cutouts = make_servo_cutouts(builder, servo).concat();
     let pivots =
         [leg.crank_pivot, leg.follower_pivot].map(|position| builder.clearance_hole(position));
-    let raised_seat = stack.seat.map(|z| z + parts.plate);
+    let plate_cutouts = [&servo_cutouts[..], &pivots].concat();
+    let seat = seat_outline(builder, servo, 0.0);
+    let raised_z = stack.seat.map(|z| z + parts.plate);
     vec![
-        Prism::new(
-            filled,
-            [&servo_cutouts[..], &pivots].concat(),
-            [0.0, parts.plate],
-        ),
-        Prism::new(
-            [seat_outline(builder, servo, 0.0)],
-            servo_cutouts,
-            raised_seat,
-        ),
+        Prism::new(filled, plate_cutouts, [0.0, parts.plate]),
+        Prism::new([seat], servo_cutouts, raised_z),
     ]
 }
 
@@ -207,11 +186,8 @@ fn add_servo(builder: &mut AssemblyBuilder, servo: usize) {
         Prism::solid(filled, [bottom + low, bottom + high])
     };
     let case = case_outline(builder, servo, 0.0);
-    let flange = Shape::rectangle(
-        case_middle(builder, servo),
-        vector(body.width, body.flange),
-        0.0,
-    );
+    let flange_size = vector(body.width, body.flange);
+    let flange = Shape::rectangle(case_middle(builder, servo), flange_size, 0.0);
     let gears = vec![
         Shape::disc(shaft, body.width / 2.0 - 0.05),
         Shape::bar(shaft, shaft + inward_direction(servo) * body.shaft, 3.0),
@@ -227,15 +203,10 @@ fn add_servo(builder: &mut AssemblyBuilder, servo: usize) {
     ];
     builder.add_body(format!("servo {name}"), Kind::Servo, Mount::Chassis, prisms);
     builder.allow_contact(&[format!("horn {name}")]);
-    for (index, position) in flange_hole_positions(builder, servo)
-        .into_iter()
-        .enumerate()
-    {
-        let head = Prism::solid(
-            [Shape::disc(position, 2.2)],
-            [bottom + flange_top, bottom + flange_top + 1.6],
-        );
-        let screw = format!("servo screw {name} {}", index + 1);
+    for (number, position) in (1..).zip(flange_hole_positions(builder, servo)) {
+        let z = [bottom + flange_top, bottom + flange_top + 1.6];
+        let head = Prism::solid([Shape::disc(position, 2.2)], z);
+        let screw = format!("servo screw {name} {number}");
         builder.add_body(screw, Kind::ServoScrew, Mount::Chassis, [head]);
     }
 }
@@ -253,12 +224,9 @@ fn add_deck(builder: &mut AssemblyBuilder) {
     let bar_between = |(ax, ay): (f64, f64), (bx, by): (f64, f64)| {
         Shape::bar(vector(ax, ay), vector(bx, by), 5.0)
     };
+    let size = vector(2.0 * x + 10.5, 2.0 * y + 14.0);
     let mut filled = vec![
-        Shape::rectangle(
-            Vector::default(),
-            vector(2.0 * x + 10.5, 2.0 * y + 14.0),
-            5.0,
-        ),
+        Shape::rectangle(Vector::default(), size, 5.0),
         bar_between(UNO_HOLES[0], UNO_HOLES[1]),
         bar_between(UNO_HOLES[2], UNO_HOLES[3]),
     ];
@@ -268,14 +236,8 @@ fn add_deck(builder: &mut AssemblyBuilder) {
     let pilot_holes = UNO_HOLES.map(|(x, y)| builder.pilot_hole(vector(x, y)));
     // The window saves weight; the cable ties of the fittings under the deck pass through it.
     let window = Shape::rectangle(vector(0.0, 4.0), vector(12.0, 36.0), 3.0);
-    let holes = [
-        &screws[..],
-        &pilot_holes,
-        &leads::make_wire_holes(),
-        &[window],
-        &openings,
-    ]
-    .concat();
+    let wire_holes = leads::make_wire_holes();
+    let holes = [&screws[..], &pilot_holes, &wire_holes, &[window], &openings].concat();
     let bosses = UNO_HOLES.map(|(x, y)| Shape::disc(vector(x, y), 4.0));
     let prisms = [
         Prism::new(filled, holes, stack.deck),

@@ -71,11 +71,8 @@ pub fn add(builder: &mut AssemblyBuilder, end: End) -> EndDecoration {
         End::Tail => {
             let lower_part = make_tail_part(builder, left, &neutral);
             add_under_lower_coupler(builder, left, lower_part);
-            (
-                THICKNESS,
-                format!("tail {}", servo_and_leg_names(right).0),
-                make_tail_part(builder, right, &neutral),
-            )
+            let name = format!("tail {}", servo_and_leg_names(right).0);
+            (THICKNESS, name, make_tail_part(builder, right, &neutral))
         }
     };
     add_on_upper_coupler(builder, right, &name, upper_part);
@@ -95,13 +92,10 @@ fn point_and_direction(builder: &AssemblyBuilder, servo: usize, neutral: &Soluti
     let five_bar = neutral.end(end);
     let coupler_direction = end.mirror([five_bar.left_coupler, five_bar.right_coupler][index]);
     let chassis_direction = Vector::new(0.0, end.sign());
-    [
-        Vector::new(coupler_length(builder.robot, servo), 0.0),
-        Vector::new(
-            chassis_direction.dot(coupler_direction),
-            coupler_direction.cross(chassis_direction),
-        ),
-    ]
+    let x = chassis_direction.dot(coupler_direction);
+    let y = coupler_direction.cross(chassis_direction);
+    let end_point = Vector::new(coupler_length(builder.robot, servo), 0.0);
+    [end_point, Vector::new(x, y)]
 }
 
 /// Rotates a direction counter-clockwise by `angle_deg`.
@@ -150,31 +144,22 @@ fn make_head_part(builder: &AssemblyBuilder, servo: usize, neutral: &Solution) -
         (neck, -0.4 * half_width),
     ];
     let corners = sides.into_iter().chain([snout]);
-    let corners: Vec<_> = corners
-        .map(|(forward, left)| point_at(forward, left))
-        .collect();
+    let corners = corners.map(|(forward, left)| point_at(forward, left));
+    let corners: Vec<_> = corners.collect();
     let face = Shape::hull(&corners, CORNER_RADIUS);
     let eyes = [half_width, -half_width]
         .map(|left| Shape::disc(point_at(0.42 * length, left), EYE_RADIUS));
     let mut cut = vec![builder.clearance_hole(end_point)];
     cut.extend(eyes);
-    let filled = vec![
-        Shape::bar(
-            second_screw_position(builder, servo),
-            end_point,
-            builder.half_bar_width(),
-        ),
-        face,
-    ];
-    (filled, cut)
+    let screw_position = second_screw_position(builder, servo);
+    let bar = Shape::bar(screw_position, end_point, builder.half_bar_width());
+    (vec![bar, face], cut)
 }
 
 /// Position of the second screw in a coupler's frame, mm.
 fn second_screw_position(builder: &AssemblyBuilder, servo: usize) -> Vector {
-    Vector::new(
-        coupler_length(builder.robot, servo) - SECOND_SCREW_DISTANCE,
-        0.0,
-    )
+    let x = coupler_length(builder.robot, servo) - SECOND_SCREW_DISTANCE;
+    Vector::new(x, 0.0)
 }
 
 fn add_on_upper_coupler(builder: &mut AssemblyBuilder, servo: usize, name: &str, part: FlatPart) {

@@ -7,18 +7,14 @@ use crate::bodies::decoration;
 use crate::bodies::names::{coupler_name, servo_and_leg_names};
 use crate::layers::body::{Mount, Prism, coupler_length};
 use crate::layers::shape::Shape;
-use crate::layers::stack::{HEAD_CLEARANCE, Span, Stack};
+use crate::layers::stack::{HEAD_CLEARANCE, Span};
 
 /// Adds the couplers of both ends, the screws and spacers of their joints, and the decorative parts.
 pub fn add(builder: &mut AssemblyBuilder) {
     for end in End::ALL {
         let [left, right] = end.servos();
-        let Stack {
-            link,
-            lower_coupler: lower,
-            upper_coupler: upper,
-            ..
-        } = builder.stack;
+        let stack = builder.stack;
+        let (link, lower, upper) = (stack.link, stack.lower_coupler, stack.upper_coupler);
         add_coupler(builder, left, lower);
         add_coupler(builder, right, upper);
         // A spacer fills the gap between the crank and the right coupler, which lies higher.
@@ -44,10 +40,8 @@ pub fn add(builder: &mut AssemblyBuilder) {
             allowed_contacts: &allowed_contacts,
             ..Screw::new(end.name(), mount, end_point, seat_z, ScrewDirection::Up)
         };
-        builder.add_bolt(
-            &screw,
-            upper[1] + decoration.upper_thickness + HEAD_CLEARANCE,
-        );
+        let nut_z = upper[1] + decoration.upper_thickness + HEAD_CLEARANCE;
+        builder.add_bolt(&screw, nut_z);
     }
 }
 

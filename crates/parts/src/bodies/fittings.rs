@@ -100,12 +100,8 @@ pub fn make_wing_shapes(board_holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
     for x in WING_TIE_X {
         cut.push(make_slot(-x, signal_strip_y() - 11.0, TIE_SLOT));
     }
-    cut.push(make_slot(WING_TIE_X[0], fuse_y(), TIE_SLOT));
-    cut.push(make_slot(
-        WING_FITTING_X + fitting_size(Fitting::Fuse, 0) + 2.4,
-        fuse_y(),
-        TIE_SLOT,
-    ));
+    let fuse_edge = WING_FITTING_X + fitting_size(Fitting::Fuse, 0);
+    cut.extend([WING_TIE_X[0], fuse_edge + 2.4].map(|x| make_slot(x, fuse_y(), TIE_SLOT)));
     let [tie_length, tie_width] = TIE_SLOT;
     cut.push(make_slot(38.5, switch_tie_y(), [tie_width, tie_length]));
     [filled, cut]
@@ -183,44 +179,22 @@ fn add_under_deck_and_plate(builder: &mut AssemblyBuilder) {
     let deck_bottom = stack.deck[0];
     let half_free_length = STANDOFF_DISTANCES[1] - 3.4;
     let half_length = |fitting: Fitting| fitting_size(fitting, 1) / 2.0;
-    let strip_distance = strip_x(builder);
+    let alarm_y = half_length(Fitting::Alarm) - half_free_length;
+    let converter_y = half_free_length - half_length(Fitting::Converter);
     // The supply strip's front end and the capacitor's rear end are level with the ground strip's ends.
     let strip_reach = half_length(Fitting::GroundStrip);
     let supply_y = strip_reach - half_length(Fitting::SupplyStrip);
     let capacitor_y = half_length(Fitting::Capacitor) - strip_reach;
+    let right_x = strip_x(builder);
     for (fitting, x, y, ceiling) in [
-        (
-            Fitting::Alarm,
-            0.0,
-            half_length(Fitting::Alarm) - half_free_length,
-            deck_bottom,
-        ),
-        (
-            Fitting::Converter,
-            0.0,
-            half_free_length - half_length(Fitting::Converter),
-            deck_bottom,
-        ),
-        (Fitting::GroundStrip, -strip_distance, 0.0, lower_ceiling),
-        (
-            Fitting::SupplyStrip,
-            strip_distance,
-            supply_y,
-            lower_ceiling,
-        ),
-        (
-            Fitting::Capacitor,
-            strip_distance,
-            capacitor_y,
-            lower_ceiling,
-        ),
+        (Fitting::Alarm, 0.0, alarm_y, deck_bottom),
+        (Fitting::Converter, 0.0, converter_y, deck_bottom),
+        (Fitting::GroundStrip, -right_x, 0.0, lower_ceiling),
+        (Fitting::SupplyStrip, right_x, supply_y, lower_ceiling),
+        (Fitting::Capacitor, right_x, capacitor_y, lower_ceiling),
     ] {
-        add_block(
-            builder,
-            fitting,
-            vector(x, y),
-            ceiling - fitting_size(fitting, 2),
-        );
+        let low = ceiling - fitting_size(fitting, 2);
+        add_block(builder, fitting, vector(x, y), low);
     }
 }
 
@@ -250,10 +224,8 @@ fn add_on_deck(builder: &mut AssemblyBuilder) {
     let row_pitch = fitting_size(Fitting::Resistor, 0) + 0.4;
     let rows_and_pitches = [(1.0, -1.0), (0.0, -0.5), (0.0, 0.5), (1.0, 1.0)];
     for (number, (row, pitches)) in (1..).zip(rows_and_pitches) {
-        let middle = vector(
-            resistor_x - row * row_pitch,
-            signal_strip_y() + pitches * STRIP_PITCH,
-        );
+        let y = signal_strip_y() + pitches * STRIP_PITCH;
+        let middle = vector(resistor_x - row * row_pitch, y);
         let (size, name) = (Fitting::Resistor.spec().size, format!("resistor {number}"));
         add_sized_block(builder, Fitting::Resistor, name, middle, top + 4.0, size);
     }
@@ -296,11 +268,10 @@ fn add_strap(builder: &mut AssemblyBuilder) {
         Some(_) => half_battery_x,
         None => half_battery_x.max(builder.layout.plate.half_size.x),
     };
-    let sides = [
-        bar_between(-half_width - thickness, -half_width),
-        bar_between(half_width, half_width + thickness),
-    ];
-    let full_bar = bar_between(-half_width - thickness, half_width + thickness);
+    let outer = half_width + thickness;
+    let [left, right] = [(-outer, -half_width), (half_width, outer)];
+    let sides = [left, right].map(|(from, to)| bar_between(from, to));
+    let full_bar = bar_between(-outer, outer);
     let [strap_bottom, battery_top] = [stack.plate[0], battery_z];
     let prisms = [
         Prism::solid([full_bar.clone()], [strap_bottom - thickness, strap_bottom]),

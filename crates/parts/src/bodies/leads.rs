@@ -75,13 +75,9 @@ pub fn add(builder: &mut AssemblyBuilder) {
             Shape::bar(inner_corner, riser_position, radius),
         ];
         let z = [low, low + LEAD_SECTION[0]];
-        let prisms = vec![
-            Prism::solid(lead_path, z),
-            Prism::solid(
-                [Shape::disc(riser_position, radius)],
-                [z[1], builder.stack.deck[1]],
-            ),
-        ];
+        let riser = Shape::disc(riser_position, radius);
+        let riser = Prism::solid([riser], [z[1], builder.stack.deck[1]]);
+        let prisms = [Prism::solid(lead_path, z), riser];
         builder.add_body(format!("lead {name}"), Kind::Lead, Mount::Chassis, prisms);
     }
 }

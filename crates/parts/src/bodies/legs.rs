@@ -5,7 +5,6 @@
 //! bends the leaf and turns the foot, so a column reaches down from the coupler to a low leaf.
 
 use lizard_kinematics::Vector;
-use lizard_robot::LegPlan;
 
 use crate::bodies::builder::{AssemblyBuilder, Screw, ScrewDirection};
 use crate::bodies::names::servo_and_leg_names;
@@ -34,10 +33,9 @@ const LEAF_STIFFNESS: f64 = 0.5;
 /// Computes the free length L of a leaf, mm. The stiffness of a beam clamped at one end is E b t^3 / (4 L^3), with
 /// Young's modulus E, width b and thickness t.
 fn compute_leaf_length(width: f64) -> f64 {
-    libm::cbrt(
-        PLA_MODULUS * width * (LEAF_THICKNESS * LEAF_THICKNESS * LEAF_THICKNESS)
-            / (4.0 * LEAF_STIFFNESS),
-    )
+    let thickness_cubed = LEAF_THICKNESS * LEAF_THICKNESS * LEAF_THICKNESS;
+    let length_cubed = PLA_MODULUS * width * thickness_cubed / (4.0 * LEAF_STIFFNESS);
+    libm::cbrt(length_cubed)
 }
 
 /// Adds all legs.
@@ -54,11 +52,8 @@ pub fn add(builder: &mut AssemblyBuilder) {
 fn add_crank(builder: &mut AssemblyBuilder, servo: usize) {
     let (_, leg) = servo_and_leg_names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
-    let LegPlan {
-        anchor,
-        crank_joint: joint,
-        ..
-    } = builder.layout.legs[servo];
+    let plan = builder.layout.legs[servo];
+    let (anchor, joint) = (plan.anchor, plan.crank_joint);
     let (pivot, half_width) = (Vector::default(), builder.half_bar_width());
     // The half widths of bars that start at the same point differ by 0.01 mm, so that no two bar ends coincide.
     let filled = [
@@ -69,10 +64,8 @@ fn add_crank(builder: &mut AssemblyBuilder, servo: usize) {
     ];
     let holes = [builder.clearance_hole(pivot), builder.clearance_hole(joint)];
     let holes_with = |hole: Shape| [&holes[..], &[hole]].concat();
-    let (pocket_holes, through_holes) = (
-        holes_with(builder.nut_pocket(anchor)),
-        holes_with(builder.clearance_hole(anchor)),
-    );
+    let pocket_holes = holes_with(builder.nut_pocket(anchor));
+    let through_holes = holes_with(builder.clearance_hole(anchor));
     let pocket_top = stack.anchor_pocket_top(parts);
     let pocket_top = pocket_top.clamp(stack.crank[0], stack.crank[1]);
     let bearing = Shape::disc(pivot, half_width - 0.2);
@@ -193,11 +186,8 @@ fn add_foot(builder: &mut AssemblyBuilder, servo: usize) {
 fn add_screws(builder: &mut AssemblyBuilder, servo: usize) {
     let (_, leg) = servo_and_leg_names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
-    let LegPlan {
-        anchor,
-        crank_joint: joint,
-        ..
-    } = builder.layout.legs[servo];
+    let plan = builder.layout.legs[servo];
+    let (anchor, joint) = (plan.anchor, plan.crank_joint);
     let (coupler, strut) = (format!("leg coupler {leg}"), builder.strut_name(leg));
     let pivot = Vector::default();
     let crank = Mount::Crank(servo);

@@ -66,20 +66,13 @@ fn add_horn(builder: &mut AssemblyBuilder, servo: usize) {
     through_holes
         .extend(horn_screw_positions(&horn).map(|position| Shape::disc(position, PILOT_RADIUS)));
     let hub = Shape::disc(Vector::default(), horn.hub / 2.0);
+    let arm_z = [low, low + horn.thickness];
     let prisms = [
         Prism::new([hub], [spline], [low + horn.thickness - horn.height, low]),
-        Prism::new(
-            make_horn_arm(&horn, 0.0),
-            through_holes,
-            [low, low + horn.thickness],
-        ),
+        Prism::new(make_horn_arm(&horn, 0.0), through_holes, arm_z),
     ];
-    builder.add_body(
-        format!("horn {name}"),
-        Kind::Horn,
-        Mount::Link(servo),
-        prisms,
-    );
+    let mount = Mount::Link(servo);
+    builder.add_body(format!("horn {name}"), Kind::Horn, mount, prisms);
     builder.allow_contact(&[format!("servo {name}")]);
 }
 
@@ -110,14 +103,12 @@ fn add_link(builder: &mut AssemblyBuilder, servo: usize) {
         horn_screw_positions(&parts.horn).map(|position| Shape::disc(position, PILOT_RADIUS));
     let pocket = make_horn_arm(&parts.horn, POCKET_FIT_FACTOR * parts.fit);
     let anchor_hole = builder.clearance_hole(anchor);
+    let nut_pockets = [tip, arm_tip].map(|position| builder.nut_pocket(position));
     let [low, high] = stack.link;
     // Holes and pockets, each with the heights between which it is cut.
     let cuts = [
         (&holes[..], [low, high]),
-        (
-            &[tip, arm_tip].map(|position| builder.nut_pocket(position)),
-            [low, stack.hex_head_face],
-        ),
+        (&nut_pockets, [low, stack.hex_head_face]),
         (&[horn_hub], [low, stack.horn_pocket[0]]),
         (&pilot_holes, [low, stack.horn_pocket[0]]),
         (&pocket, stack.horn_pocket),
@@ -147,16 +138,13 @@ fn add_horn_screws(builder: &mut AssemblyBuilder, servo: usize) {
     let (name, _) = servo_and_leg_names(servo);
     let top = builder.stack.horn_pocket[0] + builder.parts.horn.thickness;
     let [radius, head_height] = HORN_SCREW_HEAD_SIZE;
-    for (index, position) in horn_screw_positions(&builder.parts.horn)
-        .into_iter()
-        .enumerate()
-    {
+    for (number, position) in (1..).zip(horn_screw_positions(&builder.parts.horn)) {
         let build_disc = |radius: f64, z: Span| Prism::solid([Shape::disc(position, radius)], z);
         let prisms = [
             build_disc(PILOT_RADIUS, [top - HORN_SCREW_LENGTH, top]),
             build_disc(radius, [top, top + head_height]),
         ];
-        let name = format!("horn screw {name} {}", index + 1);
+        let name = format!("horn screw {name} {number}");
         let kind = Kind::HornScrew(HORN_SCREW_LENGTH);
         builder.add_body(name, kind, Mount::Link(servo), prisms);
     }
@@ -172,18 +160,13 @@ fn add_anchor(builder: &mut AssemblyBuilder, servo: usize) {
     // The ring is thin enough to fit beside the spring's coil.
     let ring_disc = Shape::disc(position, parts.screw.diameter / 2.0 + RING_WALL);
     let prism = Prism::new([ring_disc], [builder.clearance_hole(position)], ring_z);
-    builder.add_printed(format!("strut ring {name}"), Mount::Link(servo), [prism]);
+    let mount = Mount::Link(servo);
+    builder.add_printed(format!("strut ring {name}"), mount, [prism]);
     builder.allow_contact(&[&strut]);
     let (name, seat_z) = (format!("anchor {name}"), stack.counterbore[0]);
     let screw = Screw {
         allowed_contacts: &[&strut],
-        ..Screw::new(
-            &name,
-            Mount::Link(servo),
-            position,
-            seat_z,
-            ScrewDirection::Down,
-        )
+        ..Screw::new(&name, mount, position, seat_z, ScrewDirection::Down)
     };
     builder.add_bolt(&screw, stack.strut_floor[0] - HEAD_CLEARANCE);
 }

@@ -88,16 +88,14 @@ pub(crate) fn make_pad_layers(
         };
         Shape::disc(middle, radius)
     };
+    let rim_radius = KEY_HOLE_RADIUS + RIM_WIDTH;
     let radius_at = |z: f64| {
         let height = (z - floor).min(pad.radius);
         let section_radius = (height * (2.0 * pad.radius - height)).sqrt();
-        section_radius
-            .max(KEY_HOLE_RADIUS + RIM_WIDTH)
-            .min(pad_radius)
+        section_radius.max(rim_radius).min(pad_radius)
     };
     // At this height the sphere is as wide as the rim.
-    let rim_height =
-        pad.radius - (pad.radius.powi(2) - (KEY_HOLE_RADIUS + RIM_WIDTH).powi(2)).sqrt();
+    let rim_height = pad.radius - (pad.radius.powi(2) - rim_radius.powi(2)).sqrt();
     let cone_count = (dome_height / CONE_HEIGHT).ceil() as u32;
     let heights = (0..=cone_count).map(|index| (f64::from(index) * CONE_HEIGHT).min(dome_height));
     let cone_heights = heights.filter(|height| *height > rim_height + CONE_HEIGHT / 2.0);

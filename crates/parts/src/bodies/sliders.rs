@@ -62,11 +62,8 @@ fn add_sleeve(builder: &mut AssemblyBuilder, side: Side, lengths: &SliderLengths
     let middle = Vector::new(lengths.sleeve / 2.0, lengths.lateral_offset);
     let case = Shape::rectangle(middle, Vector::new(lengths.sleeve, outer_width), 0.8);
     // The sleeve's corners must not protrude beyond the arm of its eye.
-    let arm = Shape::bar(
-        pin,
-        Vector::new(half_width, lengths.lateral_offset),
-        half_width - 0.02,
-    );
+    let arm_end = Vector::new(half_width, lengths.lateral_offset);
+    let arm = Shape::bar(pin, arm_end, half_width - 0.02);
     // The bore is open at both ends, so the cut is longer than the sleeve.
     let size = Vector::new(lengths.sleeve + 2.0 * lengths.rod, bore_width);
     let open_bore = Shape::rectangle(middle, size, 0.0);
@@ -91,11 +88,8 @@ fn add_rod(builder: &mut AssemblyBuilder, side: Side, lengths: &SliderLengths) {
     let middle = Vector::new(-lengths.rod / 2.0, lengths.lateral_offset);
     let bar = Shape::rectangle(middle, Vector::new(lengths.rod, ROD_WIDTH), 1.0);
     // The bend lies in front of the pin, so that the sleeve can come near the pin.
-    let bend = Shape::bar(
-        pin,
-        Vector::new(1.0, lengths.lateral_offset),
-        half_width - 0.02,
-    );
+    let bend_end = Vector::new(1.0, lengths.lateral_offset);
+    let bend = Shape::bar(pin, bend_end, half_width - 0.02);
     let filled = [Shape::disc(pin, half_width), bend, bar];
     let prism = Prism::new(filled, [builder.clearance_hole(pin)], builder.stack.rod);
     builder.add_printed(format!("rod {side}"), Mount::Rod(side), [prism]);
@@ -109,38 +103,18 @@ fn add_pins(builder: &mut AssemblyBuilder, side: Side) {
         |servo: usize| Vector::new(0.0, layout.arm_signs[servo] * layout.arm_lengths[servo]);
     let [sleeve, rod] = ["sleeve", "rod"].map(|prefix| format!("{prefix} {side}"));
     let name = format!("arm {}", servo_and_leg_names(rear).0);
-    let mount = Mount::Link(rear);
-    builder.add_link_joint(
-        &name,
-        mount,
-        arm_tip(rear),
-        stack.lower_coupler[1],
-        &[&sleeve],
-    );
+    let (position, mount) = (arm_tip(rear), Mount::Link(rear));
+    builder.add_link_joint(&name, mount, position, stack.lower_coupler[1], &[&sleeve]);
     let (name, _) = servo_and_leg_names(front);
     let (position, mount) = (arm_tip(front), Mount::Link(front));
     let spacer_z = [stack.link[1], stack.rod[0]];
-    builder.add_spacer(
-        format!("arm spacer {name}"),
-        mount,
-        position,
-        spacer_z,
-        &[&rod],
-    );
-    builder.add_link_joint(
-        &format!("arm {name}"),
-        mount,
-        position,
-        stack.rod[1],
-        &[&rod],
-    );
+    let (spacer_name, name) = (format!("arm spacer {name}"), format!("arm {name}"));
+    builder.add_spacer(spacer_name, mount, position, spacer_z, &[&rod]);
+    builder.add_link_joint(&name, mount, position, stack.rod[1], &[&rod]);
 }
 
 /// Computes the shortest and the longest distance between a slider's pins, mm.
 pub fn compute_slider_range(robot: &Robot, side: Side) -> [f64; 2] {
     let (slider, limits) = (robot.lizard().side(side), robot.limits());
-    [
-        slider.nominal_length + limits.stroke_min,
-        slider.nominal_length + limits.stroke_max,
-    ]
+    [limits.stroke_min, limits.stroke_max].map(|stroke| slider.nominal_length + stroke)
 }

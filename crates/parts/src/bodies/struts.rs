@@ -65,15 +65,11 @@ fn channel_half_width(builder: &AssemblyBuilder) -> f64 {
 fn make_slotted_prisms(builder: &AssemblyBuilder, servo: usize) -> Vec<Prism> {
     let (stack, half_width) = (builder.stack, channel_half_width(builder));
     let length = builder.layout.legs[servo].strut_length;
-    let build_full_bar =
-        |half_width: f64| Shape::bar(point_at(0.0), point_at(length + SLOT_LENGTH), half_width);
+    let [from, slot_start, slot_end] = [0.0, length, length + SLOT_LENGTH].map(point_at);
+    let build_full_bar = |half_width: f64| Shape::bar(from, slot_end, half_width);
     let outer = vec![build_full_bar(half_width + builder.parts.wall)];
-    let hole = builder.clearance_hole(point_at(0.0));
-    let slot = Shape::bar(
-        point_at(length),
-        point_at(length + SLOT_LENGTH),
-        hole.radius,
-    );
+    let hole = builder.clearance_hole(from);
+    let slot = Shape::bar(slot_start, slot_end, hole.radius);
     vec![
         Prism::new(outer.clone(), [hole, slot], stack.strut_floor),
         Prism::new(outer, [build_full_bar(half_width)], stack.strut_wall),
@@ -81,10 +77,7 @@ fn make_slotted_prisms(builder: &AssemblyBuilder, servo: usize) -> Vec<Prism> {
 }
 
 fn make_rigid_prism(builder: &AssemblyBuilder, servo: usize) -> Prism {
-    let [from, to] = [
-        point_at(0.0),
-        point_at(builder.layout.legs[servo].strut_length),
-    ];
+    let [from, to] = [0.0, builder.layout.legs[servo].strut_length].map(point_at);
     let bar = Shape::bar(from, to, channel_half_width(builder) + builder.parts.wall);
     let holes = [from, to].map(|position| builder.clearance_hole(position));
     Prism::new([bar], holes, builder.stack.rigid_strut)
@@ -97,15 +90,11 @@ fn add_spring(builder: &mut AssemblyBuilder, servo: usize) {
     let radius = parts.spring.outer_diameter / 2.0;
     // Each hook lies around the far side of its screw; the coil is between both hooks.
     let hook_length = parts.spring.outer_diameter - 2.0 * parts.spring.wire_diameter;
-    let size = Vector::new(
-        builder.robot.mounted_spring_length() - 2.0 * hook_length,
-        parts.spring.outer_diameter,
-    );
+    let coil_length = builder.robot.mounted_spring_length() - 2.0 * hook_length;
+    let size = Vector::new(coil_length, parts.spring.outer_diameter);
     let coil = Shape::rectangle(point_at(length / 2.0), size, 0.0);
-    let coil = Prism::solid(
-        [coil],
-        [stack.coil_middle - radius, stack.coil_middle + radius],
-    );
+    let z = [stack.coil_middle - radius, stack.coil_middle + radius];
+    let coil = Prism::solid([coil], z);
     let mount = Mount::Strut(servo);
     builder.add_body(format!("spring {leg}"), Kind::Spring, mount, [coil]);
     // The screw heads lie over the hooks and extend to the coil's ends.

@@ -67,18 +67,11 @@ pub fn build_coupon(parts: &Parts) -> [Part; 2] {
             let dot_position = vector(dot_x, hole_y + 1.6 - 3.2 * f64::from(dot / 3));
             upper_cuts.push(Shape::disc(dot_position, 0.5));
         }
-        let bore_width = ROD_WIDTH + 2.0 * fit;
-        let outer_width = bore_width + 2.0 * parts.wall;
-        walls.push(Shape::rectangle(
-            vector(x, sleeve_y),
-            vector(outer_width, SLEEVE_LENGTH),
-            0.5,
-        ));
-        bores.push(Shape::rectangle(
-            vector(x, sleeve_y),
-            vector(bore_width, 2.0 * SLEEVE_LENGTH),
-            0.0,
-        ));
+        let (middle, bore_width) = (vector(x, sleeve_y), ROD_WIDTH + 2.0 * fit);
+        let wall_size = vector(bore_width + 2.0 * parts.wall, SLEEVE_LENGTH);
+        let bore_size = vector(bore_width, 2.0 * SLEEVE_LENGTH);
+        walls.push(Shape::rectangle(middle, wall_size, 0.5));
+        bores.push(Shape::rectangle(middle, bore_size, 0.0));
         roof_heights.push(THICKNESS + parts.thickness + 2.0 * fit);
     }
     let mut prisms = vec![

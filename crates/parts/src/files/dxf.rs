@@ -16,12 +16,8 @@ pub fn format_dxf(sheet: &Sheet, kerf: f64) -> String {
     dxf.add_group(999, format!(
         "{name}: mm, 1:1, {thickness:.2} mm thick; lines are the part's edge, cut {half_kerf:.2} mm outside (kerf {kerf} mm)"
     ));
-    dxf.add_groups(&[
-        (0, "SECTION"),
-        (2, "HEADER"),
-        (9, "$ACADVER"),
-        (1, "AC1009"),
-    ]);
+    dxf.add_groups(&[(0, "SECTION"), (2, "HEADER")]);
+    dxf.add_groups(&[(9, "$ACADVER"), (1, "AC1009")]);
     dxf.add_groups(&[(9, "$INSUNITS"), (70, "4"), (9, "$MEASUREMENT"), (70, "1")]);
     dxf.add_group(9, "$EXTMIN");
     dxf.add_point(10, low.x, low.y);

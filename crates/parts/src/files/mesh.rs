@@ -89,13 +89,11 @@ impl MeshBuilder<'_> {
     fn find_or_add_corner(&mut self, (point, level): (usize, usize)) -> usize {
         let (position, z) = (self.solid.points[point], self.solid.heights[level]);
         let corners = &mut self.mesh.corners;
-        *self
-            .corner_indices
-            .entry((point, level))
-            .or_insert_with(|| {
-                corners.push([position.x, position.y, z]);
-                corners.len() - 1
-            })
+        let index = self.corner_indices.entry((point, level));
+        *index.or_insert_with(|| {
+            corners.push([position.x, position.y, z]);
+            corners.len() - 1
+        })
     }
 
     /// Divides an edge into chords, and returns the indices of the corners along it.
@@ -249,13 +247,10 @@ fn find_corners_between(corners: &[(usize, Vector)], a: usize, b: usize) -> Vec<
         let is_within = offset.abs() < 1e-7 && distance > 0.0 && distance < length;
         is_within.then_some((distance, corner))
     };
-    let other_corners = corners
-        .iter()
-        .filter(|(corner, _)| *corner != a && *corner != b);
+    let is_other = |(corner, _): &&(usize, Vector)| *corner != a && *corner != b;
+    let other_corners = corners.iter().filter(is_other);
     let mut sorted_corners: Vec<(f64, usize)> = other_corners.filter_map(locate_corner).collect();
     sorted_corners.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-    sorted_corners
-        .into_iter()
-        .map(|(_, corner)| corner)
-        .collect()
+    let sorted_corners = sorted_corners.into_iter();
+    sorted_corners.map(|(_, corner)| corner).collect()
 }

@@ -84,11 +84,8 @@ fn draw_pocket_layers(prisms: &[Prism], outlines: &[Outline], z: [f64; 2]) -> Ve
             } else if outlines[index..].iter().all(is_open_in) {
                 format!("POCKET_{:.2}_TOP", high - prisms[index].z[0])
             } else {
-                let open_layer_count = outlines
-                    .iter()
-                    .take_while(|layer_outline| is_open_in(layer_outline))
-                    .count();
-                let depth = prisms[open_layer_count.max(index + 1) - 1].z[1] - low;
+                let open_layers = outlines.iter().take_while(|outline| is_open_in(outline));
+                let depth = prisms[open_layers.count().max(index + 1) - 1].z[1] - low;
                 format!("POCKET_{depth:.2}_BOTTOM")
             };
             match layers.iter_mut().find(|layer| layer.name == name) {

@@ -153,8 +153,8 @@ impl SolidBuilder {
         sides
             .map(|(side, to)| {
                 let mut cuts = vec![side.from, to];
-                for (other_side, other_end) in &other_sides {
-                    add_intersections(side, to, *other_side, *other_end, &mut cuts);
+                for other_side in &other_sides {
+                    add_intersections((side, to), *other_side, &mut cuts);
                 }
                 let points = &mut self.solid.points;
                 let position_and_index =
@@ -231,10 +231,8 @@ impl SolidBuilder {
             }
         }
         for piece in b_pieces.iter().flatten() {
-            let is_shared = a_pieces
-                .iter()
-                .flatten()
-                .any(|a_piece| a_piece.edge == piece.edge);
+            let mut all_a_pieces = a_pieces.iter().flatten();
+            let is_shared = all_a_pieces.any(|a_piece| a_piece.edge == piece.edge);
             if !is_shared && a.contains(self.middles[piece.middle]) {
                 outline.push(Piece {
                     from: piece.to,
@@ -273,10 +271,9 @@ impl SolidBuilder {
         outer_faces.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
         for hole in holes {
             let inner_point = self.middles[hole[0].middle];
-            if let Some((_, _, loops)) = outer_faces
-                .iter_mut()
-                .find(|(_, outline, _)| outline.contains(inner_point))
-            {
+            let mut faces = outer_faces.iter_mut();
+            let face = faces.find(|(_, outline, _)| outline.contains(inner_point));
+            if let Some((_, _, loops)) = face {
                 loops.push(hole);
             }
         }
@@ -285,10 +282,8 @@ impl SolidBuilder {
                 if is_below {
                     trail.reverse();
                 }
-                let edges = trail.into_iter();
-                edges
-                    .map(|piece| (piece.edge, piece.is_forward != is_below))
-                    .collect()
+                let to_edge = |piece: Piece| (piece.edge, piece.is_forward != is_below);
+                trail.into_iter().map(to_edge).collect()
             };
             let loops = loops.into_iter().map(to_edges).collect();
             self.solid.faces.push(Face { surface, loops });
@@ -324,25 +319,19 @@ impl SolidBuilder {
             else {
                 continue;
             };
+            let rising_ends = [[to, high_to], [from, high_from]];
+            let [up, down] = rising_ends.map(|ends| self.find_or_add_rising_edge(ends, level));
             let low_edges = low.iter().map(|piece| (piece.edge, piece.is_forward));
-            let mut edges: Vec<_> = low_edges.collect();
-            edges.push((self.find_or_add_rising_edge([to, high_to], level), true));
-            edges.extend(
-                high.iter()
-                    .rev()
-                    .map(|piece| (piece.edge, !piece.is_forward)),
-            );
-            edges.push((
-                self.find_or_add_rising_edge([from, high_from], level),
-                false,
-            ));
+            let high_pieces = high.iter().rev();
+            let high_edges = high_pieces.map(|piece| (piece.edge, !piece.is_forward));
+            let edges = low_edges.chain([(up, true)]).chain(high_edges);
             let surface = match upper_side.arc(upper_end) {
                 Some((_, radius)) if from != high_from => {
                     Surface::Slope(side, end, level - 1, radius)
                 }
                 _ => Surface::Wall(side, end),
             };
-            let loops = vec![edges];
+            let loops = vec![edges.chain([(down, false)]).collect()];
             self.solid.faces.push(Face { surface, loops });
         }
     }
@@ -351,16 +340,14 @@ impl SolidBuilder {
     /// the edge if it is new.
     fn find_or_add_rising_edge(&mut self, [low, high]: [usize; 2], level: usize) -> usize {
         let edges = &mut self.solid.edges;
-        *self
-            .rising_edge_indices
-            .entry((low, high, level))
-            .or_insert_with(|| {
-                edges.push(Edge {
-                    ends: [(low, level - 1), (high, level)],
-                    bulge: 0.0,
-                });
-                edges.len() - 1
-            })
+        let index = self.rising_edge_indices.entry((low, high, level));
+        *index.or_insert_with(|| {
+            edges.push(Edge {
+                ends: [(low, level - 1), (high, level)],
+                bulge: 0.0,
+            });
+            edges.len() - 1
+        })
     }
 }
 
@@ -378,10 +365,9 @@ pub(crate) fn position_along(side: Segment, to: Vector, point: Vector) -> f64 {
     let (a, b) = (side.from - centre, point - centre);
     let angle = libm::atan2(a.cross(b), a.dot(b)) * side.bulge.signum();
     // Rounding may give the start point a slightly negative angle.
-    if angle < -1e-6 {
-        angle + std::f64::consts::TAU
-    } else {
-        angle.max(0.0)
+    match angle < -1e-6 {
+        true => angle + std::f64::consts::TAU,
+        false => angle.max(0.0),
     }
 }
 
@@ -395,20 +381,13 @@ fn compute_bulge(angle: f64, reference_bulge: f64) -> f64 {
 
 /// Adds the points at which two sides intersect, or between which they overlap.
 fn add_intersections(
-    a: Segment,
-    a_end: Vector,
-    b: Segment,
-    b_end: Vector,
+    (a, a_end): (Segment, Vector),
+    (b, b_end): (Segment, Vector),
     intersections: &mut Vec<Vector>,
 ) {
     let vertex_at = |position: Vector| PlineVertex::new(position.x, position.y, 0.0);
-    let points = match pline_seg_intr(
-        a.to_vertex(),
-        vertex_at(a_end),
-        b.to_vertex(),
-        vertex_at(b_end),
-        SAME_POINT_MM,
-    ) {
+    let [a_end, b_end] = [a_end, b_end].map(vertex_at);
+    let points = match pline_seg_intr(a.to_vertex(), a_end, b.to_vertex(), b_end, SAME_POINT_MM) {
         PlineSegIntr::NoIntersect => [None, None],
         PlineSegIntr::TangentIntersect { point } | PlineSegIntr::OneIntersect { point } => {
             [Some(point), None]
@@ -433,11 +412,8 @@ mod tests {
     #[test]
     fn a_plate_with_a_hole_has_eight_faces() {
         let rectangle = Shape::rectangle(vector(0.0, 0.0), vector(20.0, 10.0), 0.0);
-        let plate = Prism::new(
-            [rectangle],
-            [Shape::disc(vector(1.0, 1.0), 2.0)],
-            [0.0, 3.0],
-        );
+        let hole = Shape::disc(vector(1.0, 1.0), 2.0);
+        let plate = Prism::new([rectangle], [hole], [0.0, 3.0]);
         let solid = Solid::from_prisms(&[plate]);
         assert!(solid.is_closed());
         // Four walls, the two halves of the hole, top and bottom.

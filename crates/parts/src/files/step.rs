@@ -87,10 +87,8 @@ impl StepWriter {
             let curve = self.add_curve(ends, edge.bulge);
             edges.push(self.add(&format!("EDGE_CURVE('',#{from},#{to},#{curve},.T.)")));
         }
-        let faces = solid.faces.iter();
-        let faces: Vec<_> = faces
-            .map(|face| self.add_face(solid, face, &edges))
-            .collect();
+        let add_face = |face| self.add_face(solid, face, &edges);
+        let faces: Vec<_> = solid.faces.iter().map(add_face).collect();
         let shell_id = self.add(&format!("CLOSED_SHELL('',{})", format_list(&faces)));
         self.add(&format!("MANIFOLD_SOLID_BREP('{name}',#{shell_id})"))
     }
@@ -154,11 +152,8 @@ impl StepWriter {
                 // A cone's angle is positive in STEP, so a cone that narrows upward gets a frame that points down.
                 let is_narrowing = radius > upper_radius;
                 let z_direction = if is_narrowing { -1.0 } else { 1.0 };
-                let frame = self.add_frame(
-                    [centre.x, centre.y, low],
-                    [0.0, 0.0, z_direction],
-                    [1.0, 0.0, 0.0],
-                );
+                let (origin, axis) = ([centre.x, centre.y, low], [0.0, 0.0, z_direction]);
+                let frame = self.add_frame(origin, axis, [1.0, 0.0, 0.0]);
                 let angle = libm::atan((upper_radius - radius).abs() / (high - low));
                 let (radius, angle) = (format_real(radius), format_real(angle));
                 let cone = format!("CONICAL_SURFACE('',#{frame},{radius},{angle})");

@@ -28,11 +28,9 @@ pub fn format_svg(sheet: &Sheet, kerf: f64) -> String {
         let style = format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"0.1\"");
         let _ = writeln!(svg, "<g id=\"{name}\" {style}>");
         for outline_loop in loops {
-            let _ = match outline_loop
-                .circle()
-                .map(|(centre, radius)| (to_page(centre), radius))
-            {
-                Some(((x, y), r)) => {
+            let _ = match outline_loop.circle() {
+                Some((centre, r)) => {
+                    let (x, y) = to_page(centre);
                     writeln!(svg, "<circle cx=\"{x:.6}\" cy=\"{y:.6}\" r=\"{r:.6}\"/>")
                 }
                 None => {

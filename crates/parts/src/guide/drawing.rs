@@ -86,10 +86,9 @@ impl Drawing {
             true => LABEL_MARGIN,
             false => 0.0,
         };
-        let drawing_width = width - 2.0 * (MARGIN + side_margin);
-        let scale = drawing_width / (max.x - min.x);
-        let height = ((max.y - min.y) * scale + 2.0 * MARGIN).ceil();
         let left_offset = MARGIN + side_margin;
+        let scale = (width - 2.0 * left_offset) / (max.x - min.x);
+        let height = ((max.y - min.y) * scale + 2.0 * MARGIN).ceil();
         // To make the SVG about four times smaller, each style is written once, and a point is relative to the previous
         // one, in whole tenths of a pixel.
         let mut styles: Vec<&Style> = Vec::new();
@@ -106,11 +105,9 @@ impl Drawing {
             for ring in rings {
                 let mut start = None;
                 for (x, y) in ring {
-                    let point = (
-                        to_tenths(x - min.x, left_offset),
-                        to_tenths(y - min.y, MARGIN),
-                    );
-                    let (dx, dy) = (point.0 - position.0, point.1 - position.1);
+                    let column = to_tenths(x - min.x, left_offset);
+                    let row = to_tenths(y - min.y, MARGIN);
+                    let (dx, dy) = (column - position.0, row - position.1);
                     // After the first point, each pair is a relative line, and a minus sign separates numbers.
                     let _ = match (start, dx < 0) {
                         (None, _) => write!(data, "m{dx}"),
@@ -119,8 +116,8 @@ impl Drawing {
                         (Some(_), false) => write!(data, " {dx}"),
                     };
                     let _ = write!(data, "{}{dy}", if dy < 0 { "" } else { " " });
-                    start.get_or_insert(point);
-                    position = point;
+                    position = (column, row);
+                    start.get_or_insert(position);
                 }
                 data.push('z');
                 position = start.unwrap_or(position);
@@ -133,10 +130,9 @@ impl Drawing {
         );
         for (class_index, Style { colour, has_edge }) in styles.into_iter().enumerate() {
             // Without an edge, a thin stroke in the polygon's own colour closes the seams between neighbours.
-            let (stroke, stroke_width) = if *has_edge {
-                ("#333", 5)
-            } else {
-                (&**colour, 4)
+            let (stroke, stroke_width) = match has_edge {
+                true => ("#333", 5),
+                false => (&**colour, 4),
             };
             let style = format!("fill:{colour};stroke:{stroke};stroke-width:{stroke_width}");
             let _ = writeln!(svg, ".c{class_index}{{{style}}}");
@@ -163,9 +159,8 @@ impl Drawing {
         }
         for is_left in [true, false] {
             let labels = beside_labels.iter().copied();
-            let mut column: Vec<_> = labels
-                .filter(|((x, _), _)| (*x < width / 2.0) == is_left)
-                .collect();
+            let labels = labels.filter(|((x, _), _)| (*x < width / 2.0) == is_left);
+            let mut column: Vec<_> = labels.collect();
             column.sort_by(|((_, a), _), ((_, b), _)| a.total_cmp(b));
             write_column(&mut svg, &column, is_left, width, height);
         }

@@ -28,9 +28,7 @@ pub fn format_name(body: &Body, parts: &[Part]) -> Option<String> {
         }
         Kind::Fitting(fitting) => fitting.name().to_owned(),
         Kind::Printed => {
-            let part = parts
-                .iter()
-                .find(|part| part.body_names.contains(&body.name))?;
+            let part = parts.iter().find(|part| part.has_body(body))?;
             // The noun ends before the names of servos or legs, as in `link A1 A3`.
             let name = part.name.split(" A").next()?;
             let noun = name.split(['L', 'R']).next()?.trim();
@@ -57,16 +55,6 @@ pub fn list_counted_names(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
     texts.collect()
 }
 
-/// A label for all bodies with one name, at the body nearest to [`FRONT_LEFT_CORNER`].
-struct CountedLabel {
-    /// Distance of the labelled body from the corner, mm.
-    distance: f64,
-    /// Number of bodies with this name.
-    count: usize,
-    /// The label, without the count.
-    label: Label,
-}
-
 /// A point in front of the robot on its left, chassis frame, mm. Of the bodies with one name, the nearest is labelled.
 const FRONT_LEFT_CORNER: Vector = Vector::new(-60.0, 80.0);
 
@@ -78,15 +66,15 @@ pub fn make_part_labels(
     picture_bodies: &[PictureBody],
     pose: &Solution,
 ) -> Vec<Label> {
-    let mut labels_by_name: BTreeMap<String, CountedLabel> = BTreeMap::new();
+    // The labels of all bodies with one name, without the count, each with the body's distance from the corner, mm.
+    let mut labels_by_name: BTreeMap<String, Vec<(f64, Label)>> = BTreeMap::new();
     let coloured_bodies = picture_bodies.iter().filter(|body| !body.is_grey);
     for PictureBody { body, lift, .. } in coloured_bodies {
         let (Some(name), Some(prism)) = (format_name(body, parts), body.prisms.last()) else {
             continue;
         };
-        let position = assembly
-            .placement(body.mount, pose)
-            .map(prism.filled_shapes[0].middle());
+        let placement = assembly.placement(body.mount, pose);
+        let position = placement.map(prism.filled_shapes[0].middle());
         let distance = (position - FRONT_LEFT_CORNER).length();
         let label = Label {
             position,
@@ -94,20 +82,14 @@ pub fn make_part_labels(
             text: name.clone(),
             is_beside: true,
         };
-        let entry = labels_by_name.entry(name).or_insert_with(|| CountedLabel {
-            distance,
-            count: 0,
-            label: label.clone(),
-        });
-        entry.count += 1;
-        if distance < entry.distance {
-            (entry.distance, entry.label) = (distance, label);
-        }
+        let labels = labels_by_name.entry(name).or_default();
+        labels.push((distance, label));
     }
-    let labels = labels_by_name.into_values().map(|mut entry| {
-        let count_text = format!("{} x ", entry.count);
-        entry.label.text.insert_str(0, &count_text);
-        entry.label
+    let labels = labels_by_name.into_values().filter_map(|labels| {
+        let count_text = format!("{} x ", labels.len());
+        let (_, mut label) = labels.into_iter().min_by(|(a, _), (b, _)| a.total_cmp(b))?;
+        label.text.insert_str(0, &count_text);
+        Some(label)
     });
     labels.collect()
 }

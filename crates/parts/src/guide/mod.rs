@@ -69,13 +69,10 @@ pub fn make_guide(
 ) -> Result<Vec<OutputFile>, BuildError> {
     let mut steps = build_steps(assembly.robot().drive().strut().is_some());
     let has_strip = assembly.robot().parts().strip > 0.0;
+    let has_grain = has_strip || assembly.robot().ground().friction_ratio > 1.0;
     for (title, text, is_needed) in [
         (LEGS_TITLE, STRIP_TEXT, has_strip),
-        (
-            LEVEL_TITLE,
-            GRAIN_TEXT,
-            has_strip || assembly.robot().ground().friction_ratio > 1.0,
-        ),
+        (LEVEL_TITLE, GRAIN_TEXT, has_grain),
         (LEVEL_TITLE, NOTCH_TEXT, has_strip),
     ] {
         let step = steps.iter_mut().find(|step| step.title == title);
@@ -88,9 +85,8 @@ pub fn make_guide(
     let parts = assembly.collect_parts();
     let mut files = Vec::new();
     let bodies = assembly.bodies().iter();
-    let picture_bodies: Vec<_> = bodies
-        .map(|body| PictureBody::without_lift(body, false))
-        .collect();
+    let picture_bodies = bodies.map(|body| PictureBody::without_lift(body, false));
+    let picture_bodies: Vec<_> = picture_bodies.collect();
     let labels = legend::make_servo_and_end_labels(assembly, pose);
     let robot_picture = draw_picture(assembly, &picture_bodies, pose, &View::default(), &labels);
     files.push(OutputFile::from_text("guide/robot.svg", robot_picture));
@@ -104,29 +100,19 @@ pub fn make_guide(
         let is_added = |body: &Body| added_bodies.iter().any(|added| added.name == body.name);
         let is_new = |body: &&Body| step.adds(body) && !is_added(body);
         let new_bodies: Vec<&Body> = assembly.bodies().iter().filter(is_new).collect();
-        let _ = writeln!(
-            text,
-            "## {number}. {}\n\n{}\n",
-            step.title, step.instructions
-        );
+        let (title, instructions) = (step.title, &step.instructions);
+        let _ = writeln!(text, "## {number}. {title}\n\n{instructions}\n");
         if new_bodies.is_empty() {
             continue;
         }
-        let _ = writeln!(
-            text,
-            "Take {}.\n",
-            legend::list_counted_names(&new_bodies, &parts).join("; ")
-        );
-        let step_poses = access_poses
-            .iter()
-            .filter(|access_pose| access_pose.step == number);
-        let is_at_bench = step
-            .stages
-            .iter()
-            .any(|stage| stage.turning_place == TurningPlace::Bench);
-        let turns: Vec<_> = step_poses
-            .map(|access_pose| format_turns(assembly, access_pose, is_at_bench))
-            .collect();
+        let names = legend::list_counted_names(&new_bodies, &parts).join("; ");
+        let _ = writeln!(text, "Take {names}.\n");
+        let is_in_step = |access_pose: &&AccessPose| access_pose.step == number;
+        let mut stages = step.stages.iter();
+        let is_at_bench = stages.any(|stage| stage.turning_place == TurningPlace::Bench);
+        let to_text = |access_pose| format_turns(assembly, access_pose, is_at_bench);
+        let step_poses = access_poses.iter().filter(is_in_step);
+        let turns: Vec<_> = step_poses.map(to_text).collect();
         if !turns.is_empty() {
             let _ = writeln!(
                 text,
@@ -134,17 +120,10 @@ pub fn make_guide(
                 turns.join("; ")
             );
         }
-        let scene = StepScene {
-            assembly,
-            parts: &parts,
-            pose,
-            step,
-            earlier_bodies: &added_bodies,
-            new_bodies: &new_bodies,
-        };
-        for (view_name, caption, drawing) in scene.draw_pictures() {
+        let bodies = [&added_bodies[..], &new_bodies];
+        for (view_name, caption, drawing) in draw_step(assembly, &parts, pose, step, bodies) {
             let name = format!("step-{number}-{view_name}.svg");
-            let _ = writeln!(text, "![{}, {caption}]({name})", step.title);
+            let _ = writeln!(text, "![{title}, {caption}]({name})");
             files.push(OutputFile::from_text(format!("guide/{name}"), drawing));
         }
         text.push('\n');
@@ -171,107 +150,67 @@ fn format_drilling_text(parts: &[Part]) -> String {
     )
 }
 
-/// A step of the guide, the bodies of earlier steps, and the bodies that the step adds.
-struct StepScene<'a> {
-    assembly: &'a Assembly,
-    parts: &'a [Part],
-    pose: &'a Solution,
-    step: &'a Step,
-    earlier_bodies: &'a [&'a Body],
-    new_bodies: &'a [&'a Body],
-}
-
-impl StepScene<'_> {
-    /// Draws the step's pictures, each with a word for the file's name, a caption, and the drawing as SVG.
-    fn draw_pictures(&self) -> Vec<(&'static str, &'static str, String)> {
-        let view = View {
-            width: PICTURE_WIDTH,
-            ..View::default()
-        };
-        let view_from_below = |azimuth: f64, view: View| View {
-            is_from_below: true,
-            azimuth,
-            ..view
-        };
-        let corner = View {
-            is_close_up: true,
-            azimuth: 150.0,
-            elevation: 30.0,
-            ..view
-        };
-        type BodyFilter = fn(&Body) -> bool;
-        let (all_bodies, corner_bodies): (BodyFilter, BodyFilter) = (|_| true, is_at_corner);
-        let extra = match self.step.extra_view {
-            ExtraView::None => None,
-            ExtraView::Corner => {
-                Some(("near", "the front left corner", corner, 0.6, corner_bodies))
-            }
-            ExtraView::CornerBelow => {
-                let caption = "the front left corner from below";
-                Some((
-                    "below",
-                    caption,
-                    view_from_below(30.0, corner),
-                    0.5,
-                    corner_bodies,
-                ))
-            }
-            ExtraView::Below => Some((
-                "below",
-                "from below",
-                view_from_below(300.0, view),
-                0.0,
-                all_bodies,
-            )),
-        };
-        let mut pictures = vec![(
-            "exploded",
-            "apart",
-            self.draw_picture(&view, EXPLODED_LIFT, true, all_bodies),
-        )];
-        pictures.extend(extra.map(|(view_name, caption, view, lift, filter)| {
-            (
-                view_name,
-                caption,
-                self.draw_picture(&view, lift * EXPLODED_LIFT, true, filter),
-            )
-        }));
-        pictures.push((
-            "done",
-            "done",
-            self.draw_picture(&view, 0.0, false, all_bodies),
-        ));
-        pictures
-    }
-
-    fn draw_picture(
-        &self,
-        view: &View,
-        lift: f64,
-        has_labels: bool,
-        is_coloured: fn(&Body) -> bool,
-    ) -> String {
-        let earlier_bodies = self
-            .earlier_bodies
-            .iter()
-            .map(|body| PictureBody::without_lift(body, true));
-        let new_bodies = self.new_bodies.iter().map(|&body| PictureBody {
+/// Draws a step's pictures, each with a word for the file's name, a caption, and the drawing as SVG. The bodies are
+/// those of earlier steps, and those that the step adds.
+fn draw_step(
+    assembly: &Assembly,
+    parts: &[Part],
+    pose: &Solution,
+    step: &Step,
+    [earlier_bodies, new_bodies]: [&[&Body]; 2],
+) -> Vec<(&'static str, &'static str, String)> {
+    let view = View {
+        width: PICTURE_WIDTH,
+        ..View::default()
+    };
+    let view_from_below = |azimuth: f64, view: View| View {
+        is_from_below: true,
+        azimuth,
+        ..view
+    };
+    let corner = View {
+        is_close_up: true,
+        azimuth: 150.0,
+        elevation: 30.0,
+        ..view
+    };
+    type BodyFilter = fn(&Body) -> bool;
+    type Picture = (&'static str, &'static str, View, f64, BodyFilter);
+    let (all_bodies, corner_bodies): (BodyFilter, BodyFilter) = (|_| true, is_at_corner);
+    let extra = match step.extra_view {
+        ExtraView::None => None,
+        ExtraView::Corner => Some(("near", "the front left corner", corner, 0.6, corner_bodies)),
+        ExtraView::CornerBelow => {
+            let caption = "the front left corner from below";
+            let view = view_from_below(30.0, corner);
+            Some(("below", caption, view, 0.5, corner_bodies))
+        }
+        ExtraView::Below => {
+            let view = view_from_below(300.0, view);
+            Some(("below", "from below", view, 0.0, all_bodies))
+        }
+    };
+    let draw = |(view_name, caption, view, lift, is_coloured): Picture| {
+        let earlier_bodies = earlier_bodies.iter();
+        let earlier_bodies = earlier_bodies.map(|body| PictureBody::without_lift(body, true));
+        let new_bodies = new_bodies.iter().map(|&body| PictureBody {
             body,
-            lift: lift * (self.step.lift)(body),
+            lift: lift * EXPLODED_LIFT * (step.lift)(body),
             is_grey: !is_coloured(body),
         });
         let drawn_bodies: Vec<_> = earlier_bodies.chain(new_bodies).collect();
-        let mut labels: Vec<Label> = legend::make_servo_and_end_labels(self.assembly, self.pose);
-        if has_labels {
-            labels.extend(legend::make_part_labels(
-                self.assembly,
-                self.parts,
-                &drawn_bodies,
-                self.pose,
-            ));
+        let mut labels: Vec<Label> = legend::make_servo_and_end_labels(assembly, pose);
+        if view_name != "done" {
+            let part_labels = legend::make_part_labels(assembly, parts, &drawn_bodies, pose);
+            labels.extend(part_labels);
         }
-        draw_picture(self.assembly, &drawn_bodies, self.pose, view, &labels)
-    }
+        let drawing = draw_picture(assembly, &drawn_bodies, pose, &view, &labels);
+        (view_name, caption, drawing)
+    };
+    let exploded = ("exploded", "apart", view, 1.0, all_bodies);
+    let done = ("done", "done", view, 0.0, all_bodies);
+    let pictures = [Some(exploded), extra, Some(done)];
+    pictures.into_iter().flatten().map(draw).collect()
 }
 
 /// True if a body belongs to the corner that close-ups show.
@@ -289,27 +228,21 @@ fn is_at_corner(body: &Body) -> bool {
 fn format_turns(assembly: &Assembly, access_pose: &AccessPose, is_at_bench: bool) -> String {
     let neutral: [f64; 4] = assembly.robot().neutral_pose().into();
     let turns = (0..4).map(|servo| (servo, access_pose.pose[servo] - neutral[servo]));
-    let turns = turns
-        .filter(|(_, angle_deg)| angle_deg.abs() > 0.5)
-        .map(|(servo, angle_deg)| {
-            let direction = if angle_deg > 0.0 {
-                "counter-clockwise"
-            } else {
-                "clockwise"
-            };
-            let (name, leg) = servo_and_leg_names(servo);
-            let subject = match is_at_bench {
-                true => format!("crank and follower {leg}"),
-                false => format!("link {name} with its leg"),
-            };
-            format!("{subject} by {:.0} deg {direction}", angle_deg.abs())
-        });
-    let turns: Vec<_> = turns.collect();
-    format!(
-        "{} for {}",
-        turns.join(" and "),
-        access_pose.screws.join(", ")
-    )
+    let turns = turns.filter(|(_, angle_deg)| angle_deg.abs() > 0.5);
+    let turns = turns.map(|(servo, angle_deg)| {
+        let direction = match angle_deg > 0.0 {
+            true => "counter-clockwise",
+            false => "clockwise",
+        };
+        let (name, leg) = servo_and_leg_names(servo);
+        let subject = match is_at_bench {
+            true => format!("crank and follower {leg}"),
+            false => format!("link {name} with its leg"),
+        };
+        format!("{subject} by {:.0} deg {direction}", angle_deg.abs())
+    });
+    let (turns, screws) = (turns.collect::<Vec<_>>(), access_pose.screws.join(", "));
+    format!("{} for {screws}", turns.join(" and "))
 }
 
 #[cfg(test)]

@@ -175,9 +175,8 @@ pub fn draw_picture(
         }
     }
     // The frame encloses all bodies, or in a close-up the bodies in colour.
-    let framed_layers = layers
-        .iter()
-        .filter(|layer| !view.is_close_up || !layer.is_grey);
+    let is_framed = |layer: &&Layer| !view.is_close_up || !layer.is_grey;
+    let framed_layers = layers.iter().filter(is_framed);
     let points = framed_layers.flat_map(|layer| {
         let loop_points = layer.loops.iter().flatten();
         loop_points.flat_map(|point| layer.z.map(|z| eye.project(*point, z)))
@@ -186,15 +185,10 @@ pub fn draw_picture(
         true => eye.project(flip_point(label.position), -label.z),
         false => eye.project(label.position, label.z),
     };
-    let placed_labels: Vec<_> = labels
-        .iter()
-        .map(|label| (project_label(label), label))
-        .collect();
-    drawing.into_svg(
-        view.width,
-        &Frame::around(points, view.is_close_up),
-        &placed_labels,
-    )
+    let labels = labels.iter().map(|label| (project_label(label), label));
+    let placed_labels: Vec<_> = labels.collect();
+    let frame = Frame::around(points, view.is_close_up);
+    drawing.into_svg(view.width, &frame, &placed_labels)
 }
 
 /// Flips a point about the robot's long axis.
@@ -223,21 +217,16 @@ fn collect_layers(
     pose: &Solution,
 ) -> Vec<Layer> {
     let mut layers = Vec::new();
-    for PictureBody {
-        body,
-        lift,
-        is_grey,
-    } in picture_bodies
-    {
+    for picture_body in picture_bodies {
+        let (body, lift, is_grey) = (picture_body.body, picture_body.lift, picture_body.is_grey);
         let placement = assembly.placement(body.mount, pose);
-        let colour = select_colour(body, *is_grey);
+        let colour = select_colour(body, is_grey);
         for prism in &body.prisms {
             let outline = Outline::from_prism(prism);
             let is_drawn = |outline_loop: &&Loop| {
-                let circle = outline_loop.circle().filter(|_| *is_grey || *lift == 0.0);
-                !circle.is_some_and(|(_, radius)| {
-                    radius < HIDDEN_HOLE_RADIUS && outline_loop.area() < 0.0
-                })
+                let circle = outline_loop.circle().filter(|_| is_grey || lift == 0.0);
+                let is_small = circle.is_some_and(|(_, radius)| radius < HIDDEN_HOLE_RADIUS);
+                !(is_small && outline_loop.area() < 0.0)
             };
             let to_placed_points = |outline_loop: &Loop| {
                 let points = divide_loop(outline_loop).into_iter();
@@ -246,7 +235,7 @@ fn collect_layers(
             let loops = outline.loops().filter(is_drawn);
             layers.push(Layer {
                 colour,
-                is_grey: *is_grey,
+                is_grey,
                 loops: loops.map(to_placed_points).collect(),
                 z: prism.z.map(|z| z + lift),
             });
@@ -312,11 +301,8 @@ impl Layer {
             let mut ring: Ring = chain.iter().map(|point| eye.project(*point, low)).collect();
             ring.extend(chain.iter().rev().map(|point| eye.project(*point, high)));
             let brightness = 0.5 + 0.09 * f64::from(shade);
-            walls.push((
-                distance,
-                ring,
-                self.colour.map(|channel| channel * brightness),
-            ));
+            let colour = self.colour.map(|channel| channel * brightness);
+            walls.push((distance, ring, colour));
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::layers::body::{Body, Kind};
 use crate::layers::placement::Placement;
 use crate::layers::shape::Shape;
 use crate::order::steps::{Step, build_steps, find_step_and_stage};
-use crate::part::{Part, PrintTransform};
+use crate::part::Part;
 
 /// The placement of a body.
 #[derive(Serialize)]
@@ -107,9 +107,7 @@ pub fn format_placements(assembly: &Assembly, pose: &Solution) -> String {
     let steps = build_steps(assembly.robot().drive().strut().is_some());
     let to_placed_body = |body| {
         let (step, stage) = find_step_and_stage(&steps, body);
-        let part = parts
-            .iter()
-            .find(|part| part.body_names.contains(&body.name));
+        let part = parts.iter().find(|part| part.has_body(body));
         let placement = assembly.placement(body.mount, pose);
         PlacedBody {
             name: &body.name,
@@ -135,18 +133,15 @@ fn to_pair(point: Vector) -> [f64; 2] {
 }
 
 fn compute_print_placement(placement: &Placement, body: &Body, part: &Part) -> PrintPlacement {
-    let PrintTransform {
-        is_flipped,
-        lift,
-        frame,
-    } = part.transform_to_body(body);
+    let transform = part.transform_to_body(body);
+    let frame = transform.frame;
     let print_frame = Placement {
         origin: placement.map(frame.origin),
         x_axis: placement.x_axis * frame.x_axis.x
             + placement.x_axis.rotated_left() * frame.x_axis.y,
     };
     let holes_to_drill = part.find_bridged_holes().into_iter().map(|hole| {
-        let hole = match is_flipped {
+        let hole = match transform.is_flipped {
             true => hole.mirrored_in_x_axis(),
             false => hole,
         };
@@ -155,8 +150,8 @@ fn compute_print_placement(placement: &Placement, body: &Body, part: &Part) -> P
     PrintPlacement {
         file: format!("stl/{}.stl", part.file_stem()),
         mark: part.mark.clone(),
-        is_flipped,
-        lift,
+        is_flipped: transform.is_flipped,
+        lift: transform.lift,
         rotation: print_frame.x_axis.angle(),
         shift: to_pair(print_frame.origin),
         holes_to_drill: holes_to_drill.collect(),
@@ -169,10 +164,8 @@ fn place_screw(
     placement: &Placement,
     body: &Body,
 ) -> Option<PlacedScrew> {
-    let (Kind::Screw(length) | Kind::HexScrew(length)) = body.kind else {
-        return None;
-    };
-    let [low, high] = &body.prisms[..] else {
+    let (Kind::Screw(length) | Kind::HexScrew(length), [low, high]) = (body.kind, &body.prisms[..])
+    else {
         return None;
     };
     let is_turned_in = |step: &Step| step.stages.iter().any(|stage| (stage.turns_again)(body));
@@ -188,14 +181,10 @@ fn place_screw(
 }
 
 fn place_solids(placement: &Placement, body: &Body) -> Vec<PlacedPrism> {
-    let to_outline = |shape: &Shape| ConvexOutline {
-        radius: shape.radius,
-        outline: shape
-            .placed(placement)
-            .points
-            .into_iter()
-            .map(to_pair)
-            .collect(),
+    let to_outline = |shape: &Shape| {
+        let Shape { points, radius } = shape.placed(placement);
+        let outline = points.into_iter().map(to_pair).collect();
+        ConvexOutline { radius, outline }
     };
     let prisms = body.prisms.iter().flat_map(|prism| {
         prism.filled_shapes.iter().map(move |shape| PlacedPrism {

@@ -99,12 +99,9 @@ fn find_free_corner(
         let count = ((to - from) / step).ceil().max(0.0) as u32;
         (0..=count).map(move |i| (from + f64::from(i) * step).min(to))
     };
+    let [min_y, max_y] = [low.y + margin, high.y - margin - height];
     for x in positions_between(low.x + margin, high.x - margin - width, POSITION_STEP) {
-        for y in positions_between(
-            low.y + margin,
-            high.y - margin - height,
-            0.5 * POSITION_STEP,
-        ) {
+        for y in positions_between(min_y, max_y, 0.5 * POSITION_STEP) {
             let mut columns = positions_between(x - margin, x + width + margin, 0.6);
             let rows = || positions_between(y - margin, y + height + margin, 0.6);
             if columns.all(|px| rows().all(|py| is_free(Vector::new(px, py)))) {

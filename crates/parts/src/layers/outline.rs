@@ -342,27 +342,20 @@ mod tests {
         assert_eq!(circles.len(), 2);
         assert!((circles[1].0 - b).length() < 1e-9 && (circles[1].1 - 1.6).abs() < 1e-9);
         let centroid = bar.first_moment() * (1.0 / bar.area());
-        assert!(
-            (centroid - vector(15.0, 5.0)).length() < 1e-9,
-            "{centroid:?}"
-        );
-        assert!(
-            bar.contains(vector(15.0, 5.0)) && !bar.contains(a) && !bar.contains(vector(0.0, 9.0))
-        );
+        let error = (centroid - vector(15.0, 5.0)).length();
+        assert!(error < 1e-9, "{centroid:?}");
+        assert!(bar.contains(vector(15.0, 5.0)));
+        assert!(!bar.contains(a) && !bar.contains(vector(0.0, 9.0)));
     }
 
     #[test]
     fn a_ring_of_bars_encloses_a_gap_until_a_later_shape_fills_it() {
-        let corners = [
-            vector(0.0, 0.0),
-            vector(20.0, 0.0),
-            vector(20.0, 20.0),
-            vector(0.0, 20.0),
-        ];
-        let bars: Vec<_> = (0..4)
-            .map(|i| Shape::bar(corners[i], corners[(i + 1) % 4], 2.0 + 0.01 * i as f64))
-            .collect();
-        let ring = build_outline(bars.clone(), Vec::new());
+        let corners = [(0.0, 0.0), (20.0, 0.0), (20.0, 20.0), (0.0, 20.0)];
+        let corners = corners.map(|(x, y)| vector(x, y));
+        let bar_from =
+            |i: usize| Shape::bar(corners[i], corners[(i + 1) % 4], 2.0 + 0.01 * i as f64);
+        let bars = [0, 1, 2, 3].map(bar_from);
+        let ring = build_outline(bars.to_vec(), Vec::new());
         assert_eq!(ring.islands.len(), 1);
         assert_eq!(ring.islands[0].len(), 2);
         assert!(!ring.contains(vector(10.0, 10.0)) && ring.contains(vector(10.0, 0.0)));

@@ -98,10 +98,8 @@ mod tests {
             let high = compute_layer_top(low);
             // Slicers sample a part at 0.1, 0.3, 0.5 mm and so on.
             let sample_heights = (0..100).map(|i| 0.1 + PRINT_LAYER_MM * f64::from(i));
-            let count = sample_heights
-                .filter(|z| low + 1e-9 < *z && *z < high - 1e-9)
-                .count();
-            assert_eq!(count, 1, "{low} to {high} mm");
+            let contained_heights = sample_heights.filter(|z| low + 1e-9 < *z && *z < high - 1e-9);
+            assert_eq!(contained_heights.count(), 1, "{low} to {high} mm");
             assert!((0.09..0.31).contains(&(high - low)), "{low} to {high} mm");
         }
     }

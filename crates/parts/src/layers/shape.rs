@@ -133,9 +133,8 @@ impl Shape {
             }
         }
         if distance == 0.0 {
-            let separation = self
-                .max_side_separation(other)
-                .max(other.max_side_separation(self));
+            let own_separation = self.max_side_separation(other);
+            let separation = own_separation.max(other.max_side_separation(self));
             // Two discs have no sides.
             distance = match separation.is_finite() {
                 true => separation.min(0.0),
@@ -154,25 +153,20 @@ impl Shape {
         };
         let clearance = hole.radius - self.radius;
         let outside_distance = |point: &Vector| Self::disc(*point, 0.0).distance(&sharp_hole);
-        let max_outside = self
-            .points
-            .iter()
-            .map(outside_distance)
-            .fold(f64::NEG_INFINITY, f64::max);
+        let outside_distances = self.points.iter().map(outside_distance);
+        let max_outside = outside_distances.fold(f64::NEG_INFINITY, f64::max);
         let general_bound = clearance - max_outside - max_displacement.length();
         // A sharper bound for a shape that slides along a long hole.
         let outside_distances = hole.side_lines().flat_map(|(from, normal)| {
             let normal_displacement =
                 normal.x.abs() * max_displacement.x + normal.y.abs() * max_displacement.y;
-            self.points
-                .iter()
-                .map(move |&point| normal.dot(point - from) + normal_displacement)
+            let points = self.points.iter();
+            points.map(move |&point| normal.dot(point - from) + normal_displacement)
         });
         let max_outside = outside_distances.fold(f64::NEG_INFINITY, f64::max);
-        if hole.points.len() > 2 && max_outside <= 0.0 {
-            general_bound.max(clearance - max_outside)
-        } else {
-            general_bound
+        match hole.points.len() > 2 && max_outside <= 0.0 {
+            true => general_bound.max(clearance - max_outside),
+            false => general_bound,
         }
     }
 
@@ -182,10 +176,8 @@ impl Shape {
         let n = self.points.len();
         (0..if n > 1 { n } else { 0 }).map(move |i| {
             let (from, to) = (self.points[i], self.points[(i + 1) % n]);
-            (
-                from,
-                (to - from).rotated_right() * (1.0 / (to - from).length()),
-            )
+            let side = to - from;
+            (from, side.rotated_right() * (1.0 / side.length()))
         })
     }
 
@@ -277,10 +269,8 @@ mod tests {
     #[test]
     fn the_depth_in_a_hole_is_the_smallest_clearance_to_its_edge() {
         let assert_near = |value: f64, expected: f64| {
-            assert!(
-                (value - expected).abs() < 1e-12,
-                "expected {expected}, got {value}"
-            )
+            let is_near = (value - expected).abs() < 1e-12;
+            assert!(is_near, "expected {expected}, got {value}")
         };
         let no_displacement = vector(0.0, 0.0);
         let slot = Shape::bar(vector(0.0, 0.0), vector(5.0, 0.0), 1.6);
@@ -302,10 +292,8 @@ mod tests {
     fn a_hull_drops_inner_points_and_runs_counter_clockwise() {
         let corners = [(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (1.0, 0.2), (1.0, 0.0)];
         let hull = Shape::hull(&corners.map(|(x, y)| vector(x, y)), 0.0);
-        assert_eq!(
-            hull.points,
-            [vector(0.0, 0.0), vector(2.0, 0.0), vector(1.0, 1.0)]
-        );
+        let expected = [(0.0, 0.0), (2.0, 0.0), (1.0, 1.0)];
+        assert_eq!(hull.points, expected.map(|(x, y)| vector(x, y)));
         let point = Shape::hull(&[vector(1.0, 2.0); 3], 1.0);
         assert_eq!(point, Shape::disc(vector(1.0, 2.0), 1.0));
         let bar = Shape::hull(&[vector(0.0, 0.0), vector(4.0, 0.0), vector(2.0, 0.0)], 1.0);

@@ -137,19 +137,15 @@ impl Stack {
         // The underside of the horn's arm on the shaft.
         let hub_bottom = seat[1] + parts.servo.boss - parts.servo.flange_height + gap;
         let arm_bottom = hub_bottom + parts.horn.height - parts.horn.thickness;
-        let link = [
-            arm_bottom - HORN_FLOOR_THICKNESS,
-            arm_bottom - HORN_FLOOR_THICKNESS + thickness,
-        ];
+        let link_bottom = arm_bottom - HORN_FLOOR_THICKNESS;
+        let link = [link_bottom, link_bottom + thickness];
         let lower_coupler = span_above(link, thickness);
         let upper_coupler = span_above(lower_coupler, thickness);
         let bore_bottom = lower_coupler[0] + SLEEVE_WALL_THICKNESS;
         let bore = [bore_bottom, bore_bottom + thickness + 2.0 * parts.fit];
         let rod = [bore[0] + parts.fit, bore[1] - parts.fit];
-        let slider_top = find_screw_length(
-            rod[1] + HEAD_CLEARANCE + screw.nut_height - link[0] - HEX_HEAD_HEIGHT,
-        ) + link[0]
-            + HEX_HEAD_HEIGHT;
+        let min_length = rod[1] + HEAD_CLEARANCE + screw.nut_height - link[0] - HEX_HEAD_HEIGHT;
+        let slider_top = find_screw_length(min_length) + link[0] + HEX_HEAD_HEIGHT;
         let deck = STANDOFF_LENGTHS
             .into_iter()
             .find(|length| *length >= slider_top + gap)
@@ -157,14 +153,12 @@ impl Stack {
         let leg_coupler = [-thickness - gap, 0.0];
         let pad = [-parts.height, parts.pad.height - parts.height];
         let leaf_bottom = pad[1] + MAX_FOOT_RAISE;
+        let leaf_top = leaf_bottom + LEAF_THICKNESS;
         Self {
             floor: -parts.height,
             pad,
-            leaf: [leaf_bottom, leaf_bottom + LEAF_THICKNESS],
-            foot_boss: [
-                leaf_bottom + LEAF_THICKNESS,
-                leaf_bottom + screw.nut_height + FOOT_NUT_COVER,
-            ],
+            leaf: [leaf_bottom, leaf_top],
+            foot_boss: [leaf_top, leaf_bottom + screw.nut_height + FOOT_NUT_COVER],
             leg_coupler,
             plate,
             seat,
@@ -214,15 +208,12 @@ impl Stack {
 
 /// Finds the shortest common screw length of at least `min`, mm; `min` if all common lengths are shorter.
 pub fn find_screw_length(min: f64) -> f64 {
-    SCREW_LENGTHS
-        .into_iter()
-        .find(|length| *length >= min - 1e-9)
-        .unwrap_or(min)
+    let mut lengths = SCREW_LENGTHS.into_iter();
+    lengths.find(|length| *length >= min - 1e-9).unwrap_or(min)
 }
 
 /// True if this is a common screw length, mm.
 pub fn is_common_screw_length(length: f64) -> bool {
-    SCREW_LENGTHS
-        .iter()
-        .any(|stock_length| (stock_length - length).abs() < 1e-9)
+    let mut lengths = SCREW_LENGTHS.iter();
+    lengths.any(|stock_length| (stock_length - length).abs() < 1e-9)
 }

@@ -51,10 +51,9 @@ impl Inertia {
     /// Returns the moments at `factor` times the density.
     pub fn scaled(mut self, factor: f64) -> Self {
         self.mass *= factor;
-        self.first_moments = self.first_moments.map(|component| component * factor);
-        self.second_moments = self
-            .second_moments
-            .map(|row| row.map(|component| component * factor));
+        let scale = |component: f64| component * factor;
+        self.first_moments = self.first_moments.map(scale);
+        self.second_moments = self.second_moments.map(|row| row.map(scale));
         self
     }
 
@@ -96,11 +95,7 @@ impl Inertia {
         let central_moment =
             |i: usize, j: usize| self.second_moments[i][j] - self.mass * centre[i] * centre[j];
         let [x, y, z] = [0, 1, 2].map(|i| central_moment(i, i));
-        let [xy, xz, yz] = [
-            central_moment(0, 1),
-            central_moment(0, 2),
-            central_moment(1, 2),
-        ];
+        let [xy, xz, yz] = [(0, 1), (0, 2), (1, 2)].map(|(i, j)| central_moment(i, j));
         [y + z, x + z, x + y, -xy, -xz, -yz]
     }
 
@@ -121,11 +116,10 @@ mod tests {
     use crate::layers::body::Prism;
     use crate::layers::shape::Shape;
 
-    fn compute_inertia(filled: Shape, z: [f64; 2]) -> Inertia {
-        Inertia::from_mesh(&Mesh::from_solid(&Solid::from_prisms(&[Prism::solid(
-            [filled],
-            z,
-        )])))
+    fn compute_box_inertia([x, y]: [f64; 2], [width, length]: [f64; 2], z: [f64; 2]) -> Inertia {
+        let rectangle = Shape::rectangle(Vector::new(x, y), Vector::new(width, length), 0.0);
+        let solid = Solid::from_prisms(&[Prism::solid([rectangle], z)]);
+        Inertia::from_mesh(&Mesh::from_solid(&solid))
     }
 
     #[track_caller]
@@ -138,8 +132,7 @@ mod tests {
 
     #[test]
     fn centre_of_mass_and_inertia_of_a_box_match_the_closed_forms() {
-        let (middle, size) = (Vector::new(7.0, -3.0), Vector::new(20.0, 10.0));
-        let inertia = compute_inertia(Shape::rectangle(middle, size, 0.0), [2.0, 6.0]);
+        let inertia = compute_box_inertia([7.0, -3.0], [20.0, 10.0], [2.0, 6.0]);
         assert_all_near([inertia.mass], [800.0], 1e-9);
         assert_all_near(inertia.centre_of_mass(), [7.0, -3.0, 4.0], 1e-9);
         let expected = [116.0, 416.0, 500.0, 0.0, 0.0, 0.0].map(|square| 800.0 / 12.0 * square);
@@ -148,22 +141,17 @@ mod tests {
 
     #[test]
     fn translated_moments_match_a_body_at_the_new_position() {
-        let block_at = |x: f64, y: f64, z: f64| {
-            let (middle, size) = (Vector::new(x, y), Vector::new(20.0, 10.0));
-            compute_inertia(Shape::rectangle(middle, size, 0.0), [z, z + 4.0])
-        };
-        let translated = block_at(7.0, -3.0, 2.0).translated([-9.0, 5.0, 1.0]);
-        let expected = block_at(-2.0, 2.0, 3.0);
+        let block = compute_box_inertia([7.0, -3.0], [20.0, 10.0], [2.0, 6.0]);
+        let translated = block.translated([-9.0, 5.0, 1.0]);
+        let expected = compute_box_inertia([-2.0, 2.0], [20.0, 10.0], [3.0, 7.0]);
         assert_all_near(translated.centre_of_mass(), expected.centre_of_mass(), 1e-6);
         assert_all_near(translated.compute_tensor(), expected.compute_tensor(), 1e-6);
     }
 
     #[test]
     fn two_halves_at_half_density_have_half_the_inertia_of_the_whole() {
-        let build_block = |x: f64, length: f64| {
-            let (middle, size) = (Vector::new(x, 1.0), Vector::new(length, 8.0));
-            compute_inertia(Shape::rectangle(middle, size, 0.0), [0.0, 3.0])
-        };
+        let build_block =
+            |x: f64, width: f64| compute_box_inertia([x, 1.0], [width, 8.0], [0.0, 3.0]);
         let whole = build_block(5.0, 20.0);
         let halves = build_block(0.0, 10.0).plus(&build_block(10.0, 10.0));
         let halves = halves.scaled(0.5);

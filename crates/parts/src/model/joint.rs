@@ -60,6 +60,12 @@ impl Writer<'_> {
         [limits.stroke_min, limits.stroke_max].map(|limit| limit - neutral_stroke)
     }
 
+    /// Largest torque (N m) and largest rate (rad/s) of the motor that drives a body's joint; `None` if no motor does.
+    pub(super) fn effort_and_velocity(&self, node: Node) -> Option<[f64; 2]> {
+        let motor = &self.scene.motors.per_servo[self.driving_servo(node)?];
+        Some([motor.stall_torque * MILLI, motor.no_load_speed.to_radians()].map(round))
+    }
+
     /// Damping (N m s or N s/m) and dry friction (N m or N) of a body's joint.
     pub(super) fn damping_and_friction(&self, node: Node) -> [f64; 2] {
         let motors = &self.scene.motors;

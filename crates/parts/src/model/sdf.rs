@@ -119,12 +119,9 @@ impl Writer<'_> {
             self.xml.open("limit");
             self.xml.write_value("lower", min);
             self.xml.write_value("upper", max);
-            if let Some(servo) = self.driving_servo(node) {
-                let motor = &self.scene.motors.per_servo[servo];
-                self.xml
-                    .write_value("effort", round(motor.stall_torque * MILLI));
-                self.xml
-                    .write_value("velocity", round(motor.no_load_speed.to_radians()));
+            if let Some([effort, velocity]) = self.effort_and_velocity(node) {
+                self.xml.write_value("effort", effort);
+                self.xml.write_value("velocity", velocity);
             }
             self.xml.close();
         }
@@ -142,7 +139,7 @@ impl Writer<'_> {
     }
 
     /// Relaxed position (m) and stiffness (N/m) of the spring in a body's joint; `None` if the joint has no spring.
-    fn spring_values(&self, node: Node) -> Option<[f64; 2]> {
+    pub(super) fn spring_values(&self, node: Node) -> Option<[f64; 2]> {
         match (node, self.scene.strut_spring) {
             (Node::Pad(_), _) => Some([0.0, self.leaf_stiffness()]),
             (Node::SlotPin(_), Some(StrutSpring { preload, rate })) => {

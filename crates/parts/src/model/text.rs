@@ -7,9 +7,7 @@ pub(super) const MILLI: f64 = 1e-3;
 
 /// Formats a position in mm as three numbers in metres.
 pub(super) fn format_metres(position: [f64; 3]) -> String {
-    position
-        .map(|component| round(component * MILLI).to_string())
-        .join(" ")
+    join_numbers(position.map(|component| round(component * MILLI)))
 }
 
 /// Rounds a number to nine decimals, and turns -0 into 0.
@@ -19,11 +17,8 @@ pub(super) fn round(value: f64) -> f64 {
 
 /// Joins numbers with spaces.
 pub(super) fn join_numbers(numbers: impl IntoIterator<Item = impl ToString>) -> String {
-    let numbers: Vec<_> = numbers
-        .into_iter()
-        .map(|number| number.to_string())
-        .collect();
-    numbers.join(" ")
+    let numbers = numbers.into_iter().map(|number| number.to_string());
+    numbers.collect::<Vec<_>>().join(" ")
 }
 
 /// Escapes a text for use as an attribute's value.

@@ -56,10 +56,8 @@ impl Writer<'_> {
         for material in meshes::list_materials(self.visible_pieces(), node) {
             self.xml.open("visual");
             self.xml.open("geometry");
-            let file = escape_attribute(&format!(
-                "{folder}{}",
-                meshes::format_mesh_name(node, material)
-            ));
+            let mesh_name = meshes::format_mesh_name(node, material);
+            let file = escape_attribute(&format!("{folder}{mesh_name}"));
             self.xml.write_empty(format!(
                 r#"mesh filename="{file}" scale="0.001 0.001 0.001""#
             ));
@@ -105,15 +103,7 @@ impl Writer<'_> {
             };
             self.xml.write_empty(format!(r#"axis xyz="{axis}""#));
             if let Some([min, max]) = range {
-                let (effort, velocity) = match self.driving_servo(node) {
-                    Some(servo) => {
-                        let motor = &self.scene.motors.per_servo[servo];
-                        (motor.stall_torque * MILLI, motor.no_load_speed.to_radians())
-                    }
-                    // No motor drives this joint.
-                    None => (0.0, 0.0),
-                };
-                let (effort, velocity) = (round(effort), round(velocity));
+                let [effort, velocity] = self.effort_and_velocity(node).unwrap_or_default();
                 self.xml.write_empty(format!(
                     r#"limit lower="{min}" upper="{max}" effort="{effort}" velocity="{velocity}""#
                 ));
@@ -150,11 +140,9 @@ impl Writer<'_> {
         let [first, second] = cut_joint.bodies;
         let point = self.placement(first).map(cut_joint.point);
         let point_on_second = self.placement(second).unmap(point);
-        for (number, (node, position)) in [(first, cut_joint.point), (second, point_on_second)]
-            .iter()
-            .enumerate()
-        {
-            let frame = format!("closing_{}_{}", cut_joint.identifier(), number + 1);
+        let halves = [(first, cut_joint.point), (second, point_on_second)];
+        for (number, (node, position)) in (1..).zip(halves) {
+            let frame = format!("closing_{}_{number}", cut_joint.identifier());
             self.xml.write_empty(format!(r#"link name="{frame}""#));
             let joint = format!("{frame}_joint");
             self.write_urdf_connection(&joint, "fixed", &node.identifier(), &frame);

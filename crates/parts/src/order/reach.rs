@@ -201,11 +201,10 @@ impl PosedAssembly<'_> {
                 shape: nut_outline,
                 ..axis.cylinder(0.0, outer_z, length)
             },
-            false => axis.cylinder(
-                corner_radius + SOCKET_WALL,
-                bearing_z,
-                outer_z - bearing_z + length,
-            ),
+            false => {
+                let socket_length = outer_z - bearing_z + length;
+                axis.cylinder(corner_radius + SOCKET_WALL, bearing_z, socket_length)
+            }
         }
     }
 
@@ -234,17 +233,15 @@ impl PosedAssembly<'_> {
         let leg_of_pad = screw.name.strip_prefix("screw height ");
         let pad = leg_of_pad.and_then(|leg| self.assembly.body(&format!("pad {leg}")));
         let is_pad = |body: &Body| pad.is_some_and(|pad| pad.name == body.name);
-        let other_bodies = surrounding_bodies
-            .iter()
-            .filter(|body| !is_screw_or_its_nut(&body.name));
-        let other_bodies: Vec<&Body> = other_bodies.filter(|body| !is_pad(body)).copied().collect();
+        let is_other = |body: &&Body| !is_screw_or_its_nut(&body.name) && !is_pad(body);
+        let other_bodies = surrounding_bodies.iter().copied();
+        let other_bodies: Vec<&Body> = other_bodies.filter(is_other).collect();
+        let make_space_above_head = |radius: f64, length: f64| {
+            axis.cylinder(radius, axis.head_face_z, axis.direction * length)
+        };
         let mut spaces = Vec::new();
         if is_new {
-            let space = axis.cylinder(
-                axis.head_radius,
-                axis.head_face_z,
-                axis.direction * axis.length,
-            );
+            let space = make_space_above_head(axis.head_radius, axis.length);
             spaces.push((ScrewOperation::Push, space));
         }
         // Its pocket holds a hexagonal head.
@@ -252,13 +249,11 @@ impl PosedAssembly<'_> {
         // The pad of a height screw if the hex key does not fit through the pad's hole.
         let mut blocking_pad = None;
         if needs_turning && is_complete && (is_new || new_nut.is_some() || is_turned_later) {
-            let make_tool_space =
-                |radius| axis.cylinder(radius, axis.head_face_z, axis.direction * TOOL_LENGTH);
-            spaces.push((ScrewOperation::Turn, make_tool_space(TOOL_RADIUS)));
-            blocking_pad = pad.filter(|pad| {
-                is_in(surrounding_bodies, pad)
-                    && self.extends_into(pad, &make_tool_space(HEX_KEY_RADIUS))
-            });
+            let tool_space = make_space_above_head(TOOL_RADIUS, TOOL_LENGTH);
+            spaces.push((ScrewOperation::Turn, tool_space));
+            let key_space = make_space_above_head(HEX_KEY_RADIUS, TOOL_LENGTH);
+            let pad = pad.filter(|pad| is_in(surrounding_bodies, pad));
+            blocking_pad = pad.filter(|pad| self.extends_into(pad, &key_space));
         }
         if let Some(nut) = new_nut {
             let space = self.compute_nut_space(nut, &axis, &other_bodies);
@@ -270,11 +265,8 @@ impl PosedAssembly<'_> {
             Some((operation, obstacle.name.clone()))
         };
         let pad_obstacle = blocking_pad.map(|pad| (ScrewOperation::Turn, pad.name.clone()));
-        spaces
-            .into_iter()
-            .filter_map(find_obstacle)
-            .chain(pad_obstacle)
-            .collect()
+        let obstacles = spaces.into_iter().filter_map(find_obstacle);
+        obstacles.chain(pad_obstacle).collect()
     }
 }
 
@@ -296,16 +288,12 @@ impl Assembly {
                 let new_bodies: Vec<_> = self.bodies().iter().filter(is_new).collect();
                 bodies_so_far.extend(&new_bodies);
                 for screw in self.bodies() {
-                    let is_on_same_servos =
-                        |body: &&&Body| body.mount.servos() == screw.mount.servos();
-                    let surrounding_bodies: Vec<_> = match stage.turning_place {
-                        TurningPlace::Robot => bodies_so_far.clone(),
-                        TurningPlace::Bench => bodies_so_far[step_start..]
-                            .iter()
-                            .filter(is_on_same_servos)
-                            .copied()
-                            .collect(),
-                    };
+                    let mut surrounding_bodies = bodies_so_far.clone();
+                    if stage.turning_place == TurningPlace::Bench {
+                        surrounding_bodies.drain(..step_start);
+                        let servos = screw.mount.servos();
+                        surrounding_bodies.retain(|body| body.mount.servos() == servos);
+                    }
                     let is_turned_later = (stage.turns_again)(screw);
                     let blocked_operations = posed_assembly.find_blocked_operations(
                         screw,

@@ -103,9 +103,8 @@ fn build_step(
     extra_view: ExtraView,
     stages: Vec<Stage>,
 ) -> Step {
-    let mut sections = INSTRUCTIONS
-        .split("## ")
-        .filter_map(|section| section.split_once('\n'));
+    let sections = INSTRUCTIONS.split("## ");
+    let mut sections = sections.filter_map(|section| section.split_once('\n'));
     let section = sections.find(|(headline, _)| *headline == title);
     let (_, text) = section.expect("each title is in steps.md");
     let paragraphs = text.trim().split("\n\n");
@@ -174,12 +173,8 @@ fn supply_step() -> Step {
         let names = ["battery", "ground strip", "supply strip", "capacitor"];
         has_name_prefix(body, &names)
     });
-    build_step(
-        "Strips, battery and capacitor",
-        lift,
-        ExtraView::Below,
-        vec![stage],
-    )
+    let title = "Strips, battery and capacitor";
+    build_step(title, lift, ExtraView::Below, vec![stage])
 }
 
 fn board_step() -> Step {
@@ -195,15 +190,9 @@ fn board_step() -> Step {
         let is_upper_screw =
             body.name.starts_with("screw standoff") && body.name.ends_with("above");
         let names_on_deck = ["deck", "converter", "alarm"];
-        let names_on_wings = [
-            "signal strip",
-            "resistor",
-            "place for",
-            "switch",
-            "plus way",
-            "fuse",
-        ];
-        let names = [&names_on_deck[..], &names_on_wings].concat();
+        let names_on_left_wing = ["signal strip", "resistor", "place for"];
+        let names_on_right_wing = ["switch", "plus way", "fuse"];
+        let names = [names_on_deck, names_on_left_wing, names_on_right_wing].concat();
         has_name_prefix(body, &names) || is_upper_screw
     });
     let board_stage = robot_stage(|body| has_name_prefix(body, &["board", "screw board"]));
@@ -306,14 +295,8 @@ fn ends_step() -> Step {
         _ => 0.9,
     };
     let couplers_stage = bench_stage(|body| {
-        let names = [
-            "coupler",
-            "head plate",
-            "tail ",
-            "screw head plate",
-            "screw tail ",
-        ];
-        has_name_prefix(body, &names)
+        let is_screw = has_name_prefix(body, &["screw head plate", "screw tail "]);
+        is_screw || has_name_prefix(body, &["coupler", "head plate", "tail "])
     });
     let joints_stage = robot_stage(|body| {
         matches!(body.mount, Mount::Coupler(_)) || has_name_prefix(body, &["tip spacer", "nut tip"])

@@ -44,9 +44,8 @@ pub fn compute_bounding_rectangles(assembly: &Assembly, guard: &Guard) -> Vec<Re
 
 /// True if two rectangles are at least `min_mm` apart.
 pub fn are_apart(a: &Rectangle, b: &Rectangle, min_mm: f64) -> bool {
-    a.iter()
-        .zip(b)
-        .any(|(a, b)| a.low - b.high >= min_mm || b.low - a.high >= min_mm)
+    let mut sides = a.iter().zip(b);
+    sides.any(|(a, b)| a.low - b.high >= min_mm || b.low - a.high >= min_mm)
 }
 
 /// The computation of the rectangles of the bodies on one mount.

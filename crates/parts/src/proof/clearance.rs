@@ -56,13 +56,12 @@ impl Assembly {
         let bodies = self.bodies();
         for (i, a) in bodies.iter().enumerate() {
             for (j, b) in bodies.iter().enumerate().skip(i + 1) {
-                let layers = a
-                    .prisms
-                    .iter()
-                    .flat_map(|p| b.prisms.iter().map(move |q| (p, q)));
-                let layers =
-                    layers.filter(|(p, q)| !self.may_touch(a, b) && overlap_in_height(p, q));
-                for (p, q) in layers {
+                if self.may_touch(a, b) {
+                    continue;
+                }
+                let layers = a.prisms.iter();
+                let layers = layers.flat_map(|p| b.prisms.iter().map(move |q| (p, q)));
+                for (p, q) in layers.filter(|(p, q)| overlap_in_height(p, q)) {
                     for first in &p.filled_shapes {
                         let seconds = q.filled_shapes.iter();
                         pairs.extend(seconds.map(|second| {
@@ -80,9 +79,8 @@ impl Assembly {
                 let [first, second] = body_indices.map(|body| &placements[body]);
                 let disc_gap =
                     (second.map(*b_middle) - first.map(*a_middle)).length() - a_radius - b_radius;
-                let min_so_far = min_by_pair
-                    .get(body_indices)
-                    .map_or(limit_mm, |(_, mm)| *mm);
+                let known_min = min_by_pair.get(body_indices);
+                let min_so_far = known_min.map_or(limit_mm, |(_, mm)| *mm);
                 if disc_gap < min_so_far {
                     let mm = a.placed(first).distance(&b.placed(second));
                     if mm < min_so_far {

@@ -61,11 +61,8 @@ impl<const N: usize> Region<N> {
 
     /// Bounds of one servo's angle, slightly widened so that halves overlap.
     pub fn bounds(&self, servo: usize) -> Interval {
-        let half_width = self.half_widths[servo] + 1e-10;
-        Interval::new(
-            self.middle[servo] - half_width,
-            self.middle[servo] + half_width,
-        )
+        let (middle, half_width) = (self.middle[servo], self.half_widths[servo] + 1e-10);
+        Interval::new(middle - half_width, middle + half_width)
     }
 }
 
@@ -212,9 +209,8 @@ impl<'a> Guard<'a> {
             Check::UncrossedHead | Check::UncrossedTail => LENGTH_RELAXATION_MM,
             _ => 0.0,
         };
-        self.limits
-            .violation(check, value + shift)
-            .map(|violation| violation.limit)
+        let violation = self.limits.violation(check, value + shift)?;
+        Some(violation.limit)
     }
 
     /// Finds a pose with the given angles of some servos that the guard accepts with its unrelaxed limits; `None` if
@@ -309,10 +305,8 @@ mod tests {
             for (checks, [inside, outside]) in cases {
                 for &check in checks {
                     assert_eq!(guard.violated_limit(check, inside), None, "{name}: {check}");
-                    assert!(
-                        guard.violated_limit(check, outside).is_some(),
-                        "{name}: {check}"
-                    );
+                    let is_violated = guard.violated_limit(check, outside).is_some();
+                    assert!(is_violated, "{name}: {check}");
                 }
             }
         }
@@ -355,15 +349,13 @@ mod tests {
                             Some(_) => refused_deg = middle,
                         }
                     }
+                    let middle = angles_at(accepted_deg);
                     let region = Region {
-                        middle: angles_at(accepted_deg),
+                        middle,
                         half_widths: [1e-7; 4],
                     };
-                    assert!(
-                        !guard.refuses(&ALL_SERVOS, &region),
-                        "{name}: {:?}",
-                        angles_at(accepted_deg)
-                    );
+                    let is_refused = guard.refuses(&ALL_SERVOS, &region);
+                    assert!(!is_refused, "{name}: {middle:?}");
                     reached_checks.extend(violated_check_at(angles_at(refused_deg)).flatten());
                 }
             }

@@ -59,15 +59,14 @@ impl Interval {
         let (sin_a, cos_a) = sin_cos(self.low);
         let (sin_b, cos_b) = sin_cos(self.high);
         let bounds_between = |a: f64, b: f64, top_deg: f64, bottom_deg: f64| {
-            let (low, high) = (a.min(b) - SINE_ERROR, a.max(b) + SINE_ERROR);
-            Self::new(
-                if contains_angle(bottom_deg) {
-                    -1.0
-                } else {
-                    low
-                },
-                if contains_angle(top_deg) { 1.0 } else { high },
-            )
+            let (mut low, mut high) = (a.min(b) - SINE_ERROR, a.max(b) + SINE_ERROR);
+            if contains_angle(bottom_deg) {
+                low = -1.0;
+            }
+            if contains_angle(top_deg) {
+                high = 1.0;
+            }
+            Self::new(low, high)
         };
         let sine = bounds_between(sin_a, sin_b, 90.0, -90.0);
         (sine, bounds_between(cos_a, cos_b, 0.0, 180.0))

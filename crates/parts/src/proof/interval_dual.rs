@@ -162,10 +162,8 @@ mod tests {
                 for (x, y) in [(-1.0, 1.0), (0.5, 0.5), (1.0, -1.0), (-0.2, -1.0)] {
                     let crank_angles = [left + x * half_width, right + y * half_width];
                     let step_deg = 1e-5;
-                    for (i, value) in compute_point_and_margin(crank_angles)
-                        .into_iter()
-                        .enumerate()
-                    {
+                    let values = compute_point_and_margin(crank_angles);
+                    for (i, value) in values.into_iter().enumerate() {
                         let IntervalDual { value: bounds, .. } = duals[i];
                         assert!(bounds.low <= value && value <= bounds.high);
                         let change = duals[i].max_change(&[half_width; 2]);

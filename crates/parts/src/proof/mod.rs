@@ -124,9 +124,8 @@ impl NearestPair {
 
     /// Distance in `witness`, mm; the proved bound if `witness` is `None`.
     fn min_distance(&self) -> f64 {
-        self.witness
-            .as_ref()
-            .map_or(self.lower_bound, |clearance| clearance.mm)
+        let witness = self.witness.as_ref();
+        witness.map_or(self.lower_bound, |clearance| clearance.mm)
     }
 }
 
@@ -201,17 +200,15 @@ impl<'a> ProofTasks<'a> {
 
     /// Completes a task; checks at most `max_regions` regions.
     fn complete_within(&self, index: usize, max_regions: u64) -> TaskResult {
-        let mut task = self.tasks[index].clone();
+        let (assembly, mut task) = (self.assembly, self.tasks[index].clone());
         let pinned = match task.may_touch {
-            true => self
-                .assembly
-                .remove_pinned_pairs(&mut task, &self.joint_poses),
+            true => assembly.remove_pinned_pairs(&mut task, &self.joint_poses),
             false => None,
         };
         let nearest = (!task.shape_pairs.is_empty()).then(|| {
-            let nearest = search::find_min_distance(self.assembly, &self.guard, &task, max_regions);
+            let nearest = search::find_min_distance(assembly, &self.guard, &task, max_regions);
             let region_count = nearest.region_count;
-            (self.assembly.to_nearest_pair(nearest), region_count)
+            (assembly.to_nearest_pair(nearest), region_count)
         });
         TaskResult { pinned, nearest }
     }
@@ -294,26 +291,22 @@ impl Assembly {
             b.relative_to(&a)
         };
         let placements: Vec<_> = poses.iter().map(relative_placement).collect();
-        let pose = poses.first()?;
-        let mut nearest: Option<NearestPair> = None;
+        let pose = *poses.first()?;
+        let mut pinned_pairs = Vec::new();
         task.shape_pairs.retain(|pair| {
             let gap = pair.compute_pinned_gap(&placements);
-            if let Some(mm) = gap
-                && nearest
-                    .as_ref()
-                    .is_none_or(|nearest| mm < nearest.lower_bound)
-            {
-                nearest = Some(self.to_nearest_pair(SearchResult {
-                    lower_bound: mm,
-                    bodies: pair.bodies,
-                    nearest: Some(NearestPose { pose: *pose, mm }),
-                    unproved_angles: None,
-                    region_count: 0,
-                }));
-            }
+            pinned_pairs.extend(gap.map(|mm| (mm, pair.bodies)));
             gap.is_none()
         });
-        nearest
+        let pinned_pairs = pinned_pairs.into_iter();
+        let (mm, bodies) = pinned_pairs.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
+        Some(self.to_nearest_pair(SearchResult {
+            lower_bound: mm,
+            bodies,
+            nearest: Some(NearestPose { pose, mm }),
+            unproved_angles: None,
+            region_count: 0,
+        }))
     }
 
     /// Converts a search result to names and angles; angles without effect on the result are neutral.

@@ -22,22 +22,17 @@ const MAX_WORST_TASKS: usize = 3;
 /// `None` if no parts come too close.
 pub fn find_worst_tasks(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
     let robot = assembly.robot();
-    let mut poses: Vec<Solution> = robot
-        .solve_if_allowed(robot.neutral_pose().into())
-        .into_iter()
-        .collect();
+    let neutral_pose = robot.solve_if_allowed(robot.neutral_pose().into());
+    let mut poses = Vec::from_iter(neutral_pose);
     poses.extend((0..81).filter_map(|direction| find_last_accepted_pose(robot, direction)));
     poses.extend(assembly.grid_poses(GRID_ANGLES_PER_SERVO));
     let find_min_distance = |task: &Task| {
-        let distances = poses
-            .iter()
-            .map(|pose| compute_min_distance(assembly, task, pose));
-        distances.fold(f64::INFINITY, f64::min)
+        let distance_at = |pose| compute_min_distance(assembly, task, pose);
+        poses.iter().map(distance_at).fold(f64::INFINITY, f64::min)
     };
     let measured_tasks = tasks.iter().map(|task| (find_min_distance(task), task));
-    let mut worst_tasks: Vec<_> = measured_tasks
-        .filter(|(mm, task)| *mm < task.min_distance())
-        .collect();
+    let worst_tasks = measured_tasks.filter(|(mm, task)| *mm < task.min_distance());
+    let mut worst_tasks: Vec<_> = worst_tasks.collect();
     worst_tasks.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     let worst_tasks = worst_tasks.into_iter().take(MAX_WORST_TASKS);
     let worst_tasks: Vec<_> = worst_tasks.map(|(_, task)| task.clone()).collect();

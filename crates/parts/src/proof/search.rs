@@ -122,42 +122,35 @@ struct Search<'a, const N: usize> {
 impl<const N: usize> Search<'_, N> {
     /// Upper bound of the smallest distance, mm.
     fn upper_bound(&self) -> f64 {
-        self.nearest
-            .as_ref()
-            .map_or(FAR_MM, |nearest| nearest.mm.min(FAR_MM))
+        let nearest = self.nearest.as_ref();
+        nearest.map_or(FAR_MM, |nearest| nearest.mm.min(FAR_MM))
     }
 
     fn run(mut self, max_regions: u64) -> SearchResult {
         let all_poses = Region::from_bounds(self.servos.map(|servo| self.guard.ranges[servo]));
         let all_pairs: Vec<u32> = (0..self.task.shape_pairs.len() as u32).collect();
-        let relative_tolerance = if self.task.may_touch {
-            TOUCHING_RELATIVE_TOLERANCE
-        } else {
-            RELATIVE_TOLERANCE
+        let relative_tolerance = match self.task.may_touch {
+            true => TOUCHING_RELATIVE_TOLERANCE,
+            false => RELATIVE_TOLERANCE,
         };
         // The region with the smallest bound comes first. Regions with equal bounds are ordered by their middles, so
         // the order is deterministic.
-        let order_key = |bounded_region: &BoundedRegion<N>| {
-            (
-                total_order_key(bounded_region.lower_bound),
-                bounded_region.region.middle.map(total_order_key),
-            )
+        let with_order_key = |bounded_region: BoundedRegion<N>| {
+            let bound_key = total_order_key(bounded_region.lower_bound);
+            let middle_key = bounded_region.region.middle.map(total_order_key);
+            ((bound_key, middle_key), bounded_region)
         };
-        let first_region = self.bound_region(all_poses, &all_pairs).into_iter();
-        let mut open_regions: BTreeMap<_, _> = first_region
-            .map(|bounded_region| (order_key(&bounded_region), bounded_region))
-            .collect();
+        let first_region = self.bound_region(all_poses, &all_pairs);
+        let mut open_regions = BTreeMap::from_iter(first_region.map(with_order_key));
         while let Some((_, bounded_region)) = open_regions.pop_first() {
             let upper_bound = self.upper_bound();
-            if bounded_region.lower_bound
-                >= upper_bound - TOLERANCE_MM - relative_tolerance * upper_bound.abs()
-            {
+            let tolerance = relative_tolerance * upper_bound.abs();
+            if bounded_region.lower_bound >= upper_bound - TOLERANCE_MM - tolerance {
                 return self.into_result(bounded_region.lower_bound.min(upper_bound), None);
             }
-            let max_regions = if upper_bound < 0.0 {
-                MAX_REGIONS_OVERLAPPING
-            } else {
-                max_regions
+            let max_regions = match upper_bound < 0.0 {
+                true => MAX_REGIONS_OVERLAPPING,
+                false => max_regions,
             };
             let mut half_widths = bounded_region.region.half_widths.iter();
             let is_small = half_widths.all(|half_width| *half_width < MIN_HALF_WIDTH_DEG);
@@ -166,9 +159,7 @@ impl<const N: usize> Search<'_, N> {
             }
             for half_region in bounded_region.region.halves(bounded_region.split_servo) {
                 let bounded_half = self.bound_region(half_region, &bounded_region.candidate_pairs);
-                open_regions.extend(
-                    bounded_half.map(|bounded_half| (order_key(&bounded_half), bounded_half)),
-                );
+                open_regions.extend(bounded_half.map(with_order_key));
             }
         }
         let upper_bound = self.upper_bound();

@@ -52,10 +52,9 @@ pub struct Task {
 impl Task {
     /// Smallest allowed distance between the task's pairs, mm.
     pub fn min_distance(&self) -> f64 {
-        if self.may_touch {
-            -TOUCH_OVERLAP
-        } else {
-            MIN_GAP_MM
+        match self.may_touch {
+            true => -TOUCH_OVERLAP,
+            false => MIN_GAP_MM,
         }
     }
 
@@ -190,10 +189,8 @@ impl ShapePair {
             depths.fold(disc.distance(other), f64::max)
         };
         let (first, second) = (&self.first, &self.second);
-        let (placement, holes) = (
-            placements.first()?,
-            [&self.holes_for_first, &self.holes_for_second],
-        );
+        let placement = placements.first()?;
+        let holes = [&self.holes_for_first, &self.holes_for_second];
         gap_in_hole(first, holes[0], &keeps_position)
             .or_else(|| {
                 gap_in_hole(second, holes[1], &|second, first| {
@@ -237,13 +234,11 @@ impl ShapePair {
         region: &Region<N>,
     ) -> f64 {
         const ANYWHERE: Vector = Vector::new(f64::INFINITY, f64::INFINITY);
+        let max_change = |coordinate: IntervalDual<N>| coordinate.max_change(&region.half_widths);
         self.lower_bound(placement, |shape| {
             let changes = shape.points.iter().map(|&point| {
                 let position = bounds.map(point);
-                Vector::new(
-                    position.x.max_change(&region.half_widths),
-                    position.y.max_change(&region.half_widths),
-                )
+                Vector::new(max_change(position.x), max_change(position.y))
             });
             changes.fold(Vector::default(), |max, change| match change.is_finite() {
                 true => Vector::new(max.x.max(change.x), max.y.max(change.y)),

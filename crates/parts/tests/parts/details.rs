@@ -25,9 +25,8 @@ fn list_rectangle_points(centre: Vector, size: Vector) -> Vec<Vector> {
 /// Computes the heights and the outline of each layer.
 fn compute_outlines(prisms: &[Prism]) -> Vec<([f64; 2], Outline)> {
     let layers = prisms.iter();
-    layers
-        .map(|prism| (prism.z, Outline::from_prism(prism)))
-        .collect()
+    let outlines = layers.map(|prism| (prism.z, Outline::from_prism(prism)));
+    outlines.collect()
 }
 
 #[test]
@@ -46,11 +45,8 @@ fn the_plate_has_openings_for_the_servos_with_their_leads() {
                 let case = list_rectangle_points(case_centre, vector(servo.width, servo.length));
                 for (z, outline) in &plate {
                     for point in lead.iter().chain(&case) {
-                        assert!(
-                            !outline.contains(*point),
-                            "{name} A{}: {point:?} {z:?}",
-                            servo_index + 1
-                        );
+                        let (is_filled, number) = (outline.contains(*point), servo_index + 1);
+                        assert!(!is_filled, "{name} A{number}: {point:?} {z:?}");
                     }
                 }
                 // The shaft is at the lead's end of the case.
@@ -77,10 +73,8 @@ fn the_coupon_has_the_openings_of_the_plate() {
         let case_area = (parts.servo.length + 2.0 * fit) * (parts.servo.width + 2.0 * fit);
         // The notch extends 1.2 mm beyond the case and its clearance.
         let expected = case_area + 5.0 * 1.2;
-        assert!(
-            (area - expected).abs() < 1e-6,
-            "{column}: {area} {expected}"
-        );
+        let is_near = (area - expected).abs() < 1e-6;
+        assert!(is_near, "{column}: {area} {expected}");
     }
 }
 
@@ -99,10 +93,8 @@ fn a_mounted_coil_extends_between_its_hooks_and_lies_in_its_strut() {
             let inner_diameter = parts.spring.outer_diameter - 2.0 * parts.spring.wire_diameter;
             let expected_length =
                 assembly.layout().legs[leg_index].strut_length + 3.0 - 2.0 * inner_diameter;
-            assert!(
-                (length - expected_length).abs() < 1e-9,
-                "{name} {leg}: {length} {expected_length}"
-            );
+            let is_near = (length - expected_length).abs() < 1e-9;
+            assert!(is_near, "{name} {leg}: {length} {expected_length}");
             if name == "paper" {
                 assert!((length - 24.5).abs() < 0.01, "{length}");
             }
@@ -135,9 +127,8 @@ fn a_coil_that_is_too_high_in_its_strut_is_refused() {
     });
     let has_spring = |a: &Body, b: &Body| a.name == "spring LF" || b.name == "spring LF";
     let proof = altered_assembly.prove_chosen(has_spring, |_, _| ());
-    let clash = proof
-        .check()
-        .expect_err("the coil must be refused as too close to the link");
+    let clash = proof.check();
+    let clash = clash.expect_err("the coil must be refused as too close to the link");
     assert!(clash.to_string().contains("link A1"), "{clash}");
 }
 
@@ -168,10 +159,8 @@ fn the_horn_screws_do_not_reach_the_servo_boss() {
         let screws = bodies.filter(|body| matches!(body.kind, Kind::HornScrew(_)));
         let tip_heights = screws.map(|screw| screw.z()[0]);
         assert_eq!(tip_heights.clone().count(), 8);
-        assert!(
-            tip_heights.fold(f64::MAX, f64::min) > boss_z + 0.5,
-            "{name}"
-        );
+        let min_tip_z = tip_heights.fold(f64::MAX, f64::min);
+        assert!(min_tip_z > boss_z + 0.5, "{name}");
     }
 }
 
@@ -207,10 +196,8 @@ fn compute_min_wall_thickness(part: &Part) -> f64 {
         for island in &Outline::from_prism(prism).islands {
             let point_loops: Vec<_> = island.iter().map(list_loop_points).collect();
             for (i, a) in point_loops.iter().enumerate() {
-                for (b, point) in point_loops[i + 1..]
-                    .iter()
-                    .flat_map(|b| a.iter().map(move |p| (b, p)))
-                {
+                let other_loops = point_loops[i + 1..].iter();
+                for (b, point) in other_loops.flat_map(|b| a.iter().map(move |p| (b, p))) {
                     let distances = b.iter().map(|b_point| (*b_point - *point).length());
                     min_mm = distances.fold(min_mm, f64::min);
                 }
@@ -231,10 +218,8 @@ fn walls_beside_pockets_and_holes_are_as_thick_as_in_robot_toml() {
             // the engraved strokes are close to each other. In a link, the horn's screws are close to the hub. The coil
             // limits the thickness of a ring. A pad's dome tapers to zero at its hole.
             let exceptions = ["plate", "link", "strut ring", "pad"];
-            if exceptions
-                .iter()
-                .any(|prefix| part.name.starts_with(prefix))
-            {
+            let mut exceptions = exceptions.into_iter();
+            if exceptions.any(|prefix| part.name.starts_with(prefix)) {
                 continue;
             }
             let min_mm = compute_min_wall_thickness(&part);
@@ -272,16 +257,14 @@ fn parts_that_look_alike_have_different_marks() {
     for name in ["paper", "large", "unequal"] {
         let parts = build_assembly(name, "").collect_parts();
         let part_noun = |part: &Part| {
-            let name = &part.body_names[0];
-            name.rsplit_once(' ')
-                .map_or(&**name, |(noun, _)| noun)
-                .to_owned()
+            let name = &*part.body_names[0];
+            let noun = name.rsplit_once(' ').map_or(name, |(noun, _)| noun);
+            noun.to_owned()
         };
         let mut marks = Vec::new();
         for part in &parts {
-            let same_noun = parts
-                .iter()
-                .filter(|listed| part_noun(listed) == part_noun(part));
+            let has_same_noun = |listed: &&Part| part_noun(listed) == part_noun(part);
+            let same_noun = parts.iter().filter(has_same_noun);
             let is_spacer = part.name.starts_with("spacer");
             let is_unmarked = same_noun.count() == 1 || is_spacer;
             assert_eq!(part.mark.is_empty(), is_unmarked, "{}", part.name);
@@ -295,11 +278,8 @@ fn parts_that_look_alike_have_different_marks() {
             let bridge_volume = 0.3 * 9.0 * bridged_count as f64;
             let max_volume = part.volume() + bridge_volume - 0.5;
             assert!(solid.volume < max_volume, "{name}: {}", part.name);
-            assert!(
-                Mesh::from_solid(&solid).is_closed(),
-                "{name}: {}",
-                part.name
-            );
+            let mesh = Mesh::from_solid(&solid);
+            assert!(mesh.is_closed(), "{name}: {}", part.name);
         }
         let mark_count = marks.len();
         marks.sort();
@@ -333,10 +313,8 @@ fn no_hole_of_a_printed_part_begins_in_mid_air() {
                 let part = &part.name;
                 assert!((top_below - z[0]).abs() < 1e-9, "{name}: {part}");
                 assert!(z[1] > z[0] + 0.01, "{name}: {part}");
-                for hole in outline
-                    .loops()
-                    .filter(|outline_loop| outline_loop.area() < 0.0)
-                {
+                let is_hole = |outline_loop: &&Loop| outline_loop.area() < 0.0;
+                for hole in outline.loops().filter(is_hole) {
                     // The layer below supports this layer at some point beside the hole.
                     let Some((middle, radius)) = hole.circle() else {
                         continue;

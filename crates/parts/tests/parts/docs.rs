@@ -1,9 +1,9 @@
 //! Tests that the pages about parts agree with the code: values, shopping list, steps.
 
-use lizard_parts::{Bill, build_steps, format_buying_table, format_mounting_table};
+use lizard_parts::{build_steps, format_buying_table, format_mounting_table};
 use lizard_robot::{Parts, Robot};
 
-use crate::{build_assembly, solve_at_neutral};
+use crate::{build_assembly, compute_bill};
 
 fn read_file(path: &str) -> String {
     let path = format!("{}/../../{path}", env!("CARGO_MANIFEST_DIR"));
@@ -54,10 +54,8 @@ fn the_build_page_has_every_key() {
             true => line.starts_with(&format!("[parts.{name}]")),
             false => line.starts_with(&format!("{name} = ")),
         };
-        assert!(
-            block.lines().any(is_key_line),
-            "{name} is missing in docs/build.md"
-        );
+        let is_present = block.lines().any(is_key_line);
+        assert!(is_present, "{name} is missing in docs/build.md");
         checked_count += 1;
     }
     assert!(checked_count > 30, "{checked_count} keys of {debug_text}");
@@ -72,11 +70,8 @@ fn check_or_write_quote(path: &str, start: &str, expected: &str) {
     let (list, text_after) = rest.split_once(END).expect("the list ends");
     if std::env::var_os("BLESS_DOCS").is_some() {
         let file = format!("{}/../../{path}", env!("CARGO_MANIFEST_DIR"));
-        std::fs::write(
-            file,
-            format!("{text_before}{start}{expected}{END}{text_after}"),
-        )
-        .expect(path);
+        let text = format!("{text_before}{start}{expected}{END}{text_after}");
+        std::fs::write(file, text).expect(path);
         return;
     }
     assert_eq!(list, expected, "{path}: run with BLESS_DOCS=1");
@@ -85,35 +80,18 @@ fn check_or_write_quote(path: &str, start: &str, expected: &str) {
 #[test]
 fn the_pages_quote_the_lists_of_the_bill() {
     let assembly = build_assembly("paper", "[leg.drive]\nkind = \"rigid\"");
-    let bill = Bill::compute(
-        &assembly,
-        &assembly.collect_parts(),
-        &solve_at_neutral(&assembly),
-    );
-    let buying_list = format!(
-        "{}\n{}\n",
-        format_buying_table(&bill.bought),
-        bill.format_prices()
-    );
-    for (path, mark, list) in [
-        (
-            "docs/quickstart.md",
-            "the list of `lizard parts`",
-            &buying_list,
-        ),
-        (
-            "docs/quickstart.md",
-            "the list for a radio",
-            &format_buying_table(&bill.radio),
-        ),
-        (
-            "docs/build.md",
-            "the places on the robot",
-            &format_mounting_table(assembly.robot().parts().battery),
-        ),
+    let bill = compute_bill(&assembly);
+    let (table, prices) = (format_buying_table(&bill.bought), bill.format_prices());
+    let buying_list = format!("{table}\n{prices}\n");
+    let radio_list = format_buying_table(&bill.radio);
+    let places = format_mounting_table(assembly.robot().parts().battery);
+    for (page, mark, list) in [
+        ("quickstart", "the list of `lizard parts`", &buying_list),
+        ("quickstart", "the list for a radio", &radio_list),
+        ("build", "the places on the robot", &places),
     ] {
         let start = format!("<!-- {mark}; checked by a test -->\n");
-        check_or_write_quote(path, &start, list);
+        check_or_write_quote(&format!("docs/{page}.md"), &start, list);
         // The guide also contains the list.
         assert!(bill.to_string().contains(list), "{mark}");
     }
@@ -126,11 +104,10 @@ fn the_pages_quote_the_lists_of_the_bill() {
 fn the_pages_have_the_mass_of_robot_toml() {
     let mass = build_assembly("paper", "").robot().ground().body.mass;
     let mass_sentence = format!("The parts weigh {mass:.0} g.");
-    assert!(
-        read_file("docs/twin.md").contains(&mass_sentence),
-        "docs/twin.md: {mass_sentence}"
-    );
-    assert!(read_file("docs/twin.md").contains(&format!("| mass | {mass:.0} g,")));
+    let page = read_file("docs/twin.md");
+    let has_mass = page.contains(&mass_sentence);
+    assert!(has_mass, "docs/twin.md: {mass_sentence}");
+    assert!(page.contains(&format!("| mass | {mass:.0} g,")));
     let mass_line = format!("\nmass = {mass:.1} ");
     for path in ["robot.toml", "robots/paper.toml", "robots/own-gaits.toml"] {
         assert!(read_file(path).contains(&mass_line), "{path}: {mass_line}");

@@ -30,9 +30,8 @@ fn assert_hole_distance(assembly: &Assembly, name: &str, mm: f64) {
     let holes = find_clearance_holes(find_body(assembly, name));
     let distance_error =
         |(ax, ay): &(f64, f64), (bx, by): &(f64, f64)| ((ax - bx).hypot(ay - by) - mm).abs();
-    let has_pair = holes
-        .iter()
-        .any(|a| holes.iter().any(|b| distance_error(a, b) < 1e-9));
+    let is_in_pair = |a| holes.iter().any(|b| distance_error(a, b) < 1e-9);
+    let has_pair = holes.iter().any(is_in_pair);
     assert!(has_pair, "{name}: no two of {holes:?} are {mm} mm apart");
 }
 
@@ -80,24 +79,18 @@ fn a_rigid_strut_has_the_length_of_a_slotted_strut_and_lies_within_it() {
         let assembly = build_assembly(name);
         for (leg, rigid) in assembly.layout().legs.iter().zip(assembly.alternatives()) {
             let expected = [(0.0, 0.0), (leg.strut_length, 0.0)];
-            assert_eq!(
-                find_clearance_holes(rigid),
-                expected,
-                "{name}: {}",
-                rigid.name
-            );
+            let holes = find_clearance_holes(rigid);
+            assert_eq!(holes, expected, "{name}: {}", rigid.name);
             let slotted_name = rigid.name.trim_start_matches("rigid ");
             let slotted = find_body(&assembly, slotted_name);
             assert_eq!(slotted.mount, rigid.mount);
             // The rigid strut lies within the slotted strut, so bodies clear of the slotted strut are clear of both.
             let (inner_z, outer_z) = (rigid.z(), slotted.z());
-            assert!(
-                outer_z[0] <= inner_z[0] && inner_z[1] <= outer_z[1],
-                "{name}"
-            );
+            let is_within = outer_z[0] <= inner_z[0] && inner_z[1] <= outer_z[1];
+            assert!(is_within, "{name}");
+            let bar = &rigid.prisms[0].filled_shapes[0];
             for prism in &slotted.prisms {
-                let depth = rigid.prisms[0].filled_shapes[0]
-                    .depth_in(&prism.filled_shapes[0], Default::default());
+                let depth = bar.depth_in(&prism.filled_shapes[0], Default::default());
                 assert!(depth > -1e-9, "{name}: {depth}");
             }
         }
@@ -122,10 +115,8 @@ fn the_position_of_each_foot_matches_the_contact_model() {
         let assembly = build_assembly(name);
         let robot = assembly.robot();
         for pose in assembly.grid_poses(7) {
-            let feet = robot
-                .ground()
-                .feet
-                .positions(robot.sweeps(pose.pose.into()));
+            let sweeps = robot.sweeps(pose.pose.into());
+            let feet = robot.ground().feet.positions(sweeps);
             for (servo, [forward, left]) in feet.into_iter().enumerate() {
                 let foot = Vector::new(-left, forward);
                 let leg = &assembly.layout().legs[servo];
@@ -133,20 +124,16 @@ fn the_position_of_each_foot_matches_the_contact_model() {
                 let angle = pose.legs[servo].direction.angle();
                 let drawn_leg = leg.points_at(angle, angle);
                 let point_on = |mount, point| assembly.placement(mount, &pose).map(point);
-                let crank = Mount::Crank(servo);
+                let (crank, follower) = (Mount::Crank(servo), Mount::Follower(servo));
+                let ([joint, follower_joint], anchors) =
+                    (drawn_leg.joints, drawn_leg.strut_anchors);
                 for (drawn, built) in [
                     (foot, point_on(Mount::Foot(servo), leg.foot)),
                     (drawn_leg.foot, foot),
-                    (drawn_leg.joints[0], point_on(crank, leg.crank_joint)),
-                    (
-                        drawn_leg.joints[1],
-                        point_on(Mount::Follower(servo), leg.crank_joint),
-                    ),
-                    (
-                        drawn_leg.strut_anchors[0],
-                        point_on(Mount::Link(servo), leg.anchor),
-                    ),
-                    (drawn_leg.strut_anchors[1], point_on(crank, leg.anchor)),
+                    (joint, point_on(crank, leg.crank_joint)),
+                    (follower_joint, point_on(follower, leg.crank_joint)),
+                    (anchors[0], point_on(Mount::Link(servo), leg.anchor)),
+                    (anchors[1], point_on(crank, leg.anchor)),
                 ] {
                     assert!((drawn - built).length() < 1e-9, "{name} {servo}");
                 }
@@ -158,11 +145,10 @@ fn the_position_of_each_foot_matches_the_contact_model() {
 #[test]
 fn all_files_are_identical_in_every_run() {
     let make_files = || -> Vec<_> {
-        let assembly = build_assembly("unequal");
-        let parts = assembly.collect_parts().into_iter();
-        parts
-            .flat_map(|part| make_part_files(&part, 0.2).expect("the part has a closed surface"))
-            .collect()
+        let parts = build_assembly("unequal").collect_parts().into_iter();
+        let files = parts.map(|part| make_part_files(&part, 0.2));
+        let files = files.map(|files| files.expect("the part has a closed surface"));
+        files.flatten().collect()
     };
     let (first, second) = (make_files(), make_files());
     assert!(first.len() > 50);
@@ -181,18 +167,14 @@ fn a_link_is_cut_through_at_its_holes_and_milled_at_its_pockets() {
     let sheets = draw_sheets(link.expect("A1 and A3 have equal links"));
     assert_eq!(sheets.len(), 1);
     let layers = sheets[0].layers.iter();
-    let layers: Vec<_> = layers
-        .map(|layer| (&*layer.name, layer.loops.len()))
-        .collect();
+    let layers = layers.map(|layer| (&*layer.name, layer.loops.len()));
     // Cut through: the outline, the holes of crank, arm, anchor and hub, and the holes of two small screws.
     // Pockets: for two hexagonal heads, for the horn, and for the head of the anchor's screw.
-    assert_eq!(
-        layers,
-        [
-            ("CUT", 7),
-            ("POCKET_2.00_BOTTOM", 2),
-            ("POCKET_2.20_TOP", 1),
-            ("POCKET_1.90_TOP", 1)
-        ]
-    );
+    let expected = [
+        ("CUT", 7),
+        ("POCKET_2.00_BOTTOM", 2),
+        ("POCKET_2.20_TOP", 1),
+        ("POCKET_1.90_TOP", 1),
+    ];
+    assert_eq!(layers.collect::<Vec<_>>(), expected);
 }

@@ -7,10 +7,8 @@ use crate::{ROBOTS, build_assembly, build_slotted_assembly, find_body};
 /// Finds the closest pair of parts of the paper's robot with changed dimensions; `None` if no parts are within 1 mm.
 fn find_closest_pair(toml: &str) -> Option<Clearance> {
     let assembly = build_slotted_assembly("paper", toml);
-    assembly
-        .find_close_pairs(assembly.grid_poses(9), 1.0)
-        .into_iter()
-        .next()
+    let close_pairs = assembly.find_close_pairs(assembly.grid_poses(9), 1.0);
+    close_pairs.into_iter().next()
 }
 
 #[test]
@@ -25,17 +23,14 @@ fn every_robot_has_gaps_between_its_parts() {
 
 #[test]
 fn a_wrong_dimension_makes_parts_overlap() {
+    let large_head_toml = "[parts.screw]\nhead = 14.0\nhead_height = 3.0";
     for (toml, first, second) in [
         ("[parts]\nbar = 24.0", "follower", "follower"),
         ("[parts]\npivot = [6.25, -4.0]", "plate", "crank"),
         ("[parts.servo]\nboss = 20.0", "link", "strut"),
         ("[parts]\nbattery = [90.0, 90.0, 30.0]", "battery", "sleeve"),
         ("[parts]\nanchor = [12.0, 5.0]", "servo", "strut"),
-        (
-            "[parts.screw]\nhead = 14.0\nhead_height = 3.0",
-            "link",
-            "screw",
-        ),
+        (large_head_toml, "link", "screw"),
     ] {
         let pair = find_closest_pair(toml).unwrap_or_else(|| panic!("{toml}: no parts are close"));
         assert!(pair.mm < 0.0, "{toml}: {pair}");
@@ -102,6 +97,7 @@ fn screws_are_centred_in_the_holes_of_the_parts_that_they_hold() {
 fn a_robot_that_does_not_fit_is_refused_with_its_reason() {
     let bar_message =
         "parts.bar must be at least 7.3 mm for a screw's head and a wall on each side, but is 6 mm";
+    let height_message = "parts.height must be at least 21.3 mm";
     let spring_message = "leg strut LF is 30.2 mm from screw to screw, but must be long enough to stretch its spring, which is 40.0 mm";
     // As drawn in the paper, the pivot lies under the servo's link.
     let drawn_pivot = "[parts]\npivot = [6.25, -4.0]\n[parts.spring]\nlength = 8.0";
@@ -110,17 +106,12 @@ fn a_robot_that_does_not_fit_is_refused_with_its_reason() {
         (drawn_pivot, [" and ", "overlap by"]),
         (near_pivot, ["overlap by", "at pose"]),
         ("[parts]\nbar = 6.0", [bar_message, ""]),
-        (
-            "[parts]\nheight = 15.0",
-            ["parts.height must be at least 21.3 mm", ""],
-        ),
+        ("[parts]\nheight = 15.0", [height_message, ""]),
         ("[parts.spring]\nlength = 40.0", [spring_message, ""]),
         ("[parts]\nthickness = 15.0", ["do not form one body", ""]),
     ] {
-        let message = build_slotted_assembly("paper", toml)
-            .check_fit()
-            .expect_err(toml)
-            .to_string();
+        let fit = build_slotted_assembly("paper", toml).check_fit();
+        let message = fit.expect_err(toml).to_string();
         for phrase in phrases {
             assert!(message.contains(phrase), "{message}");
         }

@@ -12,9 +12,8 @@ use crate::{ROBOTS, build_assembly};
 /// Finds the bodies of a fitting.
 fn find_bodies(assembly: &Assembly, fitting: Fitting) -> Vec<&Body> {
     let bodies = assembly.bodies().iter();
-    bodies
-        .filter(|body| body.kind == Kind::Fitting(fitting))
-        .collect()
+    let bodies = bodies.filter(|body| body.kind == Kind::Fitting(fitting));
+    bodies.collect()
 }
 
 /// Computes the extents of points along x and y, mm.
@@ -53,10 +52,8 @@ fn both_example_products_fit_into_the_space_of_their_fitting() {
                 let space = sort_lengths([width, length, high - low]);
                 for product in spec.examples {
                     let size = sort_lengths(product.size);
-                    let fits = size
-                        .iter()
-                        .zip(space)
-                        .all(|(length, limit)| *length <= limit + 1e-9);
+                    let mut lengths = size.iter().zip(space);
+                    let fits = lengths.all(|(length, limit)| *length <= limit + 1e-9);
                     assert!(fits, "{product} in {space:?}");
                 }
             }
@@ -70,11 +67,8 @@ fn both_example_batteries_fit_into_every_robots_battery_space() {
         let assembly = build_assembly(name, "");
         let space = assembly.robot().parts().battery;
         for product in BATTERY_EXAMPLES {
-            let fits = product
-                .size
-                .iter()
-                .zip(space)
-                .all(|(length, limit)| *length <= limit);
+            let mut lengths = product.size.iter().zip(space);
+            let fits = lengths.all(|(length, limit)| *length <= limit);
             assert!(fits, "{name}: {product} in {space:?}");
             assert!(format_mounting_table(space).contains(product.name));
         }
@@ -96,10 +90,8 @@ fn drawn_screws_and_nuts_have_the_sizes_of_their_standards() {
 fn a_product_size_without_a_drawing_is_marked_as_approximate() {
     let [exact, approximate] = Fitting::RadioSpace.spec().examples;
     assert_eq!(exact.to_string(), "HM-10, bare board: 13 x 27 x 2.2");
-    assert!(
-        approximate.to_string().ends_with(": ~16 x 37 x 7"),
-        "{approximate}"
-    );
+    let is_marked = approximate.to_string().ends_with(": ~16 x 37 x 7");
+    assert!(is_marked, "{approximate}");
 }
 
 #[test]
@@ -162,10 +154,8 @@ fn price_classes_are_contiguous_and_a_sum_adds_their_bounds() {
         assert_eq!(pair[0].euro_range()[1], pair[1].euro_range()[0]);
     }
     let classes = [PriceClass::A, PriceClass::C, PriceClass::C, PriceClass::E];
-    assert_eq!(
-        PriceClass::sum(classes.into_iter()),
-        [3 + 3 + 15, 1 + 7 + 7 + 30]
-    );
+    let sum = PriceClass::sum(classes.into_iter());
+    assert_eq!(sum, [3 + 3 + 15, 1 + 7 + 7 + 30]);
     let text = PriceClass::explanation();
     for phrase in ["A up to 1", "E 15 to 30", "2026", "vary"] {
         assert!(text.contains(phrase), "{text}");

@@ -1,7 +1,7 @@
 //! Tests of the robot's parts, with the robot files in robots/.
 
 use lizard_kinematics::Solution;
-use lizard_parts::{Assembly, Body};
+use lizard_parts::{Assembly, Bill, Body};
 use lizard_robot::Robot;
 
 mod bill;
@@ -49,6 +49,12 @@ fn build_slotted_assembly(name: &str, more_toml: &str) -> Assembly {
 /// Solves the robot's linkages at neutral.
 fn solve_at_neutral(assembly: &Assembly) -> Solution {
     mjcf_reader::solve_at_neutral(assembly.robot())
+}
+
+/// Computes the bill of a robot, with its centre of mass at neutral.
+fn compute_bill(assembly: &Assembly) -> Bill {
+    let (parts, pose) = (assembly.collect_parts(), solve_at_neutral(assembly));
+    Bill::compute(assembly, &parts, &pose)
 }
 
 /// Finds the body with this name.

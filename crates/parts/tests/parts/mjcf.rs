@@ -78,10 +78,8 @@ fn pads_match_the_contact_model_and_the_longest_foot_is_on_the_floor() {
                 .map(|coordinate| 1000.0 * coordinate);
             let pad_bottom = z - 1000.0 * read_numbers(pad, "size")[0];
             let [forward, left] = feet[servo];
-            assert!(
-                (y - forward).hypot(x + left) < 1e-5,
-                "{name}: pad at {x}, {y}"
-            );
+            let error = (y - forward).hypot(x + left);
+            assert!(error < 1e-5, "{name}: pad at {x}, {y}");
             let error = pad_bottom - (0.6 - excess);
             assert!(error.abs() < 1e-5, "{name}: bottom at {pad_bottom} mm");
             assert_eq!(first_child(foot, "joint").attribute("type"), Some("slide"));
@@ -91,14 +89,12 @@ fn pads_match_the_contact_model_and_the_longest_foot_is_on_the_floor() {
 
 #[test]
 fn light_limbs_keep_the_mass_of_the_robot() {
-    let (normal_mass, _) = compute_mass_and_centre(&make_mjcf(&read_robot("paper"), |_| {}));
-    let (light_mass, _) = compute_mass_and_centre(&make_mjcf(&read_robot("paper"), |scene| {
-        scene.limb_mass_factor = 0.2
-    }));
-    assert!(
-        (normal_mass - light_mass).abs() < 1e-3,
-        "{normal_mass} g and {light_mass} g"
-    );
+    let robot = read_robot("paper");
+    let (normal_mass, _) = compute_mass_and_centre(&make_mjcf(&robot, |_| {}));
+    let light_text = make_mjcf(&robot, |scene| scene.limb_mass_factor = 0.2);
+    let (light_mass, _) = compute_mass_and_centre(&light_text);
+    let is_equal = (normal_mass - light_mass).abs() < 1e-3;
+    assert!(is_equal, "{normal_mass} g and {light_mass} g");
 }
 
 #[test]
@@ -116,10 +112,8 @@ fn pads_of_every_shape_touch_the_floor() {
         let document = Document::parse(&text).expect("the file is well-formed XML");
         let bodies_by_name = read_bodies(&document);
         let (placement, foot) = &bodies_by_name["foot LF"];
-        let geoms: Vec<_> = foot
-            .children()
-            .filter(|node| node.has_attribute("friction"))
-            .collect();
+        let has_friction = |node: &Node| node.has_attribute("friction");
+        let geoms: Vec<_> = foot.children().filter(has_friction).collect();
         assert_eq!(geoms.len(), count, "{pads:?}");
         for (layer, geom) in geoms.iter().enumerate() {
             let size = read_numbers(*geom, "size");
@@ -127,9 +121,9 @@ fn pads_of_every_shape_touch_the_floor() {
                 .to_world(&read_numbers(*geom, "pos"))
                 .map(|coordinate| 1000.0 * coordinate);
             let half_height = 1000.0 * size[size.len() - 1];
-            let expected_bottom = 0.1 * layer as f64;
+            let error = z - half_height - 0.1 * layer as f64;
             assert!(
-                (z - half_height - expected_bottom).abs() < 1e-5,
+                error.abs() < 1e-5,
                 "{pads:?}, layer {layer}: centre at {z}, half height {half_height}"
             );
             if let Pads::Terraces(_) = pads {
@@ -156,31 +150,23 @@ fn the_file_has_the_blocks_slope_and_friction_of_the_floor() {
         scene.floor.friction_coefficients = [0.1, 0.2, 0.3, 0.4];
     });
     let document = Document::parse(&text).expect("the file is well-formed XML");
-    let mut nodes = document.descendants();
-    let option = nodes
-        .find(|node| node.has_tag_name("option"))
-        .expect("the file has an option element");
+    let option = first_child(document.root_element(), "option");
     // The floor rises by 30 deg, so half of the weight pulls the robot backward.
     let [right, forward, up] = read_numbers(option, "gravity")[..] else {
         panic!("gravity has three components")
     };
-    assert!(
-        right == 0.0 && (forward + 0.5 * 9.81).abs() < 0.01,
-        "forward: {forward}"
-    );
+    let is_expected = right == 0.0 && (forward + 0.5 * 9.81).abs() < 0.01;
+    assert!(is_expected, "forward: {forward}");
     assert!((up + 0.866 * 9.81).abs() < 0.01, "up: {up}");
-    let mut nodes = document.descendants();
-    let block = nodes
-        .find(|node| node.has_tag_name("geom") && node.attribute("type") == Some("box"))
-        .expect("the floor has a block");
+    let is_block = |node: &Node| node.has_tag_name("geom") && node.attribute("type") == Some("box");
+    let block = document.descendants().find(is_block);
+    let block = block.expect("the floor has a block");
     let [position, half_size] = ["pos", "size"].map(|attribute| read_numbers(block, attribute));
     assert_eq!((position[0], position[1]), (0.02, 0.3));
     let euler = read_numbers(block, "euler");
     assert!((euler[2] - 30f64.to_radians()).abs() < 1e-6 && euler[..2] == [0.0; 2]);
-    assert_eq!(
-        (half_size[0], half_size[1], position[2] + half_size[2]),
-        (0.005, 0.02, 0.002)
-    );
+    assert_eq!((half_size[0], half_size[1]), (0.005, 0.02));
+    assert_eq!(position[2] + half_size[2], 0.002);
     for (leg, friction) in LEG_NAMES.into_iter().zip([0.1, 0.2, 0.3, 0.4]) {
         let pad = find_named(&document, "geom", &format!("pad {leg}"));
         // Without a priority, MuJoCo would use the larger friction coefficient of pad and floor.
@@ -214,24 +200,17 @@ fn the_contact_sphere_of_a_pad_matches_its_dome() {
         triangle_count += 1;
         for ([.., z], axis_distance) in corners.into_iter().zip(axis_distances) {
             let sphere_z = top - radius + (radius.powi(2) - axis_distance.powi(2)).sqrt();
-            assert!(
-                (z - sphere_z).abs() < 0.002,
-                "dome at {z} mm, sphere at {sphere_z} mm"
-            );
+            let is_near = (z - sphere_z).abs() < 0.002;
+            assert!(is_near, "dome at {z} mm, sphere at {sphere_z} mm");
             lowest_z = lowest_z.min(z);
         }
         let [a, b, c] = corners;
-        let ([ux, uy, _], [vx, vy, _]) = (
-            [0, 1, 2].map(|i| b[i] - a[i]),
-            [0, 1, 2].map(|i| c[i] - a[i]),
-        );
+        let [[ux, uy, _], [vx, vy, _]] = [b, c].map(|end| [0, 1, 2].map(|i| end[i] - a[i]));
         assert!(ux * vy - uy * vx > 1e-6, "a vertical triangle: {corners:?}");
     }
-    assert!(
-        triangle_count > 1000 && top - lowest_z > 1.9,
-        "{triangle_count} triangles, {} mm high",
-        top - lowest_z
-    );
+    let height = top - lowest_z;
+    let is_dome = triangle_count > 1000 && height > 1.9;
+    assert!(is_dome, "{triangle_count} triangles, {height} mm high");
 }
 
 #[test]
@@ -280,10 +259,9 @@ fn servos_have_the_stall_torque_no_load_rate_and_travel_of_robot_toml() {
                 panic!("forcerange has two values")
             };
             // The stall torque of the SG-90, 1.8 kg cm.
-            assert!(
-                (max_torque - 0.018 * 9.80665).abs() < 1e-6 && min_torque == -max_torque,
-                "torques {min_torque} and {max_torque} N m"
-            );
+            let error = max_torque - 0.018 * 9.80665;
+            let is_expected = error.abs() < 1e-6 && min_torque == -max_torque;
+            assert!(is_expected, "torques {min_torque} and {max_torque} N m");
             let rate = max_torque / read_numbers(joint, "damping")[0];
             assert!((rate.to_degrees() - 500.0).abs() < 1e-3, "{rate} rad/s");
             let (low, high) = robot.servos()[servo].travel();
@@ -304,19 +282,14 @@ fn the_motors_and_the_joint_friction_match_robot_toml() {
     let robot = Robot::parse(&text).expect("the robot is valid");
     let text = make_mjcf(&robot, |_| {});
     let document = Document::parse(&text).expect("the file is well-formed XML");
-    let joints: Vec<Node> = document
-        .descendants()
-        .filter(|node| node.has_tag_name("joint"))
-        .collect();
     let joint_friction = |name_prefix: &str| -> Vec<f64> {
-        let has_prefix = |node: &&Node| {
+        let is_matching = |node: &Node| {
             let name = node.attribute("name").unwrap_or_default();
-            name.starts_with(name_prefix)
+            node.has_tag_name("joint") && name.starts_with(name_prefix)
         };
-        let matching_joints = joints.iter().filter(has_prefix);
-        matching_joints
-            .map(|node| read_numbers(*node, "frictionloss")[0])
-            .collect()
+        let joints = document.descendants().filter(is_matching);
+        let friction = joints.map(|node| read_numbers(node, "frictionloss")[0]);
+        friction.collect()
     };
     assert_eq!(joint_friction("link"), [0.017; 4]);
     assert_eq!(joint_friction("rod"), [0.5; 2]);
@@ -328,10 +301,8 @@ fn the_motors_and_the_joint_friction_match_robot_toml() {
     assert!((read_numbers(link, "armature")[0] - 0.01 * damping).abs() < 1e-8);
     let motor = section_elements(&document, "actuator")[0];
     let max_torque = read_numbers(motor, "forcerange")[1];
-    assert!(
-        (max_torque - 0.012 * 9.80665 * 4.2 / 4.8).abs() < 1e-6,
-        "{max_torque} N m"
-    );
+    let error = max_torque - 0.012 * 9.80665 * 4.2 / 4.8;
+    assert!(error.abs() < 1e-6, "{max_torque} N m");
 }
 
 #[test]
@@ -361,10 +332,8 @@ fn the_file_has_the_servo_targets_and_the_measured_cycles_of_a_trajectory() {
         let expected = gait.angles(gait.phase_at(time - start));
         for (servo, target) in read_numbers(key, "ctrl").into_iter().enumerate() {
             let error = expected[servo] - robot.servos()[servo].neutral - target.to_degrees();
-            assert!(
-                lizard_kinematics::wrap(error).abs() < 0.11,
-                "{time} s: off by {error} deg"
-            );
+            let is_near = lizard_kinematics::wrap(error).abs() < 0.11;
+            assert!(is_near, "{time} s: off by {error} deg");
         }
     }
 }

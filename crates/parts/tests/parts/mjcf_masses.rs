@@ -36,9 +36,8 @@ fn read_robot_with_mass(name: &str, mass: f64, [forward, left]: [f64; 2]) -> Rob
     let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect(&path);
     let (text_before, text_after) = text.split_once("\nmass = ").expect("the file has a mass");
-    let (_, text_after) = text_after
-        .split_once('\n')
-        .expect("another line follows the mass");
+    let lines = text_after.split_once('\n');
+    let (_, text_after) = lines.expect("another line follows the mass");
     let keys = format!("\nmass = {mass:.1}\ncentre = [{forward:.1}, {left:.1}]\n");
     Robot::parse(&format!("{text_before}{keys}{text_after}")).expect(name)
 }
@@ -56,10 +55,8 @@ fn mass_and_centre_of_mass_match_robot_toml() {
             let bill = Bill::compute(&Assembly::new(&robot), &[], &solve_at_neutral(&robot));
             let (grams, [forward, left, up]) = compute_mass_and_centre(&make_mjcf(&robot, |_| {}));
             // The mesh replaces each arc by chords, so it loses a little volume.
-            assert!(
-                (grams / mass - 1.0).abs() < 2e-3,
-                "{name}: {grams} g, not {mass} g"
-            );
+            let error = grams / mass - 1.0;
+            assert!(error.abs() < 2e-3, "{name}: {grams} g, not {mass} g");
             let error = (forward - centre[0]).hypot(left - centre[1]);
             assert!(error < 0.05, "{name}: {forward}, {left}, not {centre:?}");
             // The model places the wires at the height of the plate.
@@ -82,10 +79,8 @@ fn the_leg_mass_of_the_contact_model_matches_the_parts() {
                 let body = find_named(&document, "body", &format!("{part} {leg}"));
                 let inertial = first_child(body, "inertial");
                 let centre = read_numbers(inertial, "pos");
-                (
-                    read_numbers(inertial, "mass")[0],
-                    centre[0].hypot(centre[1]),
-                )
+                let mass = read_numbers(inertial, "mass")[0];
+                (mass, centre[0].hypot(centre[1]))
             };
             // Foot and coupler move as the pad does. Crank and follower rotate about their pivots, so their centres of
             // mass move by a fraction of the pad's motion.

@@ -18,8 +18,8 @@ pub fn make_mjcf(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
     let assembly = Assembly::new(robot);
     let mut scene = Scene::for_assembly(&assembly);
     change(&mut scene);
-    format_mjcf(&assembly, &solve_at_neutral(robot), &scene)
-        .expect("every part has a closed surface")
+    let text = format_mjcf(&assembly, &solve_at_neutral(robot), &scene);
+    text.expect("every part has a closed surface")
 }
 
 /// Reads the numbers in an attribute, separated by spaces.
@@ -82,11 +82,8 @@ pub fn read_bodies<'a>(document: &'a Document) -> Bodies<'a> {
                 position: parent_placement.to_world(&read_numbers(body, "pos")),
                 rotation: parent_placement.rotation + 2.0 * quat[3].atan2(quat[0]),
             };
-            let name = body
-                .attribute("name")
-                .expect("the body has a name")
-                .to_owned();
-            let previous = found_bodies.insert(name, (placement, body));
+            let name = body.attribute("name").expect("the body has a name");
+            let previous = found_bodies.insert(name.to_owned(), (placement, body));
             assert!(previous.is_none(), "two bodies have the same name");
             add_child_bodies(body, placement, found_bodies);
         }

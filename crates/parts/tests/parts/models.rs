@@ -42,15 +42,10 @@ fn read_text(node: Node, tag: &str) -> String {
 fn elements_by_name<'a>(parent: Node<'a, 'a>, tag: &str) -> BTreeMap<String, Node<'a, 'a>> {
     let mut nodes = BTreeMap::new();
     for node in parent.children().filter(|node| node.has_tag_name(tag)) {
-        let name = node
-            .attribute("name")
-            .expect("the element has a name")
-            .to_owned();
+        let name = node.attribute("name").expect("the element has a name");
         assert!(!name.contains(' '), "{name}");
-        assert!(
-            nodes.insert(name.clone(), node).is_none(),
-            "{name} occurs twice"
-        );
+        let is_new = nodes.insert(name.to_owned(), node).is_none();
+        assert!(is_new, "{name} occurs twice");
     }
     nodes
 }
@@ -72,10 +67,7 @@ const INERTIA_KEYS: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 /// Reads the bodies of a URDF file. The joints between the root and a link determine the link's placement.
 fn read_urdf(document: &Document) -> BTreeMap<String, ParsedBody> {
     let root = document.root_element();
-    let (links, joints) = (
-        elements_by_name(root, "link"),
-        elements_by_name(root, "joint"),
-    );
+    let [links, joints] = ["link", "joint"].map(|tag| elements_by_name(root, tag));
     let read_link = |joint: &Node, tag: &str| {
         let link = first_child(*joint, tag).attribute("link");
         link.expect("the joint has a link").to_owned()
@@ -99,20 +91,16 @@ fn read_urdf(document: &Document) -> BTreeMap<String, ParsedBody> {
     for (name, link) in &links {
         let mut children = link.children();
         let Some(inertial) = children.find(|node| node.has_tag_name("inertial")) else {
-            assert!(
-                name == "base_link" || name.starts_with("closing_"),
-                "{name}"
-            );
+            let is_massless = name == "base_link" || name.starts_with("closing_");
+            assert!(is_massless, "{name}");
             continue;
         };
         let inertia =
             INERTIA_KEYS.map(|key| read_numbers(first_child(inertial, "inertia"), key)[0]);
         let mass = read_numbers(first_child(inertial, "mass"), "value")[0];
         let centre = read_numbers(first_child(inertial, "origin"), "xyz");
-        bodies.insert(
-            name.clone(),
-            (compute_placement(name), mass, centre, inertia.to_vec()),
-        );
+        let body = (compute_placement(name), mass, centre, inertia.to_vec());
+        bodies.insert(name.clone(), body);
     }
     bodies
 }
@@ -135,15 +123,8 @@ fn read_sdf(document: &Document) -> BTreeMap<String, ParsedBody> {
         let inertia = INERTIA_KEYS.map(|name| parse_numbers(&read_text(inertia_node, name))[0]);
         let mass = parse_numbers(&read_text(inertial, "mass"))[0];
         let centre = parse_numbers(&read_text(inertial, "pose"))[..3].to_vec();
-        bodies.insert(
-            name.clone(),
-            (
-                compute_placement(&links, name),
-                mass,
-                centre,
-                inertia.to_vec(),
-            ),
-        );
+        let placement = compute_placement(&links, name);
+        bodies.insert(name.clone(), (placement, mass, centre, inertia.to_vec()));
     }
     bodies
 }
@@ -172,10 +153,8 @@ fn the_bodies_of_urdf_and_sdf_match_the_mujoco_file() {
                     // The x axis of URDF and SDF, which points forward, is the y axis of the MuJoCo file.
                     let [x, y, z] = expected_placement.position;
                     for (actual, expected) in placement.position.into_iter().zip([y, -x, z]) {
-                        assert!(
-                            (actual - expected).abs() < 1e-8,
-                            "{name}: {actual} m, not {expected} m"
-                        );
+                        let is_near = (actual - expected).abs() < 1e-8;
+                        assert!(is_near, "{name}: {actual} m, not {expected} m");
                     }
                     let angle = placement.rotation - expected_placement.rotation + FRAC_PI_2;
                     let error = angle.sin().hypot(1.0 - angle.cos());
@@ -191,10 +170,8 @@ fn the_two_halves_of_each_cut_urdf_joint_coincide() {
     for name in ROBOTS {
         let ([urdf, _], _) = make_urdf_sdf_and_mesh_paths(&read_robot_with(name, ""), |_| {});
         let document = Document::parse(&urdf).expect("the file is well-formed XML");
-        let (links, joints) = (
-            read_urdf(&document),
-            elements_by_name(document.root_element(), "joint"),
-        );
+        let links = read_urdf(&document);
+        let joints = elements_by_name(document.root_element(), "joint");
         let locate_half = |name: &str| {
             let joint = joints[&format!("{name}_joint")];
             assert_eq!(joint.attribute("type"), Some("fixed"));
@@ -203,10 +180,8 @@ fn the_two_halves_of_each_cut_urdf_joint_coincide() {
             placement.to_world(&read_numbers(first_child(joint, "origin"), "xyz"))
         };
         let mut joint_count = 0;
-        for joint_name in joints
-            .keys()
-            .filter_map(|name| name.strip_suffix("_1_joint"))
-        {
+        let names = joints.keys();
+        for joint_name in names.filter_map(|name| name.strip_suffix("_1_joint")) {
             let [first_point, second_point] =
                 ["1", "2"].map(|number| locate_half(&format!("{joint_name}_{number}")));
             let error = (first_point[0] - second_point[0]).hypot(first_point[1] - second_point[1]);
@@ -227,10 +202,8 @@ fn urdf_and_sdf_have_the_names_and_limits_of_the_servos() {
     let [urdf, sdf] =
         [&urdf, &sdf].map(|text| Document::parse(text).expect("the file is well-formed XML"));
     let model = first_child(sdf.root_element(), "model");
-    let (urdf_joints, sdf_joints) = (
-        elements_by_name(urdf.root_element(), "joint"),
-        elements_by_name(model, "joint"),
-    );
+    let urdf_joints = elements_by_name(urdf.root_element(), "joint");
+    let sdf_joints = elements_by_name(model, "joint");
     let links = elements_by_name(model, "link");
     assert!(sdf_joints.keys().all(|joint| !links.contains_key(joint)));
     for (servo, name) in SERVO_NAMES.into_iter().enumerate() {
@@ -249,10 +222,8 @@ fn urdf_and_sdf_have_the_names_and_limits_of_the_servos() {
         let sdf_limits = attributes.map(|attribute| parse_numbers(&read_text(limit, attribute))[0]);
         for limits in [urdf_limits, sdf_limits] {
             for (actual, expected) in limits.into_iter().zip(expected) {
-                assert!(
-                    (actual - expected).abs() < 1e-8,
-                    "{name}: {actual}, not {expected}"
-                );
+                let is_near = (actual - expected).abs() < 1e-8;
+                assert!(is_near, "{name}: {actual}, not {expected}");
             }
         }
     }
@@ -267,13 +238,8 @@ fn the_meshes_match_the_references_in_urdf_and_sdf() {
         let urdf_references = nodes.clone().filter_map(|node| node.attribute("filename"));
         let uri_nodes = nodes.filter(|node| node.has_tag_name("uri"));
         let references = urdf_references.chain(uri_nodes.filter_map(|node| node.text()));
-        let referenced_paths: BTreeSet<String> = references
-            .map(|path| {
-                path.strip_prefix("at/")
-                    .expect("the folder is at/")
-                    .to_owned()
-            })
-            .collect();
+        let paths = references.map(|path| path.strip_prefix("at/").expect("the folder is at/"));
+        let referenced_paths: BTreeSet<_> = paths.map(str::to_owned).collect();
         assert_eq!(referenced_paths, mesh_paths);
     }
     let (texts, _) = make_urdf_sdf_and_mesh_paths(&read_robot_with("paper", ""), |scene| {

@@ -45,12 +45,11 @@ fn find_blocked_screws(
     let assembly = build_slotted_assembly("paper", "");
     let mut steps = build_guide_steps(&assembly);
     change(&mut steps);
-    let blocked_screws = assembly.find_blocked_screws(&steps, &solve_at_neutral(&assembly));
+    let mut blocked_screws = assembly.find_blocked_screws(&steps, &solve_at_neutral(&assembly));
+    blocked_screws.retain(|blocked| !blocked.screw.starts_with("screw foot"));
     let blocked_screws = blocked_screws.into_iter();
-    blocked_screws
-        .filter(|blocked| !blocked.screw.starts_with("screw foot"))
-        .map(|blocked| (blocked.screw, blocked.operation, blocked.obstacle))
-        .collect()
+    let to_tuple = |blocked: BlockedScrew| (blocked.screw, blocked.operation, blocked.obstacle);
+    blocked_screws.map(to_tuple).collect()
 }
 
 #[test]
@@ -67,10 +66,19 @@ fn a_wrong_order_is_detected() {
         });
     });
     let mut operations = blocked_screws.iter().map(|(_, operation, _)| operation);
-    assert!(
-        operations.any(|operation| *operation == ScrewOperation::Push),
-        "{blocked_screws:?}"
-    );
+    let is_detected = operations.any(|operation| *operation == ScrewOperation::Push);
+    assert!(is_detected, "{blocked_screws:?}");
+}
+
+/// Asserts that a screw cannot be turned at any pose, because another body is in the way.
+#[track_caller]
+fn assert_turn_is_blocked(assembly: &Assembly, screw: &str, obstacle: &str) {
+    let access_poses = assembly.find_access_poses(&build_guide_steps(assembly));
+    let message = format!("{obstacle} must be reported as an obstacle");
+    let blocked = access_poses.expect_err(&message);
+    let expected = (screw, ScrewOperation::Turn);
+    assert_eq!((&*blocked.screw, blocked.operation), expected);
+    assert_eq!(blocked.obstacle, obstacle);
 }
 
 #[test]
@@ -81,14 +89,7 @@ fn a_pad_without_a_hole_for_the_key_is_detected() {
             body.prisms[0].cut_shapes.clear();
         }
     });
-    let blocked_screw = glued_assembly
-        .find_access_poses(&build_guide_steps(&glued_assembly))
-        .expect_err("the pad must be reported as an obstacle");
-    assert_eq!(
-        (&*blocked_screw.screw, blocked_screw.operation),
-        ("screw height LF", ScrewOperation::Turn)
-    );
-    assert_eq!(blocked_screw.obstacle, "pad LF");
+    assert_turn_is_blocked(&glued_assembly, "screw height LF", "pad LF");
     // The check finds the pad both in the step that mounts it and in the step that levels the feet.
     let steps = build_guide_steps(&glued_assembly);
     let level_step = steps.iter().position(|step| step.title == "Level the feet");
@@ -97,10 +98,8 @@ fn a_pad_without_a_hole_for_the_key_is_detected() {
         glued_assembly.find_blocked_screws(&steps, &solve_at_neutral(&glued_assembly));
     for step in [7, level_step] {
         let is_pad = |blocked: &BlockedScrew| blocked.step == step && blocked.obstacle == "pad LF";
-        assert!(
-            blocked_screws.iter().any(is_pad),
-            "step {step}: {blocked_screws:?}"
-        );
+        let is_found = blocked_screws.iter().any(is_pad);
+        assert!(is_found, "step {step}: {blocked_screws:?}");
     }
 }
 
@@ -114,13 +113,7 @@ fn a_strut_under_the_head_of_a_screw_is_detected() {
             }
         }
     });
-    let blocked_screw = altered_assembly.find_access_poses(&build_guide_steps(&altered_assembly));
-    let blocked_screw = blocked_screw.expect_err("the strut must be reported as an obstacle");
-    assert_eq!(
-        (&*blocked_screw.screw, blocked_screw.operation),
-        ("screw tip A4", ScrewOperation::Turn)
-    );
-    assert_eq!(blocked_screw.obstacle, "strut LH");
+    assert_turn_is_blocked(&altered_assembly, "screw tip A4", "strut LH");
 }
 
 #[test]
@@ -136,9 +129,8 @@ fn a_screw_that_is_covered_at_every_pose_is_reported() {
         }
         bodies.push(lid);
     });
-    let blocked_screw = covered_assembly
-        .find_access_poses(&build_guide_steps(&covered_assembly))
-        .expect_err("the lid must be reported as an obstacle");
+    let access_poses = covered_assembly.find_access_poses(&build_guide_steps(&covered_assembly));
+    let blocked_screw = access_poses.expect_err("the lid must be reported as an obstacle");
     assert_eq!(blocked_screw.obstacle, "deck lid");
     let message = BuildError::from(blocked_screw).to_string();
     let expected = "at step 3 of the guide: deck lid is in the way, at every pose";
@@ -148,25 +140,20 @@ fn a_screw_that_is_covered_at_every_pose_is_reported() {
 #[test]
 fn parts_that_move_together_do_not_overlap() {
     for name in ROBOTS {
-        assert_eq!(
-            build_slotted_assembly(name, "").check_dimensions(),
-            Ok(()),
-            "{name}"
-        );
+        let result = build_slotted_assembly(name, "").check_dimensions();
+        assert_eq!(result, Ok(()), "{name}");
     }
     // The head of a standoff's screw overlaps the boss of the board's screw.
     let altered_assembly = build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         let is_screw = |body: &&mut Body| body.name == "screw standoff 1 above";
         for body in bodies.iter_mut().filter(is_screw) {
-            let heads = body
-                .prisms
-                .iter_mut()
-                .map(|prism| &mut prism.filled_shapes[0]);
-            heads.for_each(|shape| shape.points[0].y -= 1.0);
+            for prism in &mut body.prisms {
+                prism.filled_shapes[0].points[0].y -= 1.0;
+            }
         }
     });
-    let message = altered_assembly
-        .check_dimensions()
+    let result = altered_assembly.check_dimensions();
+    let message = result
         .expect_err("the overlap must be reported")
         .to_string();
     let expected = "deck and screw standoff 1 above, which move together, overlap by 0.5";
@@ -198,27 +185,22 @@ fn no_body_is_above_a_screw_head_that_can_be_reached() {
             {
                 continue;
             }
-            if blocked_screws
-                .iter()
-                .any(|blocked| blocked.screw == screw.name)
-            {
+            let is_blocked = |blocked: &BlockedScrew| blocked.screw == screw.name;
+            if blocked_screws.iter().any(is_blocked) {
                 assert!(name == "unequal" && screw.name.starts_with("screw anchor"));
                 continue;
             }
-            let head = assembly
-                .placement(screw.mount, &pose)
-                .map(high.filled_shapes[0].middle());
+            let placement = assembly.placement(screw.mount, &pose);
+            let head = placement.map(high.filled_shapes[0].middle());
             for direction in 0..12 {
                 let rim = head + Vector::from_angle(30.0 * f64::from(direction)) * 1.99;
                 for height_step in 1..60 {
                     let z = high.z[1] + 0.5 * f64::from(height_step);
-                    let is_later = |body: &Body| find_step(body) > screw_step;
-                    let is_ignored =
-                        |body: &Body| body.name == screw.name || body.name.starts_with("board");
-                    for (body, layers) in outlines
-                        .iter()
-                        .filter(|(body, _)| !is_later(body) && !is_ignored(body))
-                    {
+                    for (body, layers) in &outlines {
+                        let is_ignored = body.name == screw.name || body.name.starts_with("board");
+                        if find_step(body) > screw_step || is_ignored {
+                            continue;
+                        }
                         let point = assembly.placement(body.mount, &pose).unmap(rim);
                         for (prism, outline) in body.prisms.iter().zip(layers) {
                             let is_at_height = prism.z[0] < z && z < prism.z[1];
@@ -231,9 +213,7 @@ fn no_body_is_above_a_screw_head_that_can_be_reached() {
                 }
             }
         }
-        assert!(
-            checked_count > 1000,
-            "{name}: {checked_count} points checked"
-        );
+        let is_enough = checked_count > 1000;
+        assert!(is_enough, "{name}: {checked_count} points checked");
     }
 }

@@ -1,10 +1,10 @@
 //! Tests of pads for a strip with a grain: the notch for the strip's end, and the notch's direction.
 
 use lizard_kinematics::Vector;
-use lizard_parts::{Bill, Outline, Part, PrintTransform, Prism, Shape, make_documents};
+use lizard_parts::{Outline, Part, Prism, Shape, make_documents};
 use lizard_robot::servo::LEG_NAMES;
 
-use crate::{GRAIN_ROBOT, build_assembly, find_body, solve_at_neutral};
+use crate::{GRAIN_ROBOT, build_assembly, compute_bill, find_body, solve_at_neutral};
 
 /// Finds the notch of a pad, its only hole with corners; `None` for a plain pad.
 fn find_notch(prisms: &[Prism]) -> Option<&Shape> {
@@ -23,31 +23,22 @@ fn the_notches_of_all_four_printed_pads_point_to_the_head_when_mounted() {
     };
     assert_eq!(pad.count(), 4);
     let (layers, bridged_count) = pad.build_printed_layers();
-    assert_eq!(
-        bridged_count, 1,
-        "the hole for the key is bridged, as in a plain pad"
-    );
+    let message = "the hole for the key is bridged, as in a plain pad";
+    assert_eq!(bridged_count, 1, "{message}");
     let notch = find_notch(&layers).expect("the printed pad has a notch");
     // A foot never turns, so the second pose must give the same result.
     let poses = [[0.0; 4], [9.0, -8.0, 7.0, -6.0]].map(|turns| {
         let angles: [f64; 4] = assembly.robot().neutral_pose().into();
         let angles = std::array::from_fn(|servo| angles[servo] + turns[servo]);
-        assembly
-            .robot()
-            .solve_if_allowed(angles)
-            .expect("the guard accepts the pose")
+        let pose = assembly.robot().solve_if_allowed(angles);
+        pose.expect("the guard accepts the pose")
     });
-    for (pose, leg) in poses
-        .iter()
-        .flat_map(|pose| LEG_NAMES.map(|leg| (pose, leg)))
-    {
-        let (pad_body, screw) = (
-            find_body(&assembly, &format!("pad {leg}")),
-            find_body(&assembly, &format!("screw height {leg}")),
-        );
-        let PrintTransform {
-            is_flipped, frame, ..
-        } = pad.transform_to_body(pad_body);
+    let with_legs = |pose| LEG_NAMES.map(|leg| (pose, leg));
+    for (pose, leg) in poses.iter().flat_map(with_legs) {
+        let [pad_body, screw] =
+            ["pad", "screw height"].map(|noun| find_body(&assembly, &format!("{noun} {leg}")));
+        let transform = pad.transform_to_body(pad_body);
+        let (is_flipped, frame) = (transform.is_flipped, transform.frame);
         let placement = assembly.placement(pad_body.mount, pose);
         let to_robot = |point: &Vector| {
             let y = if is_flipped { -point.y } else { point.y };
@@ -68,9 +59,8 @@ fn the_notches_of_all_four_printed_pads_point_to_the_head_when_mounted() {
 fn a_pad_with_a_notch_is_as_high_as_a_plain_pad_and_no_wider() {
     let assemblies = ["paper", GRAIN_ROBOT].map(|name| build_assembly(name, ""));
     for leg in LEG_NAMES {
-        let [plain_body, notched_body] = assemblies
-            .each_ref()
-            .map(|assembly| find_body(assembly, &format!("pad {leg}")));
+        let find_pad = |assembly| find_body(assembly, &format!("pad {leg}"));
+        let [plain_body, notched_body] = assemblies.each_ref().map(find_pad);
         assert_eq!(plain_body.z(), notched_body.z());
         assert!(find_notch(&plain_body.prisms).is_none());
         assert_eq!(plain_body.prisms.len(), notched_body.prisms.len());
@@ -78,9 +68,8 @@ fn a_pad_with_a_notch_is_as_high_as_a_plain_pad_and_no_wider() {
         for (plain, notched) in plain_body.prisms.iter().zip(&notched_body.prisms) {
             assert_eq!(plain.z, notched.z);
             let end_radii = |prism: &Prism| {
-                prism
-                    .insets
-                    .map(|inset| prism.filled_shapes[0].radius - inset)
+                let radius = prism.filled_shapes[0].radius;
+                prism.insets.map(|inset| radius - inset)
             };
             let [plain_radii, notched_radii] = [plain, notched].map(end_radii);
             for (notched_radius, plain_radius) in notched_radii.into_iter().zip(plain_radii) {
@@ -106,10 +95,8 @@ fn a_pad_with_a_notch_is_as_high_as_a_plain_pad_and_no_wider() {
 fn a_strip_that_does_not_fit_its_pad_is_rejected() {
     for (width, fits) in [(4.0, false), (5.0, true), (14.5, true), (15.5, false)] {
         let assembly = build_assembly("paper", &format!("[parts]\nstrip = {width:.1}"));
-        let message = assembly
-            .check_dimensions()
-            .err()
-            .map(|error| error.to_string());
+        let error = assembly.check_dimensions().err();
+        let message = error.map(|error| error.to_string());
         assert_eq!(message.is_none(), fits, "a strip of {width} mm");
         assert!(message.is_none_or(|message| message.starts_with("parts.strip must be")));
     }
@@ -120,20 +107,16 @@ fn bill_and_guide_mention_strips_only_for_a_robot_with_strips() {
     for (name, has_strip) in [("paper", false), (GRAIN_ROBOT, true)] {
         let assembly = build_assembly(name, "");
         let pose = solve_at_neutral(&assembly);
-        let bill = Bill::compute(&assembly, &assembly.collect_parts(), &pose);
-        let strips = bill
-            .inputs
-            .iter()
-            .filter(|item| item.name.starts_with("strip with a grain, 8 x 30 mm"));
+        let (bill, strip_name) = (compute_bill(&assembly), "strip with a grain, 8 x 30 mm");
+        let inputs = bill.inputs.iter();
+        let strips = inputs.filter(|item| item.name.starts_with(strip_name));
         let strip_count = strips.map(|item| item.count).sum::<usize>();
         assert_eq!(strip_count, 4 * usize::from(has_strip), "{name}");
         let files = make_documents(&assembly, &bill, &pose).expect("every screw can be reached");
         let text = files.iter().find(|file| file.path.ends_with("guide.md"));
         let text = String::from_utf8_lossy(&text.expect("the documents contain the guide").bytes);
-        for phrase in [
-            "folded up and glued into the notch",
-            "point straight to the head",
-        ] {
+        let notch_phrase = "folded up and glued into the notch";
+        for phrase in [notch_phrase, "point straight to the head"] {
             assert_eq!(text.contains(phrase), has_strip, "{name}: {phrase}");
         }
     }

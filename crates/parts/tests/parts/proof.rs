@@ -14,10 +14,8 @@ struct Random(u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        let product = self.0.wrapping_mul(6_364_136_223_846_793_005);
+        self.0 = product.wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
@@ -63,10 +61,8 @@ fn assert_bounds_hold(name: &str) {
     for pose in &poses {
         let angles: [f64; 4] = pose.pose.into();
         for (angle, [low, high]) in angles.into_iter().zip(proof.ranges) {
-            assert!(
-                (low..=high).contains(&angle),
-                "{name}: {angle} deg is outside {low} to {high}"
-            );
+            let is_inside = (low..=high).contains(&angle);
+            assert!(is_inside, "{name}: {angle} deg is outside {low} to {high}");
         }
     }
     for pair in assembly.find_close_pairs(poses, FAR_MM - 0.2) {
@@ -75,10 +71,8 @@ fn assert_bounds_hold(name: &str) {
         let proved_pair =
             pairs.find(|proved| find_mounts([&proved.first, &proved.second]) == mounts);
         let proved_pair = proved_pair.unwrap_or_else(|| panic!("{name}: no bound for {pair}"));
-        assert!(
-            proved_pair.lower_bound <= pair.mm,
-            "{name}: {pair}, but {proved_pair}"
-        );
+        let holds = proved_pair.lower_bound <= pair.mm;
+        assert!(holds, "{name}: {pair}, but {proved_pair}");
     }
     for pair in proof.separate_pairs.iter().chain(&proof.touching_pairs) {
         let Some(witness) = &pair.witness else {
@@ -115,15 +109,11 @@ fn rigid_struts_are_at_least_as_far_from_other_parts_as_slotted_struts() {
         let is_strut = |body: &Body| matches!(body.mount, Mount::Strut(_));
         let proof = assembly.prove_chosen(|a, b| is_strut(a) || is_strut(b), |_, _| ());
         assert_eq!(proof.check(), Ok(()), "{kind}");
-        proof
-            .nearest_separate_pair()
-            .expect("some pair is near")
-            .lower_bound
+        let nearest_pair = proof.nearest_separate_pair();
+        nearest_pair.expect("some pair is near").lower_bound
     });
-    assert!(
-        rigid_gap >= slotted_gap,
-        "rigid {rigid_gap} mm, slotted {slotted_gap} mm"
-    );
+    let is_as_far = rigid_gap >= slotted_gap;
+    assert!(is_as_far, "rigid {rigid_gap} mm, slotted {slotted_gap} mm");
 }
 
 #[test]
@@ -135,21 +125,14 @@ fn own_gaits_and_grain_have_the_same_parts_as_the_papers_robot() {
         })
     };
     // The pads of `grain` are not compared: they are no wider than plain pads, as the tests in `pads.rs` show.
-    for (assembly, paper) in [
-        (build_slotted_assembly("own-gaits", ""), paper.clone()),
-        (
-            without_pads(build_slotted_assembly(GRAIN_ROBOT, "")),
-            without_pads(paper),
-        ),
-    ] {
+    let own_gaits = build_slotted_assembly("own-gaits", "");
+    let grain = without_pads(build_slotted_assembly(GRAIN_ROBOT, ""));
+    for (assembly, paper) in [(own_gaits, paper.clone()), (grain, without_pads(paper))] {
         assert_eq!(assembly.bodies(), paper.bodies());
         assert_eq!(assembly.robot().limits(), paper.robot().limits());
         let [travels, paper_travels] = [&assembly, &paper].map(|assembly| {
-            assembly
-                .robot()
-                .servos()
-                .each_ref()
-                .map(|servo| servo.travel())
+            let servos = assembly.robot().servos().each_ref();
+            servos.map(|servo| servo.travel())
         });
         assert_eq!(travels, paper_travels);
     }
@@ -190,11 +173,8 @@ fn an_overlap_due_to_a_wrong_dimension_is_detected() {
         ("pivot = [22.0, 6.0]", "crank", "crank", "plate"),
     ] {
         let altered_assembly = build_slotted_assembly("paper", &format!("[parts]\n{parts_line}"));
-        assert_overlap(
-            find_clash(&altered_assembly, |body| body.name.starts_with(prefix)),
-            first,
-            second,
-        );
+        let clash = find_clash(&altered_assembly, |body| body.name.starts_with(prefix));
+        assert_overlap(clash, first, second);
     }
 }
 
@@ -205,11 +185,8 @@ fn a_large_overlap_is_detected_early() {
         panic!("no overlap");
     };
     assert!(clearance.mm < -5.0, "{clearance}");
-    assert!(
-        proof.region_count < 10_000,
-        "{} regions",
-        proof.region_count
-    );
+    let region_count = proof.region_count;
+    assert!(region_count < 10_000, "{region_count} regions");
 }
 
 /// Builds the paper's robot with one screw that is longer by `extra_mm`.
@@ -238,11 +215,8 @@ fn a_screw_that_is_too_long_is_detected() {
         ("screw leg anchor LF", 5.0, false, "link A1"),
     ] {
         let altered_assembly = build_assembly_with_longer_screw(name, extra_mm, extends_down);
-        assert_overlap(
-            find_clash(&altered_assembly, |body| body.name == name),
-            name,
-            obstacle,
-        );
+        let clash = find_clash(&altered_assembly, |body| body.name == name);
+        assert_overlap(clash, name, obstacle);
     }
 }
 
@@ -251,10 +225,8 @@ fn swapped_layers_are_detected() {
     // The upper and the lower coupler of the head swap their heights.
     let altered_assembly = build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         let find_index = |name: &str| {
-            bodies
-                .iter()
-                .position(|body| body.name == name)
-                .expect(name)
+            let index = bodies.iter().position(|body| body.name == name);
+            index.expect(name)
         };
         let [lower_index, upper_index] = ["coupler A1", "coupler A2"].map(find_index);
         let z = bodies[lower_index].prisms[0].z;
@@ -276,8 +248,8 @@ fn a_hole_that_is_displaced_from_its_pin_is_detected() {
             }
         }
     });
-    let Clash::Overlap(clearance) = find_clash(&altered_assembly, |body| body.name == "coupler A4")
-    else {
+    let clash = find_clash(&altered_assembly, |body| body.name == "coupler A4");
+    let Clash::Overlap(clearance) = clash else {
         panic!("no overlap");
     };
     assert!((clearance.mm + 0.2).abs() < 0.02, "{clearance}");
@@ -331,11 +303,8 @@ fn a_rod_stays_in_its_sleeve_throughout_the_stroke() {
         // Each side of the rod has a clearance of 0.2 mm in the bore.
         assert_eq!(proof.touching_pairs.len(), 2);
         for pair in &proof.touching_pairs {
-            let gap = pair
-                .witness
-                .as_ref()
-                .expect("the rod is near its sleeve")
-                .mm;
+            let witness = pair.witness.as_ref();
+            let gap = witness.expect("the rod is near its sleeve").mm;
             assert!((gap - assembly.robot().parts().fit).abs() < 1e-9, "{pair}");
         }
     }
@@ -348,10 +317,8 @@ fn the_screw_of_a_strut_has_clearance_along_its_whole_slot() {
     let leg = assembly.layout().legs[0];
     let screw_radius = assembly.robot().parts().screw.diameter / 2.0;
     let is_at_screw = |cut: &&Shape| (cut.points[0].x - leg.strut_length).abs() < 1e-9;
-    let mut slots = strut.prisms[0]
-        .cut_shapes
-        .iter()
-        .filter(|cut| cut.points.len() == 2);
+    let cuts = strut.prisms[0].cut_shapes.iter();
+    let mut slots = cuts.filter(|cut| cut.points.len() == 2);
     let slot = slots.find(is_at_screw).expect("the strut has a slot");
     for step in 0..=10 {
         let travel = 5.0 * f64::from(step) / 10.0;

@@ -1,6 +1,7 @@
 //! Tests of calibration files, of console lines and of transfers.
 
 use super::*;
+use crate::testing::{assert_contains, read_table};
 
 /// A calibration with a different trim for each servo.
 fn example_calibration() -> Calibration {
@@ -20,10 +21,8 @@ fn example_calibration() -> Calibration {
 #[test]
 fn a_calibration_written_as_a_file_is_read_back_unchanged() {
     let text = example_calibration().to_toml();
-    assert_eq!(
-        Calibration::parse(&text, "a.toml"),
-        Ok(example_calibration())
-    );
+    let calibration = Calibration::parse(&text, "a.toml");
+    assert_eq!(calibration, Ok(example_calibration()));
 }
 
 #[test]
@@ -43,101 +42,49 @@ fn an_error_in_a_file_is_reported_with_its_line_and_key() {
     let error_message = |old: &str, new: &str| {
         assert!(valid_text.contains(old), "{old}");
         let invalid_text = valid_text.replacen(old, new, 1);
-        let error =
-            Calibration::parse(&invalid_text, "a.toml").expect_err("the changed text is invalid");
-        error.to_string()
+        let result = Calibration::parse(&invalid_text, "a.toml");
+        result.expect_err("the changed text is invalid").to_string()
     };
-    let robot_file_error = Calibration::parse("[links]\nl0 = 20.0\n", "a.toml")
-        .expect_err("a robot file is not a calibration");
+    let result = Calibration::parse("[links]\nl0 = 20.0\n", "a.toml");
+    let robot_file_error = result.expect_err("a robot file is not a calibration");
     let format_problem =
         "must be \"lizard calibration 1\": this is not a calibration file of a supported version";
-    assert_eq!(
-        robot_file_error.to_string(),
-        format!("a.toml: format {format_problem}")
+    let expected = format!("a.toml: format {format_problem}");
+    assert_eq!(robot_file_error.to_string(), expected);
+    let mut lines = valid_text.lines();
+    let line_before = lines.position(|line| line == "trim = -3.25");
+    let line_before = line_before.expect("servo A1 has this trim");
+    let trim = format!("a.toml:{}: servo.A1.trim", line_before + 1);
+    let mistakes = format!(
+        r#"
+        calibration 1 | calibration 2 | a.toml:4: format {format_problem}
+        trim = -3.25 | trim = "much" | {trim} is the string "much"; it must be a number
+        trim = -3.25 | trim = 1.234 | {trim} is 1.234; it must have at most two decimals
+        trim = -3.25 | trim = 1e9 | {trim} is 1e9; it must be between -360 and 360 deg
+        arc left | walk\nsave | a.toml:5: boot is not the name of a gait
+        deadman = 1500 | deadman = 1.5 | a.toml:6: deadman must be a whole number of ms
+        "#
     );
-    let line = 1 + valid_text
-        .lines()
-        .position(|line| line == "trim = -3.25")
-        .expect("servo A1 has this trim");
-    let trim_prefix = format!("a.toml:{line}: servo.A1.trim ");
-    for (old, new, message) in [
-        (
-            "calibration 1",
-            "calibration 2",
-            format!("a.toml:4: format {format_problem}"),
-        ),
-        (
-            "trim = -3.25\n",
-            "",
-            format!(
-                "a.toml:{}: servo.A1.trim is missing; it must be a number",
-                line - 1
-            ),
-        ),
-        (
-            "trim = -3.25",
-            "trim = \"much\"",
-            format!("{trim_prefix}is the string \"much\"; it must be a number"),
-        ),
-        (
-            "trim = -3.25",
-            "trim = 1.234",
-            format!("{trim_prefix}is 1.234; it must have at most two decimals"),
-        ),
-        (
-            "trim = -3.25",
-            "trim = 1e9",
-            format!("{trim_prefix}is 1e9; it must be between -360 and 360 deg"),
-        ),
-        (
-            "arc left",
-            "walk\\nsave",
-            "a.toml:5: boot is not the name of a gait".to_owned(),
-        ),
-        (
-            "deadman = 1500",
-            "deadman = 1.5",
-            "a.toml:6: deadman must be a whole number of ms".to_owned(),
-        ),
-    ] {
+    for [old, new, message] in read_table(&mistakes) {
         assert_eq!(error_message(old, new), message);
     }
-    for (old, new, phrase) in [
-        (
-            "trim = -3.25",
-            "trim = nan",
-            "servo.A1.trim is nan; it must be a number",
-        ),
-        (
-            "dir = \"-\"",
-            "dir = \"left\"",
-            "servo.A1.dir is \"left\"; it must be \"+\" or \"-\"",
-        ),
-        (
-            "[48.59, 228.59]",
-            "[1]",
-            "servo.A1.limit is an array of 1; it must be an array of two numbers",
-        ),
-        (
-            "[48.59, 228.59]",
-            "[1, 2.001]",
-            "servo.A1.limit is 2.001; it must have at most two decimals",
-        ),
-        (
-            "scale = 10.0",
-            "scale = 10.0\nscal = 9",
-            "servo.A1.scal is not a known key",
-        ),
-        (
-            "deadman = 1500",
-            "deadman = -1",
-            "deadman is -1; it must be between 0 and 60000 ms",
-        ),
-        ("format = \"", "format = \"x\n", "is missing the = between"),
-    ] {
-        let message = error_message(old, new);
-        assert!(message.contains(phrase), "{message} / {phrase}");
+    let no_trim = error_message("trim = -3.25\n", "");
+    let expected = format!("a.toml:{line_before}: servo.A1.trim is missing; it must be a number");
+    assert_eq!(no_trim, expected);
+    let mistakes = r#"
+        trim = -3.25 | trim = nan | servo.A1.trim is nan; it must be a number
+        dir = "-" | dir = "left" | servo.A1.dir is "left"; it must be "+" or "-"
+        [48.59, 228.59] | [1] | servo.A1.limit is an array of 1; it must be an array of two numbers
+        [48.59, 228.59] | [1, 2.001] | servo.A1.limit is 2.001; it must have at most two decimals
+        deadman = 1500 | deadman = -1 | deadman is -1; it must be between 0 and 60000 ms
+    "#;
+    for [old, new, phrase] in read_table(mistakes) {
+        assert_contains(&error_message(old, new), phrase);
     }
+    let unknown_key = error_message("scale = 10.0", "scale = 10.0\nscal = 9");
+    assert_contains(&unknown_key, "servo.A1.scal is not a known key");
+    let broken_line = error_message("format = \"", "format = \"x\n");
+    assert_contains(&broken_line, "is missing the = between");
 }
 
 #[test]
@@ -146,28 +93,18 @@ fn the_answer_to_cal_and_the_console_lines_contain_every_setting() {
         # A2 trim 0 limit 48.59 228.59 dir - scale 10|# A3 trim 0.1 limit 48.59 228.59 dir - scale 10|\
         # A4 trim 20 limit 48.59 228.59 dir - scale 10";
     let lines: Vec<String> = answer.split('|').map(str::to_owned).collect();
-    assert_eq!(
-        Calibration::from_cal_answer(&lines),
-        Some(example_calibration())
-    );
+    let calibration = Calibration::from_cal_answer(&lines);
+    assert_eq!(calibration, Some(example_calibration()));
     for index in 0..lines.len() {
         let mut remaining_lines = lines.clone();
         let is_needed = !remaining_lines.remove(index).contains("pose");
-        assert_eq!(
-            Calibration::from_cal_answer(&remaining_lines).is_none(),
-            is_needed,
-            "{remaining_lines:?}"
-        );
+        let calibration = Calibration::from_cal_answer(&remaining_lines);
+        assert_eq!(calibration.is_none(), is_needed, "{remaining_lines:?}");
     }
     let console_lines = example_calibration().to_console_lines();
     assert_eq!(console_lines.len(), 18);
-    let first_lines = [
-        "dir 1 -",
-        "scale 1 10.00",
-        "trim 1 -3.25",
-        "limit 1 48.59 228.59",
-    ];
-    assert_eq!(console_lines[..4], first_lines);
+    let first_lines = "dir 1 -|scale 1 10.00|trim 1 -3.25|limit 1 48.59 228.59";
+    assert_eq!(console_lines[..4].join("|"), first_lines);
     assert_eq!(console_lines[16..], ["boot arc left", "deadman 1500"]);
 }
 
@@ -187,17 +124,13 @@ fn changing_the_scale_or_the_direction_keeps_the_neutral_pulse_width() {
             let scaled = servo.with_scale(scale);
             assert_eq!(scaled.scale, scale);
             // A trim is rounded to hundredths of a degree.
-            assert!(
-                (pulse_shift_us(scaled) - pulse_shift_us(servo)).abs() <= 0.005 * scale + 1e-9,
-                "{scaled:?}"
-            );
+            let error_us = pulse_shift_us(scaled) - pulse_shift_us(servo);
+            assert!(error_us.abs() <= 0.005 * scale + 1e-9, "{scaled:?}");
             let reversed = servo.reversed();
             assert_eq!(pulse_shift_us(reversed), pulse_shift_us(servo));
             assert_eq!(reversed.reversed(), servo);
-            assert!(
-                reversed.trim.is_sign_positive() || reversed.trim < 0.0,
-                "the trim must not be -0"
-            );
+            let is_no_negative_zero = reversed.trim.is_sign_positive() || reversed.trim < 0.0;
+            assert!(is_no_negative_zero, "the trim must not be -0");
         }
     }
 }
@@ -215,10 +148,8 @@ fn equivalent_calibrations_differ_at_most_by_full_turns_of_the_limits() {
     for (index, change) in changes.into_iter().enumerate() {
         let mut changed_calibration = example_calibration();
         change(&mut changed_calibration);
-        assert!(
-            !changed_calibration.is_equivalent_to(&example_calibration()),
-            "change {index}"
-        );
+        let is_equivalent = changed_calibration.is_equivalent_to(&example_calibration());
+        assert!(!is_equivalent, "change {index}");
     }
     let mut turned_calibration = example_calibration();
     turned_calibration.servos[2].limit = [48.59 - 360.0, 228.59 - 360.0];
@@ -228,17 +159,13 @@ fn equivalent_calibrations_differ_at_most_by_full_turns_of_the_limits() {
 /// Sends the lines of a transfer to a robot that refuses some of the lines. Returns the sent lines, and true if every
 /// setting was accepted in the end.
 fn simulate_transfer(is_refused: impl Fn(&str, &[String]) -> bool) -> (Vec<String>, bool) {
-    let (mut transfer, mut sent_lines, mut accepted_lines) = (
-        Transfer::new(&example_calibration()),
-        Vec::new(),
-        Vec::new(),
-    );
+    let mut transfer = Transfer::new(&example_calibration());
+    let (mut sent_lines, mut accepted_lines) = (Vec::new(), Vec::new());
     while let Some(line) = transfer.next_line() {
-        match is_refused(&line, &accepted_lines) {
-            true => {
-                transfer.record_refusal();
-            }
-            false => accepted_lines.push(line.clone()),
+        if is_refused(&line, &accepted_lines) {
+            transfer.record_refusal();
+        } else {
+            accepted_lines.push(line.clone());
         }
         sent_lines.push(line);
         assert!(sent_lines.len() < 500, "the transfer must end");
@@ -267,12 +194,7 @@ fn refused_lines_are_sent_again_and_once_more_after_factory() {
     // The transfer gives up a line that is still refused after the round that starts with `factory`.
     let (sent_lines, is_done) = simulate_transfer(|line, _| line.starts_with("limit 4"));
     assert!(!is_done);
-    assert_eq!(
-        sent_lines
-            .iter()
-            .filter(|line| line.as_str() == "factory")
-            .count(),
-        1
-    );
+    let is_factory = |line: &&String| *line == "factory";
+    assert_eq!(sent_lines.iter().filter(is_factory).count(), 1);
     assert!(!simulate_transfer(|_, _| true).1);
 }

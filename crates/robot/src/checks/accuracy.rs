@@ -55,31 +55,27 @@ pub(crate) fn compute_table_error(
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::all_robots;
+    use crate::testing::for_each_gait;
 
     #[test]
     fn the_maximum_error_covers_all_servos() {
         const SAMPLE_COUNT: usize = 1024;
-        for (name, robot) in all_robots() {
-            for gait in robot.gaits() {
-                let mut errors = [0.0f64; 4];
-                for i in 0..SAMPLE_COUNT {
-                    let table_angles = gait.table_angles((64 * i) as u16);
-                    let exact_angles = gait.angles(i as f64 / SAMPLE_COUNT as f64);
-                    for servo in 0..4 {
-                        errors[servo] =
-                            errors[servo].max((table_angles[servo] - exact_angles[servo]).abs());
-                    }
+        for_each_gait(|label, _, gait| {
+            let mut errors = [0.0f64; 4];
+            for i in 0..SAMPLE_COUNT {
+                let table_angles = gait.table_angles((64 * i) as u16);
+                let exact_angles = gait.angles(i as f64 / SAMPLE_COUNT as f64);
+                for servo in 0..4 {
+                    let error = (table_angles[servo] - exact_angles[servo]).abs();
+                    errors[servo] = errors[servo].max(error);
                 }
-                let table_error = gait.table_error_over(SAMPLE_COUNT);
-                let max_error = errors.into_iter().fold(0.0, f64::max);
-                assert_eq!(table_error.max, max_error, "{name} {}", gait.name());
-                assert_eq!(errors[table_error.servo], max_error);
-                assert!(
-                    table_error.rms <= max_error
-                        && 2.0 * table_error.rms >= max_error / SAMPLE_COUNT as f64
-                );
             }
-        }
+            let table_error = gait.table_error_over(SAMPLE_COUNT);
+            let max_error = errors.into_iter().fold(0.0, f64::max);
+            assert_eq!(table_error.max, max_error, "{label}");
+            assert_eq!(errors[table_error.servo], max_error);
+            assert!(table_error.rms <= max_error);
+            assert!(2.0 * table_error.rms >= max_error / SAMPLE_COUNT as f64);
+        });
     }
 }

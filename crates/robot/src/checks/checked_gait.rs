@@ -192,11 +192,8 @@ impl CheckedGait {
         let mut max_lag = 0.0;
         for sweeps in self.sweeps_over_cycle(step_count) {
             walker.move_to(sweeps);
-            max_lag = walker
-                .lags()
-                .into_iter()
-                .map(f64::abs)
-                .fold(max_lag, f64::max);
+            let lags = walker.lags().map(f64::abs);
+            max_lag = lags.into_iter().fold(max_lag, f64::max);
         }
         SimulatedCycle {
             travel: walker.body_pose().travel_from(start_pose),
@@ -271,44 +268,29 @@ pub struct SimulatedCycle {
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::{all_robots, robot};
+    use crate::testing::{for_each_gait, robot};
 
     #[test]
     fn frames_are_20_ms_apart_and_cover_the_cycle() {
-        for (name, robot) in all_robots() {
-            for gait in robot.gaits() {
-                let frames: Vec<(f64, u16)> = gait.frames().collect();
-                assert_eq!(frames[0], (0.0, 0));
-                let (end_seconds, _) = frames[frames.len() - 1];
-                let overrun_seconds = end_seconds - gait.period();
-                assert!(
-                    (-1e-9..0.02 - 1e-9).contains(&overrun_seconds),
-                    "{name} {}",
-                    gait.name()
-                );
-                for (seconds, phase) in frames {
-                    // After a complete cycle, the phase is 0 again.
-                    let error =
-                        (f64::from(phase) / 65536.0 - gait.phase_at(seconds)).rem_euclid(1.0);
-                    assert!(
-                        error.min(1.0 - error) < 1e-4,
-                        "{name} {} at {seconds} s",
-                        gait.name()
-                    );
-                }
+        for_each_gait(|label, _, gait| {
+            let frames: Vec<(f64, u16)> = gait.frames().collect();
+            assert_eq!(frames[0], (0.0, 0));
+            let (end_seconds, _) = frames[frames.len() - 1];
+            let overrun_seconds = end_seconds - gait.period();
+            assert!((-1e-9..0.02 - 1e-9).contains(&overrun_seconds), "{label}");
+            for (seconds, phase) in frames {
+                // After a complete cycle, the phase is 0 again.
+                let error = (f64::from(phase) / 65536.0 - gait.phase_at(seconds)).rem_euclid(1.0);
+                assert!(error.min(1.0 - error) < 1e-4, "{label} at {seconds} s");
             }
-        }
+        });
     }
 
     #[test]
     fn only_the_gait_stand_has_no_movement() {
         let robot = robot("own-gaits");
-        let still_gaits: Vec<&str> = robot
-            .gaits()
-            .iter()
-            .filter(|gait| !gait.has_movement())
-            .map(|gait| gait.name())
-            .collect();
-        assert_eq!(still_gaits, ["stand"]);
+        let still_gaits = robot.gaits().iter().filter(|gait| !gait.has_movement());
+        let names: Vec<&str> = still_gaits.map(|gait| gait.name()).collect();
+        assert_eq!(names, ["stand"]);
     }
 }

@@ -14,11 +14,8 @@ pub(crate) fn describe_violation(check: Check) -> String {
     }
     if let Some(servo) = index_in(&Check::TYPE1) {
         let end = End::from_servo(servo);
-        let side_name = if end.servos()[0] == servo {
-            "left"
-        } else {
-            "right"
-        };
+        let is_left = end.servos()[0] == servo;
+        let side_name = if is_left { "left" } else { "right" };
         return format!("the {side_name} elbow of the {end} could flip over");
     }
     if let Some(leg) = index_in(&Check::LEG) {

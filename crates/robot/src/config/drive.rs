@@ -43,25 +43,18 @@ pub(crate) fn read(
         return Err(section.error("kind", format!("is \"{kind_name}\"; {suggestion}")));
     };
     let mut all_keys = KINDS.into_iter().flat_map(|(_, keys)| keys);
-    if let Some(foreign_key) = all_keys.find(|key| !own_keys.contains(key) && section.has_key(key))
-    {
-        return Err(section.error(
-            foreign_key,
-            format!("is not allowed with kind = \"{kind_name}\""),
-        ));
+    let is_foreign = |key: &&&str| !own_keys.contains(key) && section.has_key(key);
+    if let Some(foreign_key) = all_keys.find(is_foreign) {
+        let message = format!("is not allowed with kind = \"{kind_name}\"");
+        return Err(section.error(foreign_key, message));
     }
     let kind = match kind_name {
         "strut" => {
             let coil_strut = strut::strut_with_coil(legs, neutral_angles, parts, &parts.spring);
+            let (force, rate) = (coil_strut.preload, coil_strut.spring_rate);
             DriveKind::Strut(Strut {
-                preload: section.number_or("force", coil_strut.preload, 0.01, 100.0, "N")?,
-                spring_rate: section.number_or(
-                    "rate",
-                    coil_strut.spring_rate,
-                    0.0,
-                    100.0,
-                    "N/mm",
-                )?,
+                preload: section.number_or("force", force, 0.01, 100.0, "N")?,
+                spring_rate: section.number_or("rate", rate, 0.0, 100.0, "N/mm")?,
                 ..coil_strut
             })
         }

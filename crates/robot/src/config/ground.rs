@@ -9,17 +9,12 @@ use crate::file::{ReadResult, Section};
 pub(crate) fn read(root: &Section, feet: Feet, drive: Drive) -> ReadResult<GroundContact> {
     const RATIO_KEY: &str = "friction_back_over_forward";
     let section = root.section("ground", &[RATIO_KEY, "friction"])?;
+    let unit = "(a coefficient)";
     Ok(GroundContact {
         feet,
         body: read_body(root, &feet)?,
         stance: read_stance(root)?,
-        friction_coefficient: section.number_or(
-            "friction",
-            DEFAULT_FRICTION,
-            0.05,
-            5.0,
-            "(a coefficient)",
-        )?,
+        friction_coefficient: section.number_or("friction", DEFAULT_FRICTION, 0.05, 5.0, unit)?,
         friction_ratio: section.number(RATIO_KEY, 0.1, 10.0, "(a ratio)")?,
         drive,
     })

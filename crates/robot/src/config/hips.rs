@@ -98,23 +98,20 @@ impl Hips {
 mod tests {
     use super::*;
     use crate::Robot;
-    use crate::testing::robot_with;
+    use crate::testing::valid_robot_with;
 
     /// The header of the table `[leg]`.
     const LEG_HEADER: &str = "[leg] ";
 
     /// Reads the paper's robot with these lines in `[leg]` and in `[parts]`.
-    fn robot(hip_lines: &str, part_lines: &str) -> Result<Robot, String> {
+    fn robot(hip_lines: &str, part_lines: &str) -> Robot {
         let leg = format!("[parts]\n{part_lines}\n[leg]\n{hip_lines}\n#");
-        robot_with("paper", &[(LEG_HEADER, &leg)]).map_err(|error| error.to_string())
+        valid_robot_with("paper", &[(LEG_HEADER, &leg)])
     }
 
     /// Returns the hips' distances in the paper's robot with these lines, mm: forward, and sideways at head and tail.
     fn read_hips(hip_lines: &str, part_lines: &str) -> (f64, [f64; 2]) {
-        let feet = robot(hip_lines, part_lines)
-            .expect("the robot is valid")
-            .ground()
-            .feet;
+        let feet = robot(hip_lines, part_lines).ground().feet;
         (feet.hip_forward, feet.hip_side)
     }
 
@@ -125,12 +122,9 @@ mod tests {
         assert_eq!(read_hips("", "pivot = [30.0, 8.0]"), (57.0, [36.5; 2]));
         assert_eq!(read_hips("", "foot = [1.5, -0.5]"), (58.0, [40.0; 2]));
         let hip_lines = "hip_forward = 55.0\nhip_side = 35.0";
-        assert_eq!(
-            read_hips(hip_lines, "foot = [-3.5, 2.5]"),
-            (55.0, [35.0; 2])
-        );
-        let wide_robot =
-            robot_with("paper", &[("l0 = 20.0", "l0 = 24.0")]).expect("the robot is valid");
+        let hips = read_hips(hip_lines, "foot = [-3.5, 2.5]");
+        assert_eq!(hips, (55.0, [35.0; 2]));
+        let wide_robot = valid_robot_with("paper", &[("l0 = 20.0", "l0 = 24.0")]);
         assert_eq!(wide_robot.ground().feet.hip_side, [37.0, 35.0]);
         assert_eq!(wide_robot.ground().feet.hips()[3], [-55.0, 35.0]);
     }
@@ -138,19 +132,15 @@ mod tests {
     #[test]
     fn the_foot_follows_from_hips_that_are_given() {
         assert_eq!(read_hips("hip_side = 36.0", ""), (55.0, [36.0; 2]));
-        let foot_offset = |robot: &Robot| {
+        let foot_offset = |hip_lines: &str| {
+            let robot = robot(hip_lines, "");
             let leg = robot.legs()[1];
             leg.coupler_direction * leg.foot.x + leg.coupler_direction.rotated_left() * leg.foot.y
         };
-        let shifted_robot =
-            robot("hip_forward = 57.0\nhip_side = 36.0", "").expect("the robot is valid");
-        let error = foot_offset(&shifted_robot) - Vector::new(36.0 - 38.5, 57.0 - 57.5);
+        let shifted_foot = foot_offset("hip_forward = 57.0\nhip_side = 36.0");
+        let error = shifted_foot - Vector::new(36.0 - 38.5, 57.0 - 57.5);
         assert!(error.length() < 1e-9, "{error:?}");
-        let same_robot =
-            robot("hip_forward = 55.0\nhip_side = 35.0", "").expect("the robot is valid");
-        assert_eq!(
-            foot_offset(&same_robot),
-            foot_offset(&robot("", "").expect("the robot is valid"))
-        );
+        let same_foot = foot_offset("hip_forward = 55.0\nhip_side = 35.0");
+        assert_eq!(same_foot, foot_offset(""));
     }
 }

@@ -34,11 +34,8 @@ impl Inputs {
         let mut used_pins: Vec<(u8, String)> = named_pins
             .map(|(pin, name)| (pin, format!("servo.{name}")))
             .collect();
-        used_pins.extend(
-            supplies
-                .rail
-                .map(|rail| (rail.pin, "supply.rail".to_string())),
-        );
+        let rail_pin = supplies.rail.map(|rail| rail.pin);
+        used_pins.extend(rail_pin.map(|pin| (pin, "supply.rail".to_string())));
         let mut read_input = |name: &str| -> ReadResult<Option<u8>> {
             if !section.has_key(name) {
                 return Ok(None);
@@ -46,10 +43,8 @@ impl Inputs {
             let input_section = section.section(name, &["pin"])?;
             let pin = read_pin(&input_section)?;
             if let Some((_, owner)) = used_pins.iter().find(|(used_pin, _)| *used_pin == pin) {
-                let message = format!(
-                    "is \"{}\", which {owner} already uses",
-                    input_section.text("pin")?
-                );
+                let pin_name = input_section.text("pin")?;
+                let message = format!("is \"{pin_name}\", which {owner} already uses");
                 return Err(input_section.error("pin", message));
             }
             used_pins.push((pin, format!("input.{name}")));

@@ -146,11 +146,8 @@ mod tests {
         for (name, robot) in all_robots() {
             let leg_links = robot.lizard().leg;
             for (servo, settings) in robot.servos().iter().enumerate() {
-                for angle in [
-                    settings.neutral - 30.0,
-                    settings.neutral,
-                    settings.neutral + 12.5,
-                ] {
+                for sweep in [-30.0, 0.0, 12.5] {
+                    let angle = settings.neutral + sweep;
                     let leg = robot.legs()[servo].points_at(angle, angle);
                     let [ground, coupler] = [leg.pivots, leg.joints]
                         .map(|[crank_point, follower_point]| follower_point - crank_point);
@@ -161,10 +158,8 @@ mod tests {
                         angle_error.abs() < 1e-9,
                         "{name}, servo {servo}: the angle error is {angle_error} deg"
                     );
-                    assert!(
-                        (crank.length() - leg_links.crank).abs() < 1e-9,
-                        "{name}, servo {servo}"
-                    );
+                    let length_error = crank.length() - leg_links.crank;
+                    assert!(length_error.abs() < 1e-9, "{name}, servo {servo}");
                     assert!((ground.length() - leg_links.ground).abs() < 1e-9);
                     assert!((coupler - ground).length() < 1e-9, "the coupler is turned");
                 }
@@ -181,10 +176,8 @@ mod tests {
                     let angle = robot.servos()[servo].neutral + FORWARD_TURN_SIGN[servo] * sweep;
                     let [forward, left] = feet[servo];
                     let error = leg.points_at(angle, angle).foot - Vector::new(-left, forward);
-                    assert!(
-                        error.length() < 1e-9,
-                        "{name}, servo {servo}: the error is {error:?} mm"
-                    );
+                    let is_small = error.length() < 1e-9;
+                    assert!(is_small, "{name}, servo {servo}: {error:?} mm");
                 }
             }
         }
@@ -192,21 +185,15 @@ mod tests {
 
     #[test]
     fn the_papers_legs_are_pivoted_beside_their_servos() {
-        let is_near = |a: Vector, x: f64, y: f64| (a - Vector::new(x, y)).length() < 1e-9;
-        let right = robot("paper").legs()[1];
-        assert!(
-            is_near(right.crank_pivot, 10.0 + 28.5, 67.5 - 10.0),
-            "{right:?}"
-        );
+        let error = |a: Vector, x: f64, y: f64| (a - Vector::new(x, y)).length();
+        let [left, right, ..] = *robot("paper").legs();
+        let pivot = right.crank_pivot;
+        assert!(error(pivot, 10.0 + 28.5, 67.5 - 10.0) < 1e-9, "{right:?}");
         // The ground link is 50 mm long, and turned by 41.41 deg from straight sideways toward the middle.
         let (across_mm, back_mm) = (37.5, 50.0 * 0.4375f64.sqrt());
+        assert!(error(right.follower_pivot - pivot, across_mm, -back_mm) < 1e-4);
         assert!(
-            (right.follower_pivot - right.crank_pivot - Vector::new(across_mm, -back_mm)).length()
-                < 1e-4
-        );
-        let left = robot("paper").legs()[0];
-        assert!(
-            is_near(left.crank_pivot, -right.crank_pivot.x, right.crank_pivot.y),
+            error(left.crank_pivot, -pivot.x, pivot.y) < 1e-9,
             "{left:?}"
         );
     }
@@ -223,10 +210,7 @@ mod tests {
                 let neutral = robot.servos()[servo].neutral;
                 for angle in [neutral - 30.0, neutral, neutral + 30.0] {
                     let error = length_at(angle, 0.0) - leg.strut_length;
-                    assert!(
-                        error.abs() < 1e-9,
-                        "{name}, servo {servo}: the error is {error} mm"
-                    );
+                    assert!(error.abs() < 1e-9, "{name}, servo {servo}: {error} mm");
                 }
                 assert!((length_at(neutral, 5.0) - leg.strut_length).abs() > 0.5);
             }

@@ -31,18 +31,12 @@ pub(crate) fn read(root: &Section) -> ReadResult<(Limits, SpeedLimits)> {
         stroke_min: section.number("stroke_min", -MAX_LINK_LENGTH_MM, MAX_LINK_LENGTH_MM, "mm")?,
         stroke_max: section.number("stroke_max", -MAX_LINK_LENGTH_MM, MAX_LINK_LENGTH_MM, "mm")?,
     };
-    section.require_less(
-        "stroke_min",
-        limits.stroke_min,
-        "stroke_max",
-        limits.stroke_max,
-    )?;
+    let (min, max) = (limits.stroke_min, limits.stroke_max);
+    section.require_less("stroke_min", min, "stroke_max", max)?;
     let read_speed = |name| section.number(name, MIN_SPEED_DEG_S, 1000.0, "deg/s");
-    Ok((
-        limits,
-        SpeedLimits {
-            slew: read_speed("slew")?,
-            gait_slew: read_speed("gait_slew")?,
-        },
-    ))
+    let speed_limits = SpeedLimits {
+        slew: read_speed("slew")?,
+        gait_slew: read_speed("gait_slew")?,
+    };
+    Ok((limits, speed_limits))
 }

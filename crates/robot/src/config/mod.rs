@@ -131,10 +131,8 @@ impl RobotConfig {
             let five_bar = self.lizard.end(end);
             let steps_per_mm = scale::steps_per_mm(scale::find_five_bar_scale(&five_bar));
             let min_mm = f64::from(MIN_COUPLER_STEPS) / steps_per_mm;
-            for (key, value) in names
-                .into_iter()
-                .zip([five_bar.left_coupler_length, five_bar.right_coupler_length])
-            {
+            let couplers = [five_bar.left_coupler_length, five_bar.right_coupler_length];
+            for (key, value) in names.into_iter().zip(couplers) {
                 if value < min_mm {
                     // Rounded up, so that the length in the message is sufficient.
                     let min_mm = (10.0 * min_mm).ceil() / 10.0;
@@ -153,13 +151,9 @@ impl RobotConfig {
         ] {
             let (min, max) = (-min_nominal_length, MAX_LINK_LENGTH_MM);
             if !(min..=max).contains(&value) {
-                let unit_and_reason = "mm, so that the slider's length stays positive";
-                return Err(UnlocatedError::out_of_range(
-                    key.to_string(),
-                    value,
-                    (min, max),
-                    unit_and_reason,
-                ));
+                let unit = "mm, so that the slider's length stays positive";
+                let key = key.to_string();
+                return Err(UnlocatedError::out_of_range(key, value, (min, max), unit));
             }
         }
         Ok(())
@@ -194,13 +188,8 @@ fn read_links(root: &Section) -> ReadResult<Links> {
         *length = section.number(name, LENGTH_RANGE_MM.0, LENGTH_RANGE_MM.1, "mm")?;
     }
     let links = Links::from(lengths);
-    require_equal(
-        "links.l15",
-        links.l15,
-        "links.l10",
-        links.l10,
-        "the chassis is a rectangle, so its two sides are equally long",
-    )?;
+    let reason = "the chassis is a rectangle, so its two sides are equally long";
+    require_equal("links.l15", links.l15, "links.l10", links.l10, reason)?;
     Ok(links)
 }
 
@@ -226,21 +215,9 @@ fn read_leg(root: &Section) -> ReadResult<(Leg, Hips, f64)> {
         coupler: read_length("coupler")?,
         follower: read_length("follower")?,
     };
-    let parallelogram_reason = "a leg is a parallelogram, so its opposite links are equally long";
-    require_equal(
-        "leg.coupler",
-        leg.coupler,
-        "leg.ground",
-        leg.ground,
-        parallelogram_reason,
-    )?;
-    require_equal(
-        "leg.follower",
-        leg.follower,
-        "leg.crank",
-        leg.crank,
-        parallelogram_reason,
-    )?;
+    let reason = "a leg is a parallelogram, so its opposite links are equally long";
+    require_equal("leg.coupler", leg.coupler, "leg.ground", leg.ground, reason)?;
+    require_equal("leg.follower", leg.follower, "leg.crank", leg.crank, reason)?;
     let hips = Hips::read(&section)?;
     let mount_angle = section.number("mount", -90.0, 90.0, "deg")?;
     Ok((leg, hips, mount_angle))

@@ -184,15 +184,15 @@ pub(crate) fn read_joints(
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::{paper_with_tables, robot};
+    use crate::testing::{assert_contains, paper_with_tables, read_table, robot};
 
     /// Returns half the dead band, the full-torque error and the rotor time constant.
-    fn dead_band_torque_error_and_time(motor: lizard_contact::Motor) -> (f64, f64, f64) {
-        (
+    fn dead_band_torque_error_and_time(motor: super::Motor) -> [f64; 3] {
+        [
             motor.half_dead_band,
             motor.full_torque_error,
             motor.rotor_time_constant,
-        )
+        ]
     }
 
     #[test]
@@ -201,83 +201,65 @@ mod tests {
         for motor in motors.per_servo {
             // 1.8 kg cm; 60 deg in 0.12 s; half of a dead band of 10 us, at 10 us per deg.
             assert!((motor.stall_torque - 176.5197).abs() < 1e-9 && motor.no_load_speed == 500.0);
-            assert_eq!(dead_band_torque_error_and_time(motor), (0.5, 3.0, 0.02));
+            assert_eq!(dead_band_torque_error_and_time(motor), [0.5, 3.0, 0.02]);
         }
-        assert_eq!(
-            (
-                motors.joint_friction.pin_torque,
-                motors.joint_friction.slider_force
-            ),
-            (0.0, 0.0)
-        );
+        let friction = motors.joint_friction;
+        assert_eq!((friction.pin_torque, friction.slider_force), (0.0, 0.0));
     }
 
     #[test]
     fn every_key_overrides_the_value_of_the_model() {
         let keys = "[servo]\nmodel = \"mg90s\"\ns_per_60_deg = 0.2\nvolts = 6.0\nspin_up_ms = 5\n\
                     full_torque_deg = 1.5\ndead_band_us = 2\n[joints]\nslider = 0.3";
-        let motors = paper_with_tables(keys)
-            .expect("the robot is valid")
-            .motors();
+        let robot = paper_with_tables(keys).expect("the robot is valid");
+        let motors = robot.motors();
         let motor = motors.per_servo[3];
         assert!((motor.no_load_speed - 300.0 * 6.0 / 4.8).abs() < 1e-9);
+        let torque_error = motor.stall_torque - 176.5197 * 6.0 / 4.8;
         assert!(
-            (motor.stall_torque - 176.5197 * 6.0 / 4.8).abs() < 1e-9,
+            torque_error.abs() < 1e-9,
             "the stall torque is that of the model"
         );
-        assert_eq!(dead_band_torque_error_and_time(motor), (0.1, 1.5, 0.005));
-        assert_eq!(
-            (
-                motors.joint_friction.pin_torque,
-                motors.joint_friction.slider_force
-            ),
-            (0.0, 0.3)
-        );
+        assert_eq!(dead_band_torque_error_and_time(motor), [0.1, 1.5, 0.005]);
+        let friction = motors.joint_friction;
+        assert_eq!((friction.pin_torque, friction.slider_force), (0.0, 0.3));
     }
 
     #[test]
     fn an_unknown_or_impossible_servo_is_rejected_with_a_suggestion() {
-        for (keys, phrase) in [
-            ("model = \"SG-91\"", "did you mean \"SG-90\""),
-            ("model = \"DS3218\"", "allowed: SG-90, MG90S, copy, digital"),
-            (
-                "model = \"DS3218\"",
-                "set stall_kg_cm and s_per_60_deg from its data sheet",
-            ),
-            ("stall = 1.8", "stall_kg_cm"),
-            ("stall_kg_cm = 0.0", "servo.stall_kg_cm"),
-            ("volts = 12.0", "must be between 2 and 9 V"),
-        ] {
-            let message = paper_with_tables(&format!("[servo]\n{keys}"))
-                .expect_err(keys)
-                .to_string();
-            assert!(message.contains(phrase), "{keys}: {message}");
+        let mistakes = r#"
+            model = "SG-91" | did you mean "SG-90"
+            model = "DS3218" | allowed: SG-90, MG90S, copy, digital
+            model = "DS3218" | set stall_kg_cm and s_per_60_deg from its data sheet
+            stall = 1.8 | stall_kg_cm
+            stall_kg_cm = 0.0 | servo.stall_kg_cm
+            volts = 12.0 | must be between 2 and 9 V
+        "#;
+        for [key, phrase] in read_table(mistakes) {
+            let error = paper_with_tables(&format!("[servo]\n{key}")).expect_err(key);
+            assert_contains(&error.to_string(), phrase);
         }
     }
 
     #[test]
     fn slider_arms_end_at_the_arm_tips_of_the_kinematics() {
         let robot = robot("paper");
-        let solution = robot
-            .lizard()
-            .solve(&robot.neutral_pose())
-            .expect("the neutral pose closes");
+        let solution = robot.lizard().solve(&robot.neutral_pose());
+        let solution = solution.expect("the neutral pose closes");
         let arms = robot.motors().joint_friction.slider_arms;
         for side in lizard_kinematics::Side::ALL {
             let [front, rear] = side.servos();
             let slider = solution.side(side);
             // The tips are given relative to the rear shaft.
-            let tips = [
+            for (servo, tip, shaft_y) in [
                 (front, slider.front_tip, 135.0),
                 (rear, slider.rear_tip, 0.0),
-            ];
-            for (servo, tip, shaft_y) in tips {
-                let [forward, left] = arms[servo];
+            ] {
+                let arm @ [forward, left] = arms[servo];
                 let error = (tip.y - shaft_y - forward).hypot(tip.x + left);
                 assert!(
                     error < 1e-6,
-                    "servo {servo}: the tip is {tip:?}, the arm {:?}",
-                    arms[servo]
+                    "servo {servo}: the tip is {tip:?}, the arm {arm:?}"
                 );
             }
         }

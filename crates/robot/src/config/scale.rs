@@ -28,13 +28,11 @@ pub(crate) fn find_five_bar_scale(five_bar: &FiveBar) -> Scale {
 /// Finds the finest scale for a slider that may extend `stroke_max` mm beyond its nominal length.
 pub(crate) fn find_slider_scale(slider_loop: &Slider, stroke_max: f64) -> Scale {
     let arms = slider_loop.front_arm + slider_loop.rear_arm + slider_loop.front_offset.abs();
+    let max_length = slider_loop.nominal_length + stroke_max.max(0.0);
     find_finest_scale(&[
         (slider_loop.base + arms, slider::MAX_LENGTH_STEPS),
         (arms, slider::MAX_ARM_STEPS),
-        (
-            slider_loop.nominal_length + stroke_max.max(0.0),
-            slider::MAX_LENGTH_STEPS,
-        ),
+        (max_length, slider::MAX_LENGTH_STEPS),
     ])
 }
 
@@ -44,11 +42,9 @@ fn find_finest_scale(lengths: &[(f64, f64)]) -> Scale {
         let steps_per_mm = steps_per_mm(*scale);
         lengths.iter().all(|(mm, bound)| mm * steps_per_mm < *bound)
     };
-    (0..=Scale::FINEST.bits)
-        .rev()
-        .map(|bits| Scale { bits })
-        .find(fits)
-        .expect("a link is at most a metre long")
+    let mut scales = (0..=Scale::FINEST.bits).rev().map(|bits| Scale { bits });
+    let finest_scale = scales.find(fits);
+    finest_scale.expect("a link is at most a metre long")
 }
 
 #[cfg(test)]
@@ -61,13 +57,9 @@ mod tests {
         let to_steps = |mm: f64| mm * f64::from(1u32 << bits);
         let base_and_cranks =
             five_bar.base + five_bar.left_crank_length + five_bar.right_crank_length;
-        [
-            base_and_cranks,
-            five_bar.left_coupler_length,
-            five_bar.right_coupler_length,
-        ]
-        .into_iter()
-        .all(|mm| to_steps(mm) < 127.0 * 256.0)
+        to_steps(base_and_cranks) < 127.0 * 256.0
+            && to_steps(five_bar.left_coupler_length) < 127.0 * 256.0
+            && to_steps(five_bar.right_coupler_length) < 127.0 * 256.0
     }
 
     /// True if a slider fits at a scale of this number of bits, according to the core's bounds of 127 x 256 and 255 x
@@ -120,10 +112,8 @@ mod tests {
     #[test]
     fn the_smallest_and_the_largest_robot_have_a_scale() {
         let equal_five_bar = |mm| FiveBar::new([mm; 5]);
-        assert_eq!(find_five_bar_scale(&equal_five_bar(1.0)).bits, 13);
-        assert_eq!(
-            find_five_bar_scale(&equal_five_bar(MAX_LINK_LENGTH_MM)).bits,
-            3
-        );
+        for (mm, bits) in [(1.0, 13), (MAX_LINK_LENGTH_MM, 3)] {
+            assert_eq!(find_five_bar_scale(&equal_five_bar(mm)).bits, bits);
+        }
     }
 }

@@ -199,11 +199,8 @@ mod tests {
         assert_eq!((min, max), (-885.0 / 11.0, 975.0 / 11.0));
         assert_eq!(SERVO.pulse(57.0), 1425.0);
         assert_eq!(SERVO.sweep(1425.0), 10.0);
-        assert_eq!(
-            SERVO.pulse(47.0 - 350.0),
-            1425.0,
-            "the servo turns in the shorter direction"
-        );
+        let pulse = SERVO.pulse(47.0 - 350.0);
+        assert_eq!(pulse, 1425.0, "the servo turns in the shorter direction");
     }
 
     #[test]
@@ -222,11 +219,9 @@ mod tests {
         let crank = Vector::new(1.0, 0.0);
         for side in Side::ALL {
             let [front, rear] = side.servos();
-            assert_eq!(
-                side.front_arm(crank),
-                Vector::new(0.0, ARM_TURN_SIGN[front])
-            );
-            assert_eq!(side.rear_arm(crank), Vector::new(0.0, ARM_TURN_SIGN[rear]));
+            let arms = [side.front_arm(crank), side.rear_arm(crank)];
+            let expected = [front, rear].map(|servo| Vector::new(0.0, ARM_TURN_SIGN[servo]));
+            assert_eq!(arms, expected);
         }
     }
 }

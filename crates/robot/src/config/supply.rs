@@ -213,9 +213,11 @@ fn to_millivolts(volts: f64) -> u16 {
 
 #[cfg(test)]
 mod tests {
-    use lizard_core::numbers::supplies::{Supplies, Thresholds};
+    use lizard_core::numbers::supplies::Thresholds;
 
-    use crate::testing::{paper_with_tables, robot, robot_with};
+    use crate::testing::{
+        assert_contains, error_with, paper_with_tables, robot, robot_with, valid_robot_with,
+    };
 
     /// The header before which a test inserts its lines.
     const NEXT_TABLE: &str = "[ground]";
@@ -231,31 +233,21 @@ mod tests {
 
     #[test]
     fn the_defaults_are_a_1100_mv_reference_three_thresholds_and_no_rail() {
-        let robot = robot("paper");
-        let expected = Supplies {
-            reference_mv: 1100,
-            board: Thresholds {
-                slow_mv: 4200,
-                stop_mv: 4000,
-                rest_mv: 3700,
-            },
-            rail_reference_mv: 0,
-            ..robot.firmware().supplies()
-        };
-        assert_eq!(robot.firmware().supplies(), expected);
+        let supplies = robot("paper").firmware().supplies();
+        let board = supplies.board;
+        let board_mv = [board.slow_mv, board.stop_mv, board.rest_mv];
+        assert_eq!(board_mv, [4200, 4000, 3700]);
+        assert_eq!(supplies.reference_mv, 1100);
+        assert_eq!(supplies.rail_reference_mv, 0);
     }
 
     #[test]
     fn a_rails_reference_is_the_chips_reference_times_the_divider_ratio() {
-        let robot = paper_with_tables(
-            "[supply]\nreference = 1.08\nslow = 4.5\n[supply.rail]\npin = \"A3\"\nratio = 2.5\nslow = 6.6\nstop = 6.2\nrest = 6.0\n",
-        )
-        .expect("the rail is valid");
+        let tables = "[supply]\nreference = 1.08\nslow = 4.5\n[supply.rail]\npin = \"A3\"\nratio = 2.5\nslow = 6.6\nstop = 6.2\nrest = 6.0\n";
+        let robot = paper_with_tables(tables).expect("the rail is valid");
         let supplies = robot.firmware().supplies();
-        assert_eq!(
-            (supplies.reference_mv, supplies.board.slow_mv),
-            (1080, 4500)
-        );
+        let board_mv = (supplies.reference_mv, supplies.board.slow_mv);
+        assert_eq!(board_mv, (1080, 4500));
         let rail = Thresholds {
             slow_mv: 6600,
             stop_mv: 6200,
@@ -272,12 +264,15 @@ mod tests {
             f64::from(robot.firmware().supplies().rail.slow_mv) / 1000.0
         };
         let sg90_volts = slow_volts_with("", "", "0.6");
-        let robot = robot_with("paper", &[(NEXT_TABLE, "[ground]\nfriction = 0.6")])
-            .expect("the robot is valid");
-        let utilisations = robot.gaits().iter().map(|gait| {
-            crate::Effort::simulate(gait, robot.ground(), &robot.motors()).utilisation(1.0, 1.0)
-        });
-        let max_utilisation = utilisations.fold(0.0, f64::max);
+        let find_max_utilisation = |friction: &str, supply_ratio: f64| {
+            let table = format!("[ground]\nfriction = {friction}");
+            let robot = valid_robot_with("paper", &[(NEXT_TABLE, &table)]);
+            let simulate = |gait| crate::Effort::simulate(gait, robot.ground(), &robot.motors());
+            let efforts = robot.gaits().iter().map(simulate);
+            let utilisations = efforts.map(|effort| effort.utilisation(1.0, supply_ratio));
+            utilisations.fold(0.0, f64::max)
+        };
+        let max_utilisation = find_max_utilisation("0.6", 1.0);
         // On this floor the servos would allow slightly less than stop + 0.25 V, so the minimum gap sets the threshold.
         let expected = (4.8 * max_utilisation / crate::HIGH_UTILISATION).max(4.25);
         assert!(
@@ -286,15 +281,8 @@ mod tests {
         );
         // More friction requires a higher threshold; an explicit threshold is kept.
         let rough_volts = slow_volts_with("", "", "0.8");
-        let supply_ratio = rough_volts / 4.8;
         assert!(rough_volts > sg90_volts + 0.1, "{rough_volts} V");
-        let rough_robot = robot_with("paper", &[(NEXT_TABLE, "[ground]\nfriction = 0.8")])
-            .expect("the robot is valid");
-        let utilisations = rough_robot.gaits().iter().map(|gait| {
-            let effort = crate::Effort::simulate(gait, rough_robot.ground(), &rough_robot.motors());
-            effort.utilisation(1.0, supply_ratio)
-        });
-        let max_utilisation = utilisations.fold(0.0, f64::max);
+        let max_utilisation = find_max_utilisation("0.8", rough_volts / 4.8);
         assert!(
             (max_utilisation - crate::HIGH_UTILISATION).abs() < 0.005,
             "the utilisation is {max_utilisation}"
@@ -361,17 +349,9 @@ mod tests {
 
     #[test]
     fn the_rail_rejects_a_pin_used_by_a_servo() {
-        let result = robot_with(
-            "paper",
-            &[
-                ("pin = \"D9\"", "pin = \"A2\""),
-                (
-                    NEXT_TABLE,
-                    "[supply.rail]\npin = \"A2\"\nratio = 2.0\n[ground]",
-                ),
-            ],
-        );
-        let message = result.expect_err("the pin belongs to a servo").to_string();
-        assert!(message.contains("which servo.A1 already uses"), "{message}");
+        let tables = "[supply.rail]\npin = \"A2\"\nratio = 2.0\n[ground]";
+        let changes = [("pin = \"D9\"", "pin = \"A2\""), (NEXT_TABLE, tables)];
+        let message = error_with("paper", &changes);
+        assert_contains(&message, "which servo.A1 already uses");
     }
 }

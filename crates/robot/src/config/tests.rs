@@ -1,37 +1,24 @@
 //! Tests of the requirements for a robot's dimensions and for its servos' neutral pulses.
 
-use crate::testing::robot_with;
-
-/// Returns the error message for the unequal robot after changes to its file.
-fn parse_error(changes: &[(&str, &str)]) -> String {
-    robot_with("unequal", changes)
-        .expect_err("the robot is invalid")
-        .to_string()
-}
+use crate::testing::{assert_contains, assert_starts_with, error_with};
 
 #[test]
 fn each_coupler_must_be_long_enough_for_its_own_loop() {
     // With these lengths, the scales of head and tail are 256 steps per mm.
-    for (old, new) in [
-        ("l2 = 55.0", "l2 = 15.9"),
-        ("l3 = 48.0", "l3 = 15.9"),
-        ("l7 = 55.0", "l7 = 15.9"),
-        ("l8 = 48.0", "l8 = 15.9"),
-    ] {
-        let message = parse_error(&[(old, new)]);
-        let key = old.split(' ').next().expect("the change begins with a key");
-        assert!(
-            message.contains(&format!("links.{key} is 15.9 mm, which is too short"))
-                && message.contains("at least 16.1 mm"),
-            "{message}"
+    for (key, mm) in [("l2", 55), ("l3", 48), ("l7", 55), ("l8", 48)] {
+        let (old, new) = (format!("{key} = {mm}.0"), format!("{key} = 15.9"));
+        let message = error_with("unequal", &[(&old, &new)]);
+        assert_contains(
+            &message,
+            &format!("links.{key} is 15.9 mm, which is too short"),
         );
+        assert_contains(&message, "at least 16.1 mm");
     }
     // A longer base of the tail halves the steps per mm of the tail only.
-    let message = parse_error(&[("l5 = 30.0", "l5 = 90.0"), ("l7 = 55.0", "l7 = 31.0")]);
-    assert!(
-        message.contains("links.l7 is 31 mm") && message.contains("at least 32.1 mm"),
-        "{message}"
-    );
+    let changes = [("l5 = 30.0", "l5 = 90.0"), ("l7 = 55.0", "l7 = 31.0")];
+    let message = error_with("unequal", &changes);
+    assert_contains(&message, "links.l7 is 31 mm");
+    assert_contains(&message, "at least 32.1 mm");
 }
 
 #[test]
@@ -55,18 +42,12 @@ fn a_neutral_pulse_outside_its_servos_range_is_rejected() {
             (read_us("max_us"), "neutral_us"),
             (read_us("max_us") + 0.1, "neutral_us"),
         ] {
+            let line = format!("neutral_us = {neutral_us}");
             let mut changed = text.clone();
-            changed.replace_range(
-                line_range("neutral_us"),
-                &format!("neutral_us = {neutral_us}"),
-            );
-            let error = crate::Robot::parse(&changed)
-                .expect_err("the neutral pulse is out of range")
-                .to_string();
-            assert!(
-                error.contains(&format!("servo.{name}.{rejected_key}")),
-                "{error}"
-            );
+            changed.replace_range(line_range("neutral_us"), &line);
+            let result = crate::Robot::parse(&changed);
+            let error = result.expect_err("the neutral pulse is out of range");
+            assert_contains(&error.to_string(), &format!("servo.{name}.{rejected_key}"));
         }
     }
 }
@@ -78,11 +59,8 @@ fn a_stroke_that_exceeds_the_shorter_sliders_length_is_rejected() {
             (slider[0], &*slider[0].replace(" 5", " 4")),
             ("stroke_min = -19.0", "stroke_min = -102.0"),
         ];
-        let message = parse_error(&changes);
-        assert!(
-            message.contains("limits.stroke_min is -102; it must be between"),
-            "{message}"
-        );
+        let message = error_with("unequal", &changes);
+        assert_contains(&message, "limits.stroke_min is -102; it must be between");
     }
 }
 
@@ -94,12 +72,8 @@ fn a_leg_in_its_other_assembly_mode_is_rejected() {
         ("neutral = 316.0", "neutral = 10.0", "right hind", "leg_rh"),
         ("neutral = 228.0", "neutral = 170.0", "left hind", "leg_lh"),
     ] {
-        let message = parse_error(&[(old, new)]);
-        assert!(
-            message.starts_with(&format!(
-                "in the neutral pose the {name} leg would lock: margin {leg} -"
-            )),
-            "{message}"
-        );
+        let message = error_with("unequal", &[(old, new)]);
+        let expected = format!("in the neutral pose the {name} leg would lock: margin {leg} -");
+        assert_starts_with(&message, &expected);
     }
 }

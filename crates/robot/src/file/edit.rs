@@ -299,11 +299,8 @@ mod tests {
         // The lines of [servo.A1] do not belong to [servo].
         let servo = with_number(TEXT, "servo.volts", 4.5).expect("the optional key can be added");
         assert_eq!(servo, format!("{TEXT}\n[servo]\nvolts = 4.5\n"));
-        for text in [
-            "leg = { ground = 50.0 }\n",
-            "leg.ground = 50.0\n",
-            "[leg]\n",
-        ] {
+        for text in ["leg = { ground = 50.0 }", "leg.ground = 50.0", "[leg]"] {
+            let text = &format!("{text}\n");
             assert!(with_number(text, "leg.hip_side", 36.0).is_err(), "{text}");
         }
     }
@@ -313,37 +310,25 @@ mod tests {
         let changed = with_numbers("[body]\ncentre = [0, 0] # mm\n", "body.centre", &[1.5, 0.0]);
         assert_eq!(changed, Ok("[body]\ncentre = [1.5, 0.0] # mm\n".to_owned()));
         let added = with_numbers("[body]\nmass = 250.0\n", "body.centre", &[1.5, -2.0]);
-        assert_eq!(
-            added,
-            Ok("[body]\nmass = 250.0\ncentre = [1.5, -2.0]\n".to_owned())
-        );
+        let expected = "[body]\nmass = 250.0\ncentre = [1.5, -2.0]\n";
+        assert_eq!(added, Ok(expected.to_owned()));
         assert!(with_numbers(TEXT, "links.l0", &[1.0]).is_err());
         assert!(with_number("[body]\ncentre = [0, 0]\n", "body.centre", 1.0).is_err());
     }
 
     #[test]
     fn a_comment_is_appended_or_replaces_one_with_the_same_first_word() {
-        for (before, after) in [
-            ("[links]\nl0 = 1.0", "[links]\nl0 = 1.0 # was: 2"),
-            (
-                "[links]\nl0 = 1.0 # base\n",
-                "[links]\nl0 = 1.0 # base # was: 2\n",
-            ),
-            (
-                "[links]\r\nl0 = 1.0\r\nl1 = 1\r\n",
-                "[links]\r\nl0 = 1.0 # was: 2\r\nl1 = 1\r\n",
-            ),
-            (
-                "[links]\nl0 = 1.0 # base # was: 3\n",
-                "[links]\nl0 = 1.0 # base # was: 2\n",
-            ),
-            (
-                "links = { l0 = 1.0, l1 = 2.0 }\n",
-                "links = { l0 = 1.0, l1 = 2.0 } # was: 2\n",
-            ),
+        // Each text, divided at the place of the new comment.
+        for (before, old_comment, after) in [
+            ("[links]\nl0 = 1.0", "", ""),
+            ("[links]\nl0 = 1.0 # base", "", "\n"),
+            ("[links]\r\nl0 = 1.0", "", "\r\nl1 = 1\r\n"),
+            ("[links]\nl0 = 1.0 # base", " # was: 3", "\n"),
+            ("links = { l0 = 1.0, l1 = 2.0 }", "", "\n"),
         ] {
-            let commented = with_comment(before, "links.l0", "was:", "2");
-            assert_eq!(commented, Ok(after.to_owned()));
+            let text = format!("{before}{old_comment}{after}");
+            let commented = with_comment(&text, "links.l0", "was:", "2");
+            assert_eq!(commented, Ok(format!("{before} # was: 2{after}")));
         }
         assert!(with_comment("[links]\nl0 = 1.0", "links.l1", "was:", "2").is_err());
     }
@@ -351,9 +336,9 @@ mod tests {
     #[test]
     fn a_missing_table_is_added_at_the_end_of_the_text() {
         for text in ["[leg]\nground = 50.0\n", "[leg]\nground = 50.0"] {
-            let changed =
-                with_number(text, "body.mass", 250.0).expect("the optional key can be added");
-            assert_eq!(changed, "[leg]\nground = 50.0\n\n[body]\nmass = 250.0\n");
+            let changed = with_number(text, "body.mass", 250.0);
+            let expected = "[leg]\nground = 50.0\n\n[body]\nmass = 250.0\n";
+            assert_eq!(changed, Ok(expected.to_owned()));
         }
     }
 
@@ -362,10 +347,8 @@ mod tests {
         const DRIVE: &str = "[leg.drive]\nkind = \"strut\"\nforce = 3.0 # N\nplay = 0.5\n";
         let shorter_text = without_key(DRIVE, "leg.drive.force").expect("the key can be removed");
         assert_eq!(shorter_text, "[leg.drive]\nkind = \"strut\"\nplay = 0.5\n");
-        assert_eq!(
-            without_key(&shorter_text, "leg.drive.force"),
-            Ok(shorter_text.clone())
-        );
+        let same_text = without_key(&shorter_text, "leg.drive.force");
+        assert_eq!(same_text, Ok(shorter_text));
         let inline_table = "[leg]\ndrive = { kind = \"strut\", force = 3.0 }\n";
         assert!(without_key(inline_table, "leg.drive.force").is_err());
     }
@@ -375,12 +358,9 @@ mod tests {
         const DRIVE: &str = "[leg.drive] # links\nkind = \"rigid\" # or a strut\n";
         let changed = with_string(DRIVE, "leg.drive.kind", "strut").expect("the key can be set");
         assert_eq!(changed, DRIVE.replace("rigid", "strut"));
-        let added = with_string("[leg]\nmount = 0.0\n", "leg.drive.kind", "strut")
-            .expect("the optional key can be added");
-        assert_eq!(
-            added,
-            "[leg]\nmount = 0.0\n\n[leg.drive]\nkind = \"strut\"\n"
-        );
+        let added = with_string("[leg]\nmount = 0.0\n", "leg.drive.kind", "strut");
+        let expected = "[leg]\nmount = 0.0\n\n[leg.drive]\nkind = \"strut\"\n";
+        assert_eq!(added, Ok(expected.to_owned()));
         assert!(with_string("[leg]\nmount = 0.0\n", "leg.mount", "x").is_err());
     }
 
@@ -399,10 +379,8 @@ mod tests {
 
     /// Reads the names and steps of a text's routines.
     fn read_names_and_steps(text: &str) -> Vec<(String, Vec<String>)> {
-        let routines = read_routines(text).into_iter();
-        routines
-            .map(|routine| (routine.name, routine.steps))
-            .collect()
+        let to_pair = |routine: WrittenRoutine| (routine.name, routine.steps);
+        read_routines(text).into_iter().map(to_pair).collect()
     }
 
     /// Copies steps to owned strings.
@@ -436,11 +414,8 @@ mod tests {
         assert_eq!(read_names_and_steps(&changed)[0].1, steps);
         let start = ROUTINES.find("[\n").expect("the text has a list of steps");
         assert!(changed.starts_with(&ROUTINES[..start]));
-        assert!(
-            changed.ends_with(
-                &ROUTINES[ROUTINES.find("\nrepeat").expect("the routine is repeated")..]
-            )
-        );
+        let end = ROUTINES.find("\nrepeat").expect("the routine is repeated");
+        assert!(changed.ends_with(&ROUTINES[end..]));
     }
 
     #[test]

@@ -135,6 +135,7 @@ fn explain_unquoted_string(value: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::explain_mistake;
+    use crate::testing::read_table;
 
     /// Explains the mistake in the last line of a text.
     fn explain_last_line(text: &str) -> String {
@@ -144,71 +145,51 @@ mod tests {
 
     #[test]
     fn each_mistake_is_reported_with_its_correction() {
-        for (line, expected) in [
-            ("l1 = ", "`l1` has no value after the ="),
-            ("l1 = # mm", "`l1` has no value after the ="),
-            (
-                "l1 = 30,0",
-                "`30,0` is not a number; use a point as the decimal separator: 30.0",
-            ),
-            (
-                "l1 = -0,5 # mm",
-                "`-0,5` is not a number; use a point as the decimal separator: -0.5",
-            ),
-            ("l1 = .5", "`.5` is not a number in TOML; write 0.5"),
-            ("l1 = -.5", "`-.5` is not a number in TOML; write -0.5"),
-            ("l1 = 30.", "`30.` is not a number in TOML; write 30.0"),
-            (
-                "l1 = 30 mm",
-                "`30 mm`: a number takes no unit; write 30, and put `mm` in a comment",
-            ),
-            (
-                "l1 = 30mm",
-                "`30mm`: a number takes no unit; write 30, and put `mm` in a comment",
-            ),
-            (
-                "l1 30",
-                "`l1 30` is missing the = between `l1` and its value",
-            ),
-            ("pin = D9", "`D9` is missing quotation marks; write \"D9\""),
-            ("[links", "`[links` is missing the ] after the table name"),
-        ] {
+        let mistakes = r#"
+            l1 =  | `l1` has no value after the =
+            l1 = # mm | `l1` has no value after the =
+            l1 = 30,0 | `30,0` is not a number; use a point as the decimal separator: 30.0
+            l1 = -0,5 # mm | `-0,5` is not a number; use a point as the decimal separator: -0.5
+            l1 = .5 | `.5` is not a number in TOML; write 0.5
+            l1 = -.5 | `-.5` is not a number in TOML; write -0.5
+            l1 = 30. | `30.` is not a number in TOML; write 30.0
+            l1 = 30 mm | `30 mm`: a number takes no unit; write 30, and put `mm` in a comment
+            l1 = 30mm | `30mm`: a number takes no unit; write 30, and put `mm` in a comment
+            l1 30 | `l1 30` is missing the = between `l1` and its value
+            pin = D9 | `D9` is missing quotation marks; write "D9"
+            [links | `[links` is missing the ] after the table name
+        "#;
+        for [line, expected] in read_table(mistakes) {
             assert_eq!(explain_last_line(line), expected);
-            assert_eq!(
-                explain_last_line(&format!("[links]\nl0 = 20.0\n{line}\n")),
-                expected
-            );
+            let text = format!("[links]\nl0 = 20.0\n{line}\n");
+            assert_eq!(explain_last_line(&text), expected);
         }
     }
 
     #[test]
     fn a_duplicate_is_reported_with_the_line_of_its_first_occurrence() {
-        let text = "[a]\nx = 1\n[b]\nx = 2 # once\ny = 3\nx = 4\n";
-        let offset = text
-            .rfind("x = 4")
-            .expect("the text has the second occurrence");
-        assert_eq!(
-            explain_mistake(text, offset, "duplicate key"),
-            "`x` is defined twice, first on line 4; keep one definition"
-        );
-        let text = "[servo.A1]\npin = \"D9\"\n[servo.A2]\n[servo.A1] # again\n";
-        let offset = text
-            .rfind("[servo.A1]")
-            .expect("the text has the second occurrence");
-        assert_eq!(
-            explain_mistake(text, offset, "duplicate key"),
-            "the table [servo.A1] is defined twice, first on line 1; put all its keys into one table"
-        );
+        for (text, duplicate, expected) in [
+            (
+                "[a]\nx = 1\n[b]\nx = 2 # once\ny = 3\nx = 4\n",
+                "x = 4",
+                "`x` is defined twice, first on line 4; keep one definition",
+            ),
+            (
+                "[servo.A1]\npin = \"D9\"\n[servo.A2]\n[servo.A1] # again\n",
+                "[servo.A1]",
+                "the table [servo.A1] is defined twice, first on line 1; put all its keys into one table",
+            ),
+        ] {
+            let offset = text.rfind(duplicate).expect(duplicate);
+            assert_eq!(explain_mistake(text, offset, "duplicate key"), expected);
+        }
     }
 
     #[test]
     fn any_other_mistake_keeps_the_parsers_message() {
         for line in ["l1 = \"a", "l1 = [1, 2", "l1 = 1 2", "= 3", "l1 = 'it''s'"] {
-            assert_eq!(
-                explain_last_line(line),
-                "invalid TOML: expected newline",
-                "{line}"
-            );
+            let explanation = explain_last_line(line);
+            assert_eq!(explanation, "invalid TOML: expected newline", "{line}");
         }
         assert_eq!(explain_mistake("", 0, "x"), "invalid TOML: x");
         assert_eq!(explain_mistake("a = 1", 99, "x"), "invalid TOML: x");

@@ -92,10 +92,7 @@ impl Bars {
                 entries.map(|(leg, value)| format!("{leg} = {:?}", round_to_thousandths(value)));
             format!("{{ {} }}", entries.collect::<Vec<_>>().join(", "))
         };
-        let (period, amplitude) = (
-            round_to_thousandths(self.period),
-            round_to_thousandths(self.amplitude),
-        );
+        let [period, amplitude] = [self.period, self.amplitude].map(round_to_thousandths);
         let waveform = if self.held {
             let mut order = [0, 1, 2, 3];
             order.sort_by(|a, b| self.start[*a].total_cmp(&self.start[*b]));

@@ -61,12 +61,9 @@ pub(crate) fn read_gaits(root: &Section, config: &RobotConfig) -> ReadResult<Vec
         resolved_gaits: HashMap::new(),
         reference_chain: Vec::new(),
     };
-    let gaits = resolver
-        .names
-        .clone()
-        .into_iter()
-        .map(|name| resolver.resolve(name))
-        .collect::<ReadResult<Vec<_>>>()?;
+    let names = resolver.names.clone().into_iter();
+    let gaits: ReadResult<Vec<_>> = names.map(|name| resolver.resolve(name)).collect();
+    let gaits = gaits?;
     let is_still = |stride: &Stride| stride.waveform == Waveform::Still;
     if gaits[0].strides.iter().all(is_still) {
         Ok(gaits)
@@ -81,9 +78,8 @@ pub(crate) fn read_gaits(root: &Section, config: &RobotConfig) -> ReadResult<Vec
 pub(super) fn check_boot_keys(section: &Section, names: &[&str]) -> ReadResult<()> {
     let mut names_by_key = HashMap::new();
     for name in names {
-        let console_name = name
-            .bytes()
-            .map(|byte| if byte == b'-' { b' ' } else { byte });
+        let to_console = |byte: u8| if byte == b'-' { b' ' } else { byte };
+        let console_name = name.bytes().map(to_console);
         if let Some(other_name) = names_by_key.insert(gait_key(console_name), *name) {
             let message = format!(
                 "is not a gait name: the EEPROM cannot distinguish it from {other_name} as the value of `boot`; rename one of them"
@@ -100,10 +96,9 @@ pub(super) fn check_name(name: &str, noun: &str) -> Result<(), String> {
     let is_allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     let reject = |reason: String| Err(format!("is not a {noun} name: {reason}"));
     if !name.chars().all(is_allowed) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
-        return reject(
-            "it must consist of lower-case letters, digits and dashes, and begin with a letter"
-                .to_string(),
-        );
+        let reason =
+            "it must consist of lower-case letters, digits and dashes, and begin with a letter";
+        return reject(reason.to_string());
     }
     if name.len() > MAX_NAME_BYTES {
         let length = name.len();
@@ -171,10 +166,8 @@ impl<'a> Resolver<'a> {
                 .concat()
                 .join(" -> ");
             let message = format!("circular reference: {cycle}");
-            return Err(UnlocatedError::with_own_subject(
-                table.full_key(reference),
-                message,
-            ));
+            let key = table.full_key(reference);
+            return Err(UnlocatedError::with_own_subject(key, message));
         }
         let mut gait = self.resolve(base_name)?;
         match reference {
@@ -226,11 +219,8 @@ fn read_waveform(name: &str, table: &Section, config: &RobotConfig) -> ReadResul
             [Stride::STILL; 4]
         }
         "wave" => {
-            reject_keys_outside(
-                table,
-                &["waveform", "period", "duty", "amplitude", "start", "gain"],
-                &partner,
-            )?;
+            let allowed = ["waveform", "period", "duty", "amplitude", "start", "gain"];
+            reject_keys_outside(table, &allowed, &partner)?;
             let waveform = Waveform::Wave {
                 duty: table.number("duty", 0.05, 0.95, "of the cycle")?,
             };
@@ -244,11 +234,8 @@ fn read_waveform(name: &str, table: &Section, config: &RobotConfig) -> ReadResul
             })
         }
         "held" => {
-            reject_keys_outside(
-                table,
-                &["waveform", "period", "amplitude", "order", "gain"],
-                &partner,
-            )?;
+            let allowed = ["waveform", "period", "amplitude", "order", "gain"];
+            reject_keys_outside(table, &allowed, &partner)?;
             let amplitude = read_amplitude(table)?;
             read_order(table)?.map(|swing_index| Stride {
                 waveform: Waveform::Held { swing_index },
@@ -361,10 +348,8 @@ fn read_order(table: &Section) -> ReadResult<[usize; 4]> {
     }
     let mut swing_indices = [0; 4];
     for (swing_index, name) in swing_indices.iter_mut().zip(LEG_NAMES) {
-        *swing_index = legs
-            .iter()
-            .position(|leg| *leg == name)
-            .ok_or_else(order_error)?;
+        let position = legs.iter().position(|leg| *leg == name);
+        *swing_index = position.ok_or_else(order_error)?;
     }
     Ok(swing_indices)
 }

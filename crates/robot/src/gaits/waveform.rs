@@ -102,31 +102,22 @@ mod tests {
 
     /// All held waveforms, and waves of several duty factors.
     fn all_waveforms() -> Vec<Waveform> {
-        let mut waveforms: Vec<_> = (0..4)
-            .map(|swing_index| Waveform::Held { swing_index })
-            .collect();
-        waveforms.extend([0.5, 0.75, 0.875].map(|duty| Waveform::Wave { duty }));
-        waveforms
+        let held = (0..4).map(|swing_index| Waveform::Held { swing_index });
+        let waves = [0.5, 0.75, 0.875].map(|duty| Waveform::Wave { duty });
+        held.chain(waves).collect()
     }
 
     #[test]
     fn every_waveform_is_continuous_and_reaches_1_and_minus_1() {
         for waveform in all_waveforms() {
-            let samples: Vec<f64> = (0..=10_000)
-                .map(|i| waveform.value_at(i as f64 / 1e4))
-                .collect();
-            assert!(
-                samples
-                    .windows(2)
-                    .all(|pair| (pair[0] - pair[1]).abs() < 3e-3),
-                "{waveform:?} jumps"
-            );
+            let samples = (0..=10_000).map(|i| waveform.value_at(f64::from(i) / 1e4));
+            let samples: Vec<f64> = samples.collect();
+            let mut steps = samples.windows(2).map(|pair| (pair[0] - pair[1]).abs());
+            assert!(steps.all(|step| step < 3e-3), "{waveform:?} jumps");
             let max = samples.iter().fold(f64::MIN, |a, b| a.max(*b));
             let min = samples.iter().fold(f64::MAX, |a, b| a.min(*b));
-            assert!(
-                (max - 1.0).abs() < 1e-5 && (min + 1.0).abs() < 1e-5,
-                "{waveform:?}"
-            );
+            let is_full = (max - 1.0).abs() < 1e-5 && (min + 1.0).abs() < 1e-5;
+            assert!(is_full, "{waveform:?}");
         }
     }
 
@@ -137,15 +128,11 @@ mod tests {
             let waveform = Waveform::Wave { duty };
             let stance_speed = (waveform.value_at(duty) - waveform.value_at(0.0)) / duty;
             for corner in [0.0, duty] {
-                let speed_before =
-                    (waveform.value_at(corner) - waveform.value_at(corner - step)) / step;
-                let speed_after =
-                    (waveform.value_at(corner + step) - waveform.value_at(corner)) / step;
-                assert!(
-                    (speed_before - stance_speed).abs() < 1e-3
-                        && (speed_after - stance_speed).abs() < 1e-3,
-                    "duty {duty}, corner {corner}"
-                );
+                for start in [corner - step, corner] {
+                    let speed = (waveform.value_at(start + step) - waveform.value_at(start)) / step;
+                    let error = (speed - stance_speed).abs();
+                    assert!(error < 1e-3, "duty {duty}, from {start} at corner {corner}");
+                }
             }
         }
     }
@@ -164,24 +151,16 @@ mod tests {
             let start = 0.2 * (swing_index + 1) as f64;
             for i in 0..=1000 {
                 let u = i as f64 / 1e3 * 0.999_999;
-                let expected = if u < 0.2 {
+                if u < 0.2 || (u > start && u < start + 0.2) {
                     continue;
-                } else if u <= start {
-                    -1.0
-                } else if u >= start + 0.2 {
-                    1.0
-                } else {
-                    continue;
-                };
-                assert!(
-                    (waveform.value_at(u) - expected).abs() < 1e-12,
-                    "swing {swing_index}, phase {u}"
-                );
+                }
+                let expected = if u <= start { -1.0 } else { 1.0 };
+                let error = waveform.value_at(u) - expected;
+                assert!(error.abs() < 1e-12, "swing {swing_index}, phase {u}");
             }
-            assert!(
-                waveform.value_at(0.1).abs() < 1e-12
-                    && waveform.value_at(start + 0.1).abs() < 1e-12
-            );
+            for middle in [0.1, start + 0.1] {
+                assert!(waveform.value_at(middle).abs() < 1e-12);
+            }
         }
     }
 
@@ -191,10 +170,8 @@ mod tests {
             let (base, shift, sign) = canonicalize(&waveform);
             for i in 0..1000 {
                 let u = i as f64 / 1e3;
-                assert!(
-                    (waveform.value_at(u) - sign * base.value_at(u - shift)).abs() < 1e-12,
-                    "{waveform:?} at {u}"
-                );
+                let error = waveform.value_at(u) - sign * base.value_at(u - shift);
+                assert!(error.abs() < 1e-12, "{waveform:?} at {u}");
             }
         }
     }

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use lizard_contact::{GroundContact, Motors, Travel};
+use lizard_contact::{GroundContact, Travel};
 
 use crate::checks::CheckedGait;
 use crate::config::ServoType;
@@ -50,20 +50,10 @@ impl ModelInputs {
 
     /// Simulates a cycle of a gait and returns the displacement; `pace` is relative to the gait's nominal pace.
     fn simulate_cycle(&self, robot: &Robot, gait: &CheckedGait, pace: f64) -> Travel {
-        let Motors {
-            per_servo,
-            mut joint_friction,
-        } = robot.motors_with_type(&self.servo, self.servo.supply_volts);
-        [joint_friction.pin_torque, joint_friction.slider_force] = self.joint_friction;
-        gait.simulate_with_angle_scale(
-            &self.ground,
-            &Motors {
-                per_servo,
-                joint_friction,
-            },
-            pace,
-            self.angle_scale,
-        )
+        let mut motors = robot.motors_with_type(&self.servo, self.servo.supply_volts);
+        let friction = &mut motors.joint_friction;
+        [friction.pin_torque, friction.slider_force] = self.joint_friction;
+        gait.simulate_with_angle_scale(&self.ground, &motors, pace, self.angle_scale)
     }
 }
 
@@ -173,9 +163,8 @@ const ASSUMPTIONS: [Assumption; 21] = assumptions! {
 
 /// The plausible range of the assumption with this description; `None` if there is no such assumption.
 pub fn plausible_range(description: &str) -> Option<[f64; 2]> {
-    let assumption = ASSUMPTIONS
-        .iter()
-        .find(|assumption| assumption.description == description);
+    let has_description = |assumption: &&Assumption| assumption.description == description;
+    let assumption = ASSUMPTIONS.iter().find(has_description);
     assumption.map(|assumption| assumption.range)
 }
 
@@ -228,11 +217,9 @@ impl Assumptions {
         };
         let mut rows: Vec<Row> = ASSUMPTIONS.iter().map(compute_row).collect();
         rows.sort_by(|a, b| b.max_change().total_cmp(&a.max_change()));
+        let names = gaits.iter().map(|(gait, _)| gait.name().to_string());
         Self {
-            gaits: gaits
-                .iter()
-                .map(|(gait, _)| gait.name().to_string())
-                .collect(),
+            gaits: names.collect(),
             rows,
         }
     }
@@ -351,11 +338,8 @@ impl fmt::Display for Assumptions {
             f,
             "Change in displacement per cycle, in percent, at the lowest and the highest value of each assumption.\n"
         )?;
-        let width = self
-            .rows
-            .iter()
-            .map(|row| row.description.len())
-            .fold(0, usize::max);
+        let widths = self.rows.iter().map(|row| row.description.len());
+        let width = widths.fold(0, usize::max);
         write!(f, "{:width$}  assumed        from to         ", "")?;
         for gait in &self.gaits {
             write!(f, "{gait:>13}")?;

@@ -38,14 +38,11 @@ impl DriveEffect {
                 .filter(|rigid| rigid.abs() > min)
                 .map(|rigid| lagging / rigid)
         };
-        let forward_fraction = divide(
-            cycle.travel.forward,
-            rigid_prediction.forward,
-            MIN_DISTANCE_MM,
-        );
-        let turn_fraction = divide(cycle.travel.turn, rigid_prediction.turn, MIN_TURN_DEG);
+        let travel = cycle.travel;
+        let forward_fraction = divide(travel.forward, rigid_prediction.forward, MIN_DISTANCE_MM);
+        let turn_fraction = divide(travel.turn, rigid_prediction.turn, MIN_TURN_DEG);
         Some(Self {
-            movement: rigid_prediction.keep_determined(cycle.travel),
+            movement: rigid_prediction.keep_determined(travel),
             max_lag: cycle.max_lag,
             fraction_of_rigid: [forward_fraction, turn_fraction]
                 .into_iter()

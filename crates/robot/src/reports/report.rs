@@ -102,13 +102,10 @@ impl Report {
             }
         };
         let core = robot.core();
+        let simulate_routine = |routine| RoutineRow::simulate(robot, routine);
         Self {
             gait_rows: robot.gaits().iter().map(compute_row).collect(),
-            routine_rows: robot
-                .routines()
-                .iter()
-                .map(|routine| RoutineRow::simulate(robot, routine))
-                .collect(),
+            routine_rows: robot.routines().iter().map(simulate_routine).collect(),
             hash: core.hash(),
             waveform_count: core.waves().len(),
             section_bytes: robot.section().len(),
@@ -133,22 +130,15 @@ impl Report {
             "{:width$} steps   repeat      s   ahead   left    turn   ahead   left    turn",
             "routine"
         )?;
-        for routine in &self.routine_rows {
-            let RoutineRow {
-                name,
-                step_count,
-                round_count,
-                seconds,
-                movement,
-                movement_with_servos,
-                ..
-            } = routine;
-            let repeat = round_count.map_or("for ever".to_string(), |count| count.to_string());
+        for row in &self.routine_rows {
+            let (name, step_count, seconds) = (&row.name, row.step_count, row.seconds);
+            let round_count = row.round_count.map(|count| count.to_string());
+            let repeat = round_count.unwrap_or("for ever".to_string());
             write!(
                 f,
                 "{name:<width$} {step_count:>5} {repeat:>8} {seconds:>6.1}"
             )?;
-            for prediction in [movement, movement_with_servos] {
+            for prediction in [row.movement, row.movement_with_servos] {
                 let [forward, left, turn] = [prediction.forward, prediction.left, prediction.turn]
                     .map(|component| format_component(component, 1));
                 write!(f, " {forward:>7} {left:>6} {turn:>7}")?;
@@ -173,41 +163,29 @@ impl fmt::Display for Report {
         )?;
         let has_flexible_drive = self.gait_rows.iter().any(|row| row.drive_effect.is_some());
         let width = column_width(self.gait_rows.iter().map(|row| row.name.as_str()));
+        let drive_headings = match has_flexible_drive {
+            true => ["   drive, deg and %", "      lag % of rigid"],
+            false => [""; 2],
+        };
         writeln!(
             f,
             "{:width$}  cycle      fastest  table error, deg      smallest margins       slider, mm ideal servos, mm and deg   with real servos{}",
-            "",
-            if has_flexible_drive {
-                "   drive, deg and %"
-            } else {
-                ""
-            }
+            "", drive_headings[0]
         )?;
         writeln!(
             f,
             "{:width$}      s  deg/s servo      max     rms  type-2 type-1    leg    least   most    ahead   left    turn   line  ahead   turn{}",
-            "gait",
-            if has_flexible_drive {
-                "      lag % of rigid"
-            } else {
-                ""
-            }
+            "gait", drive_headings[1]
         )?;
         for row in &self.gait_rows {
-            let GaitRow {
-                name,
-                period,
-                audit,
-                table_error,
-                movement,
-                drive_effect,
-                utilisation,
-                movement_with_servos,
-            } = row;
+            let (audit, table_error) = (&row.audit, &row.table_error);
+            let (movement, movement_with_servos) = (&row.movement, &row.movement_with_servos);
             let (min_stroke, max_stroke) = audit.stroke_range;
             write!(
                 f,
-                "{name:<width$} {period:>6.2} {:>6.1} {:>5}   {:>6.4}  {:>6.4}  {:>6.3} {:>6.3} {:>6.3}   {:>+6.1} {:>+6.1}  ",
+                "{:<width$} {:>6.2} {:>6.1} {:>5}   {:>6.4}  {:>6.4}  {:>6.3} {:>6.3} {:>6.3}   {:>+6.1} {:>+6.1}  ",
+                row.name,
+                row.period,
                 audit.peak_speed.speed,
                 SERVO_NAMES[audit.peak_speed.servo],
                 table_error.max,
@@ -220,23 +198,19 @@ impl fmt::Display for Report {
             )?;
             write!(
                 f,
-                "{:>7} {:>6} {:>7}  {utilisation:>5.2} {:>6} {:>6}",
+                "{:>7} {:>6} {:>7}  {:>5.2} {:>6} {:>6}",
                 format_component(movement.forward, 2),
                 format_component(movement.left, 2),
                 format_component(movement.turn, 2),
+                row.utilisation,
                 format_component(movement_with_servos.forward, 1),
                 format_component(movement_with_servos.turn, 1)
             )?;
-            if let Some(DriveEffect {
-                max_lag,
-                fraction_of_rigid,
-                ..
-            }) = drive_effect
-            {
-                let percent = fraction_of_rigid.map_or("-".to_string(), |fraction| {
-                    format!("{:.0}", 100.0 * fraction)
-                });
-                write!(f, "   {max_lag:>6.2} {percent:>10}")?;
+            if let Some(effect) = &row.drive_effect {
+                let fraction = effect.fraction_of_rigid;
+                let percent = fraction.map(|fraction| format!("{:.0}", 100.0 * fraction));
+                let percent = percent.as_deref().unwrap_or("-");
+                write!(f, "   {:>6.2} {percent:>10}", effect.max_lag)?;
             }
             writeln!(f)?;
         }
@@ -259,16 +233,10 @@ impl fmt::Display for Report {
                 slow_names.join(", ")
             )?;
         }
-        for row in self
-            .gait_rows
-            .iter()
-            .filter(|row| row.utilisation >= HIGH_UTILISATION)
-        {
-            write!(
-                f,
-                "\n{}",
-                format_reserve_warning(&row.name, row.utilisation)
-            )?;
+        let loads_servos = |row: &&GaitRow| row.utilisation >= HIGH_UTILISATION;
+        for row in self.gait_rows.iter().filter(loads_servos) {
+            let warning = format_reserve_warning(&row.name, row.utilisation);
+            write!(f, "\n{warning}")?;
         }
         if self.may_delay_frame {
             write!(f, "\n{LONG_SEARCH_NOTE}")?;
@@ -319,20 +287,17 @@ fn round_to(value: f64, decimals: i32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{robot, robot_with};
+    use crate::testing::{robot, valid_robot_with};
 
     #[test]
     fn columns_are_aligned_for_names_of_any_length() {
         for name in ["paper", "own-gaits"] {
             let text = Report::compute(&robot(name)).to_string();
-            let rows: Vec<&str> = text
-                .lines()
-                .skip(2)
-                .take_while(|line| !line.is_empty())
-                .collect();
-            let length = rows[1].len();
+            let rows = text.lines().skip(2).take_while(|line| !line.is_empty());
+            let lengths: Vec<usize> = rows.map(str::len).collect();
+            assert!(lengths.len() > 10, "{text}");
             assert!(
-                rows.len() > 10 && rows[1..].iter().all(|row| row.len() == length),
+                lengths[1..].iter().all(|length| *length == lengths[1]),
                 "{text}"
             );
         }
@@ -345,9 +310,8 @@ mod tests {
             let rows = report.gait_rows.iter().filter(|row| row.is_slow());
             let names: Vec<_> = rows.map(|row| row.name.clone()).collect();
             let text = report.to_string();
-            let note = text
-                .lines()
-                .find_map(|line| line.strip_prefix("slow gaits: "));
+            let mut lines = text.lines();
+            let note = lines.find_map(|line| line.strip_prefix("slow gaits: "));
             assert_eq!(note.unwrap_or_default(), names.join(", "), "{text}");
             names
         };
@@ -360,40 +324,23 @@ mod tests {
         ];
         assert_eq!(find_slow_gaits(robot("own-gaits")), slow_turns);
         // Such gaits lose 16 to 34 % of their distance.
-        let slower_robot = robot_with(
-            "own-gaits",
-            &[
-                ("period = 1.2\n", "period = 1.6\n"),
-                (
-                    "amplitude = 16.0\nstart = { LF = 0.0, RH = 0.25",
-                    "amplitude = 12.5\nstart = { LF = 0.0, RH = 0.25",
-                ),
-            ],
-        );
-        let names = find_slow_gaits(slower_robot.expect("the robot is valid"));
+        let stroll_with = |mm: &str| format!("amplitude = {mm}\nstart = {{ LF = 0.0, RH = 0.25");
+        let [old, new] = ["16.0", "12.5"].map(stroll_with);
+        let changes = [("period = 1.2\n", "period = 1.6\n"), (&*old, &*new)];
+        let names = find_slow_gaits(valid_robot_with("own-gaits", &changes));
+        let is_slow = |gait: &str| names.iter().any(|name| name == gait);
         for gait in ["stroll", "veer-left"].into_iter().chain(slow_turns) {
-            assert!(
-                names.iter().any(|name| name == gait),
-                "{gait} is missing from {names:?}"
-            );
+            assert!(is_slow(gait), "{gait} is missing from {names:?}");
         }
         for fast_or_still in ["stride", "nod", "wag"] {
-            assert!(
-                !names.iter().any(|name| name == fast_or_still),
-                "{fast_or_still}"
-            );
+            assert!(!is_slow(fast_or_still), "{fast_or_still}");
         }
     }
 
     #[test]
     fn a_value_that_rounds_to_zero_is_shown_without_a_minus_sign() {
-        assert_eq!(
-            [
-                format_component(Some(-0.004), 2),
-                format_component(Some(-0.006), 2),
-                format_component(None, 2)
-            ],
-            ["+0.00", "-0.01", "-"]
-        );
+        let components = [Some(-0.004), Some(-0.006), None];
+        let texts = components.map(|component| format_component(component, 2));
+        assert_eq!(texts, ["+0.00", "-0.01", "-"]);
     }
 }

@@ -120,17 +120,9 @@ impl fmt::Display for ServoTable {
             }
         }
         self.write_header(f, "max speed", width, 10)?;
-        for Row {
-            name,
-            max_paces_percent,
-            ..
-        } in &self.rows
-        {
-            let paces: String = max_paces_percent
-                .iter()
-                .map(|pace| format!("{pace:>10.0}"))
-                .collect();
-            writeln!(f, "{name:<width$}{paces}")?;
+        for row in &self.rows {
+            let paces = row.max_paces_percent.map(|pace| format!("{pace:>10.0}"));
+            writeln!(f, "{:<width$}{}", row.name, paces.concat())?;
         }
         let mut points = self.rows.iter().flat_map(|row| row.points.as_flattened());
         match points.all(|point| point.movement.is_determined()) {
@@ -141,15 +133,8 @@ impl fmt::Display for ServoTable {
 }
 
 /// Formats the results at one operating point. A turn that rounds to zero is omitted.
-fn format_point(
-    OperatingPoint {
-        utilisation,
-        movement,
-    }: &OperatingPoint,
-) -> String {
-    let turn = format_turn(movement.turn);
-    format!(
-        "{utilisation:>9.2}{:>7}{turn:>6}",
-        format_component(movement.forward, 1)
-    )
+fn format_point(point: &OperatingPoint) -> String {
+    let (utilisation, turn) = (point.utilisation, format_turn(point.movement.turn));
+    let forward = format_component(point.movement.forward, 1);
+    format!("{utilisation:>9.2}{forward:>7}{turn:>6}")
 }

@@ -200,7 +200,7 @@ fn floor_with_allowance(value: f64) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{all_robots, robot, robot_with};
+    use crate::testing::{all_robots, robot, valid_robot_with};
     use lizard_core::numbers::gaits::GaitId;
     use lizard_core::numbers::part::{End, Side};
     use lizard_core::numbers::section::{Header, Numbers};
@@ -224,21 +224,10 @@ mod tests {
             assert_eq!(lengths.scale.bits, 8);
         }
         let offset = (links.l5 - links.l0) / 2.0;
+        let [left_length, right_length] = [links.l12 + links.l13, links.l17 + links.l18];
         let sides = [
-            [
-                offset,
-                links.l10,
-                links.l14,
-                links.l11,
-                links.l12 + links.l13,
-            ],
-            [
-                -offset,
-                links.l15,
-                links.l19,
-                links.l16,
-                links.l17 + links.l18,
-            ],
+            [offset, links.l10, links.l14, links.l11, left_length],
+            [-offset, links.l15, links.l19, links.l16, right_length],
         ];
         for (side, mm) in content.sliders.iter().zip(sides) {
             let [base, nominal_length] = [side.base, side.nominal_length].map(i32::from);
@@ -253,13 +242,10 @@ mod tests {
     #[test]
     fn each_margin_limit_is_rounded_up() {
         let limits = robot("unequal").firmware().limits();
-        assert_eq!(
-            [limits.type2, limits.type1, limits.leg],
-            [10_486, 8_848, 12_452].map(Sine)
-        );
+        let numbers = [limits.type2, limits.type1, limits.leg];
+        assert_eq!(numbers, [10_486, 8_848, 12_452].map(Sine));
         // An exact limit stays as it is.
-        let exact_robot = robot_with("unequal", &[("type2 = 0.32 ", "type2 = 0.25 ")])
-            .expect("the robot is valid");
+        let exact_robot = valid_robot_with("unequal", &[("type2 = 0.32 ", "type2 = 0.25 ")]);
         assert_eq!(exact_robot.firmware().limits().type2, Sine(8192));
     }
 
@@ -269,7 +255,7 @@ mod tests {
             ("stroke_min = -19.0", "stroke_min = -19.001"),
             ("stroke_max = 41.0", "stroke_max = 41.001"),
         ];
-        let changed_robot = robot_with("unequal", &changes).expect("the robot is valid");
+        let changed_robot = valid_robot_with("unequal", &changes);
         for side in [Side::Left, Side::Right] {
             let slider = changed_robot.firmware().slider(side);
             let nominal = slider.nominal_length;
@@ -278,25 +264,23 @@ mod tests {
         }
     }
 
+    /// Computes the pulse width of a servo at a sweep in angle steps, us.
+    fn pulse_at(servo: &Servo, sweep: i32) -> f64 {
+        servo.neutral_us + servo.us_per_degree * f64::from(sweep) * 360.0 / 65536.0
+    }
+
     #[test]
     fn a_travel_ends_at_the_last_step_within_the_servos_pulses() {
         for (name, robot) in all_robots() {
             let calibrations = robot.firmware().calibration();
             for (servo, calibration) in robot.servos().iter().zip(calibrations) {
-                let pulse_at = |sweep: i32| {
-                    servo.neutral_us + servo.us_per_degree * f64::from(sweep) * 360.0 / 65536.0
-                };
-                let is_within = |sweep: i32| {
-                    (servo.min_us - 1e-6..=servo.max_us + 1e-6).contains(&pulse_at(sweep))
-                };
-                for (end, outward_step) in
-                    [(calibration.travel_min, -1), (calibration.travel_max, 1)]
-                {
+                let allowed = servo.min_us - 1e-6..=servo.max_us + 1e-6;
+                let is_within = |sweep: i32| allowed.contains(&pulse_at(servo, sweep));
+                let [min, max] = [calibration.travel_min, calibration.travel_max];
+                for (end, outward_step) in [(min, -1), (max, 1)] {
                     let end = i32::from(end.0);
-                    assert!(
-                        is_within(end) && !is_within(end + outward_step),
-                        "{name} {servo:?} {end}"
-                    );
+                    let is_last = is_within(end) && !is_within(end + outward_step);
+                    assert!(is_last, "{name} {servo:?} {end}");
                 }
             }
         }
@@ -317,11 +301,9 @@ mod tests {
                     max_us: 1500.0 + half_width_us,
                 };
                 let calibration = convert_calibration(&servo);
+                let (min, max) = (calibration.travel_min, calibration.travel_max);
                 let steps = 1024 * k as i16;
-                assert_eq!(
-                    [calibration.travel_min.0, calibration.travel_max.0],
-                    [-steps, steps]
-                );
+                assert_eq!([min.0, max.0], [-steps, steps]);
             }
         }
     }
@@ -350,13 +332,9 @@ mod tests {
             let firmware = robot.firmware();
             for (i, servo) in robot.servos().iter().enumerate() {
                 let calibration = firmware.calibration()[i];
-                for sweep in (i32::from(calibration.travel_min.0)
-                    ..i32::from(calibration.travel_max.0))
-                    .step_by(97)
-                {
-                    let cycles = 16.0
-                        * (servo.neutral_us
-                            + servo.us_per_degree * f64::from(sweep) * 360.0 / 65536.0);
+                let (min, max) = (calibration.travel_min, calibration.travel_max);
+                for sweep in (i32::from(min.0)..i32::from(max.0)).step_by(97) {
+                    let cycles = 16.0 * pulse_at(servo, sweep);
                     let width = calibration.width(Sweep(sweep as i16));
                     // Neutral, gain over the travel, and product: each has a rounding error of up to half a cycle.
                     let error = (f64::from(width.0) - cycles).abs();
@@ -399,8 +377,7 @@ mod tests {
 
     #[test]
     fn the_core_can_move_the_slowest_robot() {
-        let slow_robot = robot_with("paper", &[("\nslew = 300.0", "\nslew = 10.0")])
-            .expect("the robot is valid");
+        let slow_robot = valid_robot_with("paper", &[("\nslew = 300.0", "\nslew = 10.0")]);
         assert!(slow_robot.firmware().slew().per_frame >= Slew::MIN_PER_FRAME);
     }
 

@@ -235,7 +235,10 @@ fn find_rotation(
 mod tests {
     use crate::Robot;
     use crate::robot::STAND;
-    use crate::testing::{all_robots, robot, robot_with, text_before_gaits};
+    use crate::testing::{
+        all_robots, assert_starts_with, error_with, for_each_gait, robot, text_before_gaits,
+        valid_robot_with,
+    };
 
     /// Number of waveforms in a robot's tables.
     fn wave_count(robot: &Robot) -> usize {
@@ -263,18 +266,14 @@ mod tests {
 
     #[test]
     fn the_increments_of_a_period_add_up_to_one_cycle() {
-        for (name, robot) in all_robots() {
-            for gait in robot.gaits() {
-                let increment = robot
-                    .firmware()
-                    .gait(gait_id(&robot, gait.index()))
-                    .increment;
-                let frames = 50.0 * gait.period();
-                let error = f64::from(increment.abs()) * frames - f64::from(1 << 24);
-                assert!(error.abs() <= 0.5 * frames, "{name} {}", gait.name());
-                assert_eq!(increment < 0, gait.is_reversed());
-            }
-        }
+        for_each_gait(|label, robot, gait| {
+            let id = gait_id(robot, gait.index());
+            let increment = robot.firmware().gait(id).increment;
+            let frames = 50.0 * gait.period();
+            let error = f64::from(increment.abs()) * frames - f64::from(1 << 24);
+            assert!(error.abs() <= 0.5 * frames, "{label}");
+            assert_eq!(increment < 0, gait.is_reversed());
+        });
     }
 
     /// The id of the gait with this index.
@@ -286,18 +285,11 @@ mod tests {
 
     #[test]
     fn gait_names_in_the_core_have_spaces_instead_of_hyphens() {
-        for (name, robot) in all_robots() {
-            for gait in robot.gaits() {
-                let firmware = robot.firmware();
-                let console_name: Vec<u8> =
-                    firmware.gait_name(gait_id(&robot, gait.index())).collect();
-                assert_eq!(
-                    String::from_utf8(console_name).expect("the name is ASCII"),
-                    gait.command(),
-                    "{name}"
-                );
-            }
-        }
+        for_each_gait(|label, robot, gait| {
+            let console_name = robot.firmware().gait_name(gait_id(robot, gait.index()));
+            let console_name = String::from_utf8(console_name.collect());
+            assert_eq!(console_name, Ok(gait.command()), "{label}");
+        });
     }
 
     #[test]
@@ -329,11 +321,8 @@ mod tests {
                 let mirrored = [-a2, -a1, -a4, -a3];
                 let actual = b.table_sweeps(phase);
                 // The core rounds halves up on both sides of zero, so mirrored values may differ by a step.
-                assert!(
-                    mirrored.iter().zip(actual).all(|(a, b)| a.abs_diff(b) <= 1),
-                    "{name} {} at {phase}",
-                    a.name()
-                );
+                let is_near = mirrored.iter().zip(actual).all(|(a, b)| a.abs_diff(b) <= 1);
+                assert!(is_near, "{name} {} at {phase}", a.name());
             }
         }
     }
@@ -343,23 +332,15 @@ mod tests {
         // Two waves, two waveforms with holds that four turning gaits share, and one path for two servos that mirror
         // each other.
         assert_eq!(wave_count(&robot("paper")), 5);
-        let smaller_robot = robot_with("paper", &[("amplitude = 15.0", "amplitude = 14.0")])
-            .expect("the robot is valid");
-        assert_eq!(wave_count(&smaller_robot), 5);
-        let duty_robot =
-            robot_with("paper", &[("duty = 0.875", "duty = 0.8")]).expect("the robot is valid");
-        assert_eq!(wave_count(&duty_robot), 5);
-        let robot_with_added_wave = robot_with(
-            "paper",
-            &[(
-                "[gait.trot]",
-                "[gait.step]\nperiod = 2.0\nwaveform = \"wave\"\nduty = 0.6\namplitude = 9.0\nstart = { LF = 0.1, RF = 0.2, RH = 0.3, LH = 0.4 }\n[gait.trot]",
-            )],
-        );
-        assert_eq!(
-            wave_count(&robot_with_added_wave.expect("the robot is valid")),
-            6
-        );
+        let added_wave = "[gait.step]\nperiod = 2.0\nwaveform = \"wave\"\nduty = 0.6\namplitude = 9.0\nstart = { LF = 0.1, RF = 0.2, RH = 0.3, LH = 0.4 }\n[gait.trot]";
+        for (old, new, expected) in [
+            ("amplitude = 15.0", "amplitude = 14.0", 5),
+            ("duty = 0.875", "duty = 0.8", 5),
+            ("[gait.trot]", added_wave, 6),
+        ] {
+            let changed_robot = valid_robot_with("paper", &[(old, new)]);
+            assert_eq!(wave_count(&changed_robot), expected, "{new}");
+        }
     }
 
     #[test]
@@ -373,17 +354,14 @@ mod tests {
                     *max_gain = channel.gain.unsigned_abs().max(*max_gain);
                 }
             }
-            assert!(
-                max_gains.iter().all(|gain| *gain == 16384),
-                "{name} {max_gains:?}"
-            );
+            assert_eq!(max_gains, vec![16384; max_gains.len()], "{name}");
         }
     }
 
     #[test]
     fn a_robot_that_only_stands_has_a_table_of_zeros() {
-        let robot = Robot::parse(&format!("{}{STAND}", text_before_gaits("unequal")))
-            .expect("the robot is valid");
+        let robot = Robot::parse(&(text_before_gaits("unequal") + STAND));
+        let robot = robot.expect("the robot is valid");
         assert_eq!(wave_count(&robot), 1);
         let stand = &robot.gaits()[0];
         assert!(!stand.has_movement());
@@ -393,12 +371,8 @@ mod tests {
     #[test]
     fn a_leg_may_not_sweep_half_a_turn() {
         let gait = "[gait.whirl]\nperiod = 9.0\nwaveform = \"wave\"\nduty = 0.5\namplitude = 90.0\nstart = { LF = 0, RF = 0, RH = 0, LH = 0 }\ngain = { RH = -2.5 }\n[gait.walk]";
-        let message = robot_with("unequal", &[("[gait.walk]", gait)])
-            .expect_err("a sweep of half a turn is rejected")
-            .to_string();
-        assert!(
-            message.starts_with("in \"whirl\" servo A3 would have to turn farther than it can: its sweep is half a turn or more ("),
-            "{message}"
-        );
+        let message = error_with("unequal", &[("[gait.walk]", gait)]);
+        let expected = "in \"whirl\" servo A3 would have to turn farther than it can: its sweep is half a turn or more (";
+        assert_starts_with(&message, expected);
     }
 }

@@ -3,7 +3,7 @@
 use lizard_core::numbers::gaits::{Input, Step};
 use lizard_robot::{OPEN_INPUTS_NOTE, Report, RoutineRow};
 
-use super::{paper, paper_text, paper_with_tables};
+use super::{paper, paper_text, paper_with_tables, read_cases};
 
 /// Both inputs, each with a free pin.
 const INPUTS: &str = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";
@@ -20,8 +20,8 @@ fn parse_error(tables: &str) -> String {
 
 /// Returns kind, gait and count of each record of a routine with only this step.
 fn step_records(step: &str) -> Vec<(u8, u8, u16)> {
-    let robot =
-        paper_with_tables(&format!("{INPUTS}[routine.one]\nsteps = [\"{step}\"]")).expect(step);
+    let tables = format!("{INPUTS}[routine.one]\nsteps = [\"{step}\"]");
+    let robot = paper_with_tables(&tables).expect(step);
     let [routine] = robot.routines() else {
         panic!("the robot has one routine");
     };
@@ -36,43 +36,22 @@ fn a_step_with_an_input_has_two_records_with_the_input_first() {
     let until_record = |input: Input| (Step::UNTIL, input.byte(), 0);
     let wait_record = (Step::WAIT, 0, Step::ENDLESS);
     let gait_index = |name: &str| paper().gait(name).expect(name).index() as u8;
-    for (step, expected) in [
-        ("wait button", vec![until_record(button), wait_record]),
-        (" wait  nose ", vec![until_record(nose), wait_record]),
-        (
-            "walk until nose",
-            vec![
-                until_record(nose),
-                (Step::FRAMES, gait_index("walk"), Step::ENDLESS),
-            ],
-        ),
-        (
-            "walk 10 until nose",
-            vec![until_record(nose), (Step::CYCLES, gait_index("walk"), 10)],
-        ),
-        (
-            "arc left 2.5 s until button",
-            vec![
-                until_record(button),
-                (Step::FRAMES, gait_index("arc-left"), 125),
-            ],
-        ),
-        (
-            "stand until button",
-            vec![until_record(button), (Step::FRAMES, 0, Step::ENDLESS)],
-        ),
-        (
-            "rest until button",
-            vec![until_record(button), (Step::REST, 0, Step::ENDLESS)],
-        ),
-        (
-            "rest 5 s until button",
-            vec![until_record(button), (Step::REST, 0, 250)],
-        ),
-        ("rest", vec![(Step::REST, 0, 1)]),
+    let (frames, endless) = (Step::FRAMES, Step::ENDLESS);
+    let [walk, arc] = ["walk", "arc-left"].map(gait_index);
+    for (step, input, record) in [
+        ("wait button", button, wait_record),
+        (" wait  nose ", nose, wait_record),
+        ("walk until nose", nose, (frames, walk, endless)),
+        ("walk 10 until nose", nose, (Step::CYCLES, walk, 10)),
+        ("arc left 2.5 s until button", button, (frames, arc, 125)),
+        ("stand until button", button, (frames, 0, endless)),
+        ("rest until button", button, (Step::REST, 0, endless)),
+        ("rest 5 s until button", button, (Step::REST, 0, 250)),
     ] {
+        let expected = [until_record(input), record];
         assert_eq!(step_records(step), expected, "{step}");
     }
+    assert_eq!(step_records("rest"), [(Step::REST, 0, 1)]);
     assert_eq!((button.pin(), nose.pin()), (15, 16));
     assert!(nose.is_nose() && !button.is_nose());
 }
@@ -107,95 +86,57 @@ fn every_free_pin_can_be_an_input_and_used_pins_are_rejected() {
             assert_eq!(actual, format!("2: input.{name}.pin is \"{pin}\"{message}"));
         }
     }
-    let free_pins = [
-        "D2", "D4", "D5", "D6", "D7", "D8", "D12", "A0", "A1", "A2", "A4", "A5",
-    ];
-    for pin in free_pins {
-        let robot =
-            paper_with_tables(&format!("[input.nose]\npin = \"{pin}\"\n{rail}")).expect(pin);
+    for pin in "D2 D4 D5 D6 D7 D8 D12 A0 A1 A2 A4 A5".split(' ') {
+        let tables = format!("[input.nose]\npin = \"{pin}\"\n{rail}");
+        let robot = paper_with_tables(&tables).expect(pin);
         assert!(robot.inputs().nose.is_some() && robot.inputs().button.is_none());
     }
     let message = parse_error("[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A1\"");
-    assert_eq!(
-        message,
-        "4: input.nose.pin is \"A1\", which input.button already uses"
-    );
+    let expected = "4: input.nose.pin is \"A1\", which input.button already uses";
+    assert_eq!(message, expected);
 }
 
 #[test]
 fn an_error_in_an_input_is_reported_with_its_line_and_step() {
-    for (tables, message) in [
-        (
-            "[input.knob]\npin = \"A1\"",
-            "1: input.knob is not a known key; allowed: button, nose",
-        ),
-        (
-            "[input.nose]\npim = \"A1\"",
-            "2: input.nose.pim is not a known key; did you mean \"pin\"?",
-        ),
-        (
-            "[input.nose]\n",
-            "1: input.nose.pin is missing; it must be a string",
-        ),
-    ] {
-        assert_eq!(parse_error(tables), message);
+    let mistakes = r#"
+        [input.knob]\npin = "A1" => 1: input.knob is not a known key; allowed: button, nose
+        [input.nose]\npim = "A1" => 2: input.nose.pim is not a known key; did you mean "pin"?
+        [input.nose]\n => 1: input.nose.pin is missing; it must be a string
+    "#;
+    for (tables, message) in read_cases(mistakes) {
+        assert_eq!(parse_error(&tables), message);
     }
-    for (step, message) in [
-        ("wait", "must name an input, for example \"wait button\""),
-        (
-            "walk until",
-            "must name an input after until, for example \"walk until nose\"",
-        ),
-        (
-            "wait buton",
-            "names the input \"buton\", which does not exist; did you mean \"button\"?",
-        ),
-        (
-            "walk until wall",
-            "names the input \"wall\", which does not exist; allowed: button, nose",
-        ),
-        (
-            "wolk until nose",
-            "names the gait \"wolk\", which does not exist; did you mean \"walk\"?",
-        ),
-        (
-            "walk 0 until nose",
-            "needs a length: 1 to 999 cycles, for example \"walk 3\", or a time, for example \"walk 2 s\"",
-        ),
-        (
-            "one until nose",
-            "is the routine itself, which would never end",
-        ),
-        (
-            "walk 0 s until nose",
-            "has a time that is not between 0.02 and 999 s",
-        ),
-        (
-            "wait button until nose",
-            "names the gait \"wait-button\", which does not exist; allowed: stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look",
-        ),
-    ] {
-        let actual = parse_error(&format!(
-            "{INPUTS}[routine.one]\nsteps = [\"walk 1\", \"{step}\"]"
-        ));
+    let no_length = "needs a length: 1 to 999 cycles, for example \"walk 3\", or a time, for example \"walk 2 s\"";
+    let gaits = "stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look";
+    let steps = format!(
+        r#"
+        wait => must name an input, for example "wait button"
+        walk until => must name an input after until, for example "walk until nose"
+        wait buton => names the input "buton", which does not exist; did you mean "button"?
+        walk until wall => names the input "wall", which does not exist; allowed: button, nose
+        wolk until nose => names the gait "wolk", which does not exist; did you mean "walk"?
+        walk 0 until nose => {no_length}
+        one until nose => is the routine itself, which would never end
+        walk 0 s until nose => has a time that is not between 0.02 and 999 s
+        wait button until nose => names the gait "wait-button", which does not exist; allowed: {gaits}
+        "#
+    );
+    for (step, message) in read_cases(&steps) {
+        let tables = format!("{INPUTS}[routine.one]\nsteps = [\"walk 1\", \"{step}\"]");
         let expected = format!("6: routine.one.steps: step 2, \"{step}\", {message}");
-        assert_eq!(actual, expected);
+        assert_eq!(parse_error(&tables), expected);
     }
     let actual = parse_error("[routine.one]\nsteps = [\"wait nose\"]");
     let message = "names the input \"nose\", which has no pin; set one in [input.nose], for example pin = \"A1\"";
-    assert_eq!(
-        actual,
-        format!("2: routine.one.steps: step 1, \"wait nose\", {message}")
-    );
+    let expected = format!("2: routine.one.steps: step 1, \"wait nose\", {message}");
+    assert_eq!(actual, expected);
 }
 
 #[test]
 fn a_round_counts_a_wait_as_one_frame_and_an_endless_gait_as_one_cycle() {
     let simulate_round = |steps: &str| {
-        let robot = paper_with_tables(&format!(
-            "{INPUTS}[routine.one]\nsteps = [{steps}]\nrepeat = \"for ever\""
-        ));
-        let robot = robot.expect(steps);
+        let routine = format!("[routine.one]\nsteps = [{steps}]\nrepeat = \"for ever\"");
+        let robot = paper_with_tables(&(INPUTS.to_owned() + &routine)).expect(steps);
         RoutineRow::simulate(&robot, &robot.routines()[0])
     };
     let format_report =
@@ -208,10 +149,8 @@ fn a_round_counts_a_wait_as_one_frame_and_an_endless_gait_as_one_cycle() {
     );
     let plain_round = simulate_round("\"walk 1\", \"left 3\", \"rest\"");
     assert!(round_with_inputs.has_inputs && !plain_round.has_inputs);
-    assert_eq!(
-        (round_with_inputs.step_count, plain_round.step_count),
-        (4, 3)
-    );
+    let step_counts = [&round_with_inputs, &plain_round].map(|round| round.step_count);
+    assert_eq!(step_counts, [4, 3]);
     let extra_seconds = round_with_inputs.seconds - plain_round.seconds;
     assert!((0.0..0.1).contains(&extra_seconds), "{extra_seconds} s");
     let turn_of = |round: &RoutineRow| round.movement.turn.expect("the turn is determined");
@@ -223,9 +162,8 @@ fn the_patrol_in_the_docs_repeats_from_its_second_step() {
     let docs = include_str!("../../../../docs/gaits.md");
     let blocks = docs.split("```toml\n").skip(1);
     let mut blocks = blocks.filter_map(|block| block.split("```").next());
-    let patrol = blocks
-        .find(|block| block.contains("[input."))
-        .expect("the page has a block with inputs");
+    let patrol = blocks.find(|block| block.contains("[input."));
+    let patrol = patrol.expect("the page has a block with inputs");
     assert!(include_str!("../../../../docs/quickstart.md").contains(patrol));
     let robot = paper_with_tables(patrol).expect("the robot is valid");
     let [routine] = robot.routines() else {

@@ -32,38 +32,34 @@ fn for_each_robot(test: impl Fn(&str, &Robot)) {
     }
 }
 
-/// Runs a test for every gait of every robot.
+/// Runs a test for every gait of every robot, with a label of the robot's file and the gait.
 fn for_each_gait(test: impl Fn(&str, &Robot, &CheckedGait)) {
     for_each_robot(|file, robot| {
         for gait in robot.gaits() {
-            test(file, robot, gait);
+            test(&format!("{file} {}", gait.name()), robot, gait);
         }
     });
 }
 
 #[test]
 fn table_errors_are_at_most_half_a_degree() {
-    for_each_gait(|file, _, gait| {
+    for_each_gait(|label, _, gait| {
         let error = gait.table_error();
-        assert!(error.max <= 0.50, "{file} {}: {error:?}", gait.name());
+        assert!(error.max <= 0.50, "{label}: {error:?}");
         assert!(error.rms <= error.max);
     });
 }
 
 #[test]
 fn every_gait_is_also_safe_between_its_samples() {
-    for_each_gait(|file, robot, gait| {
+    for_each_gait(|label, robot, gait| {
         for phase in (0..=u16::MAX).step_by(7) {
             let pose = gait.table_angles(phase).into();
             let solution = robot.lizard().solve(&pose).expect("the linkage closes");
             if let Some(violation) = robot.limits().violations(&solution).next() {
                 // The check samples 1024 phases. Between two samples, a margin changes by less than 0.01.
                 let excess = (violation.value - violation.limit).abs();
-                assert!(
-                    excess < 0.01,
-                    "{file} {} at {phase}: {violation}",
-                    gait.name()
-                );
+                assert!(excess < 0.01, "{label} at {phase}: {violation}");
             }
         }
     });
@@ -71,53 +67,43 @@ fn every_gait_is_also_safe_between_its_samples() {
 
 #[test]
 fn an_audit_contains_the_smallest_margins_of_all_phases() {
-    for_each_gait(|file, robot, gait| {
+    for_each_gait(|label, robot, gait| {
         let audit = gait.audit();
         let mut min_margins = [f64::INFINITY; 3];
         let (mut min_sampled_stroke, mut max_sampled_stroke) = (f64::INFINITY, f64::NEG_INFINITY);
         for phase in (0..=u16::MAX).step_by(64) {
             let pose = gait.table_angles(phase).into();
             let solution = robot.lizard().solve(&pose).expect("the linkage closes");
-            for (index, margins) in [
-                &solution.margins.type2[..],
-                &solution.margins.type1,
-                &solution.margins.leg,
-            ]
-            .into_iter()
-            .enumerate()
-            {
-                min_margins[index] = margins.iter().fold(min_margins[index], |a, b| a.min(*b));
+            let margins = &solution.margins;
+            let margins = [&margins.type2[..], &margins.type1, &margins.leg];
+            for (min_margin, margins) in min_margins.iter_mut().zip(margins) {
+                *min_margin = margins.iter().fold(*min_margin, |a, b| a.min(*b));
             }
-            min_sampled_stroke = min_sampled_stroke
-                .min(solution.left.s)
-                .min(solution.right.s);
-            max_sampled_stroke = max_sampled_stroke
-                .max(solution.left.s)
-                .max(solution.right.s);
+            for stroke in [solution.left.s, solution.right.s] {
+                min_sampled_stroke = min_sampled_stroke.min(stroke);
+                max_sampled_stroke = max_sampled_stroke.max(stroke);
+            }
         }
         let audited_margins = [audit.type2.value, audit.type1.value, audit.leg.value];
         for (audited, sampled) in audited_margins.into_iter().zip(min_margins) {
             // The audit samples more phases than this test, so its minimum may be smaller.
-            assert!(
-                (0.0..0.002).contains(&(sampled - audited)),
-                "{file} {}",
-                gait.name()
-            );
+            assert!((0.0..0.002).contains(&(sampled - audited)), "{label}");
         }
         let (min_stroke, max_stroke) = audit.stroke_range;
-        for difference in [
+        let differences = [
             min_sampled_stroke - min_stroke,
             max_stroke - max_sampled_stroke,
-        ] {
-            assert!((0.0..0.1).contains(&difference), "{file} {}", gait.name());
+        ];
+        for difference in differences {
+            assert!((0.0..0.1).contains(&difference), "{label}");
         }
-        assert!(Check::TYPE2.contains(&audit.type2.check), "{file}");
+        assert!(Check::TYPE2.contains(&audit.type2.check), "{label}");
     });
 }
 
 #[test]
 fn the_peak_speed_is_the_highest_in_either_direction() {
-    for_each_gait(|file, robot, gait| {
+    for_each_gait(|label, robot, gait| {
         let phase_per_frame = 0.02 / gait.period();
         let mut max_speed = 0.0f64;
         for i in 0..1000 {
@@ -128,11 +114,8 @@ fn the_peak_speed_is_the_highest_in_either_direction() {
             }
         }
         let peak = gait.audit().peak_speed;
-        assert!(
-            (peak.speed - max_speed).abs() <= 0.005 * max_speed,
-            "{file} {}: {peak:?}, expected {max_speed} deg/s",
-            gait.name()
-        );
+        let is_near = (peak.speed - max_speed).abs() <= 0.005 * max_speed;
+        assert!(is_near, "{label}: {peak:?}, expected {max_speed} deg/s");
         assert!(peak.speed <= robot.speed_limits().gait_slew);
     });
 }
@@ -141,11 +124,8 @@ fn the_peak_speed_is_the_highest_in_either_direction() {
 fn stand_is_exactly_the_neutral_pose() {
     for_each_robot(|file, robot| {
         let stand = &robot.gaits()[0];
-        assert_eq!(
-            (stand.name(), stand.has_movement()),
-            ("stand", false),
-            "{file}"
-        );
+        let properties = (stand.name(), stand.has_movement());
+        assert_eq!(properties, ("stand", false), "{file}");
         for phase in 0..=u16::MAX {
             assert_eq!(stand.table_sweeps(phase), [0; 4]);
         }
@@ -155,22 +135,17 @@ fn stand_is_exactly_the_neutral_pose() {
 
 #[test]
 fn gaits_are_found_by_name_and_stay_within_the_servos_pulse_range() {
-    for_each_robot(|file, robot| {
-        for (index, gait) in robot.gaits().iter().enumerate() {
-            assert_eq!(gait.index(), index);
-            let console_name = gait.name().replace('-', " ");
-            assert_eq!(robot.gait(&console_name), Some(gait), "{file}");
-            for phase in (0..=u16::MAX).step_by(64) {
-                for (servo, sweep) in robot.servos().iter().zip(gait.table_sweeps(phase)) {
-                    let pulse = servo.neutral_us
-                        + servo.us_per_degree * f64::from(sweep) / STEPS_PER_DEGREE;
-                    // Sweeps and the limits of the travel are rounded to a step, up to a tenth of a microsecond.
-                    assert!(
-                        pulse > servo.min_us - 0.2 && pulse < servo.max_us + 0.2,
-                        "{file} {} at {phase}: {pulse} us",
-                        gait.name()
-                    );
-                }
+    for_each_gait(|label, robot, gait| {
+        assert_eq!(robot.gaits().get(gait.index()), Some(gait), "{label}");
+        let console_name = gait.name().replace('-', " ");
+        assert_eq!(robot.gait(&console_name), Some(gait), "{label}");
+        for phase in (0..=u16::MAX).step_by(64) {
+            for (servo, sweep) in robot.servos().iter().zip(gait.table_sweeps(phase)) {
+                let change = servo.us_per_degree * f64::from(sweep) / STEPS_PER_DEGREE;
+                let pulse = servo.neutral_us + change;
+                // Sweeps and the limits of the travel are rounded to a step, up to a tenth of a microsecond.
+                let is_within = pulse > servo.min_us - 0.2 && pulse < servo.max_us + 0.2;
+                assert!(is_within, "{label} at {phase}: {pulse} us");
             }
         }
     });

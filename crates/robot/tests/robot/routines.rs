@@ -4,7 +4,7 @@
 use lizard_core::numbers::gaits::Step;
 use lizard_robot::RoutineRow;
 
-use super::{gait, paper, paper_text, paper_with_tables};
+use super::{gait, paper, paper_text, paper_with_tables, read_cases};
 
 /// Returns the error message for a routine `patrol` with these lines.
 fn parse_error(lines: &str) -> String {
@@ -22,9 +22,8 @@ repeat = 3
 #[test]
 fn steps_and_rounds_are_read() {
     let robot = paper_with_tables(PATROL).expect("the routine is valid");
-    let routine = robot
-        .routine("patrol")
-        .expect("the file defines the routine");
+    let routine = robot.routine("patrol");
+    let routine = routine.expect("the file defines the routine");
     let gait_index = |name: &str| robot.gait(name).expect(name).index() as u8;
     let steps = [
         (Step::FRAMES, gait_index("stand"), 50),
@@ -52,19 +51,16 @@ steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "s
     let robot = paper_with_tables(text).expect("the routine is valid");
     let arc_index = gait(&robot, "arc-left").index() as u8;
     let routine = robot.routine("about face");
-    let steps = routine
-        .expect("the file defines the routine")
-        .step_records();
-    let to_fields = |step: &Step| (step.kind, step.gait, step.count);
-    let step_fields: Vec<_> = steps.iter().map(to_fields).collect();
-    let expected = [
+    let steps = [
         (Step::CYCLES, arc_index, 2),
         (Step::FRAMES, arc_index, 125),
         (Step::CYCLES, arc_index, 999),
         (Step::REST, 0, 1),
         (Step::FRAMES, 0, 49_950),
-    ];
-    assert_eq!(step_fields, expected);
+    ]
+    .map(|(kind, gait, count)| Step { kind, gait, count });
+    let routine = routine.expect("the file defines the routine");
+    assert_eq!(routine.step_records(), steps);
 }
 
 #[test]
@@ -78,8 +74,7 @@ fn the_core_finds_the_routines_after_the_unchanged_gaits() {
     for (index, id) in ids.iter().enumerate() {
         assert_eq!(core.gait(*id).is_routine(), index >= gait_count);
         if index < gait_count {
-            let paper_gait = paper().core().gait(*id);
-            assert_eq!(core.gait(*id), paper_gait);
+            assert_eq!(core.gait(*id), paper().core().gait(*id));
         }
     }
     for (id, routine) in ids[gait_count..].iter().zip(robot.routines()) {
@@ -99,9 +94,8 @@ fn the_core_finds_the_routines_after_the_unchanged_gaits() {
 #[test]
 fn eight_routines_of_sixteen_steps_fit_next_to_the_papers_gaits_and_maps() {
     let steps = "\"walk 999\", \"arc-left 3\", \"look 1\", \"stand 2 s\", ".repeat(4);
-    let tables: String = (0..8)
-        .map(|n| format!("[routine.a-long-routine-{n}]\nsteps = [{steps}]\n"))
-        .collect();
+    let format_table = |n| format!("[routine.a-long-routine-{n}]\nsteps = [{steps}]\n");
+    let tables: String = (0..8).map(format_table).collect();
     let robot = paper_with_tables(&tables).expect("the routines fit");
     assert!(robot.has_room_for_maps());
     let bytes = robot.section().len() - paper().section().len();
@@ -140,79 +134,44 @@ fn an_error_is_reported_with_its_line_and_step() {
             assert_eq!(parse_error(&lines), expected);
         }
     }
-    for (lines, message) in [
-        (
-            "steps = []",
-            "routine.patrol.steps has 0 steps; it must have between 1 and 99",
-        ),
-        (
-            "steps = \"walk 1\"",
-            "routine.patrol.steps is the string \"walk 1\"; it must be an array of strings",
-        ),
-        (
-            "repeat = 1",
-            "routine.patrol.steps is missing; it must be an array of strings",
-        ),
-        (
-            "steps = [\"walk 1\"]\nrepeat = 0",
-            "routine.patrol.repeat is 0; it must be between 1 and 999 or \"for ever\"",
-        ),
-        (
-            "steps = [\"walk 1\"]\nrepeat = 1.5",
-            "routine.patrol.repeat is 1.5; it must be a whole number or \"for ever\"",
-        ),
-        (
-            "steps = [\"walk 1\"]\nrepeat = \"ever\"",
-            "routine.patrol.repeat is the string \"ever\"; it must be a number",
-        ),
-        (
-            "steps = [\"walk 1\"]\nrepeat_from = 2",
-            "routine.patrol.repeat_from is 2; it must be between 1 and 1 (a step)",
-        ),
-        (
-            "steps = [\"walk 1\", \"left 1\"]\nrepeat_from = 1.5",
-            "routine.patrol.repeat_from is 1.5; it must be the number of a step",
-        ),
-        (
-            "steps = [\"walk 1\"]\nspeed = 5",
-            "routine.patrol.speed is not a known key; allowed: steps, repeat, repeat_from",
-        ),
-    ] {
-        let actual = parse_error(lines);
-        assert!(actual.ends_with(message), "{actual}");
+    let mistakes = r#"
+        steps = [] => steps has 0 steps; it must have between 1 and 99
+        steps = "walk 1" => steps is the string "walk 1"; it must be an array of strings
+        repeat = 1 => steps is missing; it must be an array of strings
+        steps = ["walk 1"]\nrepeat = 0 => repeat is 0; it must be between 1 and 999 or "for ever"
+        steps = ["walk 1"]\nrepeat = 1.5 => repeat is 1.5; it must be a whole number or "for ever"
+        steps = ["walk 1"]\nrepeat = "ever" => repeat is the string "ever"; it must be a number
+        steps = ["walk 1"]\nrepeat_from = 2 => repeat_from is 2; it must be between 1 and 1 (a step)
+        steps = ["walk 1", "left 1"]\nrepeat_from = 1.5 => repeat_from is 1.5; it must be the number of a step
+        steps = ["walk 1"]\nspeed = 5 => speed is not a known key; allowed: steps, repeat, repeat_from
+    "#;
+    for (lines, message) in read_cases(mistakes) {
+        let actual = parse_error(&lines);
+        assert!(
+            actual.ends_with(&format!(" routine.patrol.{message}")),
+            "{actual}"
+        );
         assert!(actual.starts_with("robot.toml:"), "{actual}");
     }
     let many_steps = "\"walk 1\", ".repeat(100);
     let actual = parse_error(&format!("steps = [{many_steps}]"));
-    assert!(
-        actual.ends_with("has 100 steps; it must have between 1 and 99"),
-        "{actual}"
-    );
+    let expected = "has 100 steps; it must have between 1 and 99";
+    assert!(actual.ends_with(expected), "{actual}");
 }
 
 #[test]
 fn names_of_gaits_and_invalid_names_are_rejected() {
-    for (name, message) in [
-        (
-            "walk",
-            "routine.walk has the name of a gait; choose another name",
-        ),
-        (
-            "stop",
-            "routine.stop is not a routine name: \"stop\" is a console command",
-        ),
-        (
-            "rest-now",
-            "routine.rest-now is not a routine name: \"rest\" is a console command",
-        ),
-        (
-            "Patrol",
-            "routine.Patrol is not a routine name: it must consist of lower-case letters, digits and dashes, and begin with a letter",
-        ),
-    ] {
+    let names = r#"
+        walk => has the name of a gait; choose another name
+        stop => is not a routine name: "stop" is a console command
+        rest-now => is not a routine name: "rest" is a console command
+        Patrol => is not a routine name: it must consist of lower-case letters, digits and dashes, and begin with a letter
+    "#;
+    for (name, message) in read_cases(names) {
         let actual = paper_with_tables(&format!("[routine.{name}]\nsteps = [\"walk 1\"]"));
-        let actual = actual.map(|_| ()).expect_err(name).to_string();
-        assert!(actual.ends_with(message), "{actual}");
+        let actual = actual.map(|_| ()).expect_err(&name).to_string();
+        let expected = format!("routine.{name} {message}");
+        assert!(actual.ends_with(&expected), "{actual}");
     }
 }
 
@@ -222,40 +181,24 @@ fn a_round_includes_the_changes_between_its_gaits() {
         "[routine.ahead]\nsteps = [\"walk 10\"]\n[routine.about]\nsteps = [\"left 5\", \"stand 2 s\"]\nrepeat = \"for ever\"\n[routine.gaze]\nsteps = [\"look 1\"]",
     )
     .expect("the routines are valid");
-    let rounds = robot
-        .routines()
-        .iter()
-        .map(|routine| RoutineRow::simulate(&robot, routine));
-    let [walk_round, turn_round, gaze_round]: [RoutineRow; 3] = rounds
-        .collect::<Vec<_>>()
-        .try_into()
-        .expect("there are three routines");
-    let walk_forward = robot.predict(gait(&robot, "walk")).forward;
-    let walk_forward = walk_forward.expect("the movement is determined");
-    let left_turn = robot.predict(gait(&robot, "left")).turn;
-    let left_turn = left_turn.expect("the movement is determined");
+    let [ahead, about, gaze] = robot.routines() else {
+        panic!("the robot has three routines");
+    };
+    let [walk_round, turn_round, gaze_round] =
+        [ahead, about, gaze].map(|routine| RoutineRow::simulate(&robot, routine));
+    let determined = |component: Option<f64>| component.expect("the movement is determined");
+    let walk_forward = determined(robot.predict(gait(&robot, "walk")).forward);
+    let left_turn = determined(robot.predict(gait(&robot, "left")).turn);
     // Ten cycles of one second each, and the changes from and to the neutral pose.
-    assert!(
-        (10.0..11.0).contains(&walk_round.seconds),
-        "{}",
-        walk_round.seconds
-    );
-    let forward = walk_round.movement.forward;
-    let ratio = forward.expect("the movement is determined") / (10.0 * walk_forward);
+    let seconds = [walk_round.seconds, turn_round.seconds];
+    assert!((10.0..11.0).contains(&seconds[0]), "{seconds:?}");
+    let ratio = determined(walk_round.movement.forward) / (10.0 * walk_forward);
     assert!(
         (0.95..1.05).contains(&ratio),
         "the distance ratio is {ratio}"
     );
-    assert!(
-        (7.0..8.0).contains(&turn_round.seconds),
-        "{}",
-        turn_round.seconds
-    );
-    let ratio = turn_round
-        .movement
-        .turn
-        .expect("the movement is determined")
-        / (5.0 * left_turn);
+    assert!((7.0..8.0).contains(&seconds[1]), "{seconds:?}");
+    let ratio = determined(turn_round.movement.turn) / (5.0 * left_turn);
     assert!((0.9..1.1).contains(&ratio), "the turn ratio is {ratio}");
     assert_eq!((turn_round.round_count, turn_round.step_count), (None, 2));
     // Two feet pull against the other two, so differences between the pads that cannot be measured decide the result.

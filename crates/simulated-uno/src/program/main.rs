@@ -89,10 +89,8 @@ fn run(arguments: &Arguments, image: Image, out: &mut impl Write) -> io::Result<
     lines.sort_by_key(|line| line.ms);
     lines.retain(|line| line.ms < arguments.ms);
     if lines.len() < arguments.say.len() {
-        eprintln!(
-            "simulated-uno: lines after --ms {} are not sent",
-            arguments.ms
-        );
+        let ms = arguments.ms;
+        eprintln!("simulated-uno: lines after --ms {ms} are not sent");
     }
     let mut edges = Vec::new();
     let mut serial_text = report::SerialText::default();
@@ -100,12 +98,8 @@ fn run(arguments: &Arguments, image: Image, out: &mut impl Write) -> io::Result<
     let end_cycle = arguments.ms * CYCLES_PER_MS;
     while *uno.state() == State::Alive && uno.cycle() < end_cycle {
         if let Some(line) = lines.next_if(|line| line.ms * CYCLES_PER_MS <= uno.cycle()) {
-            writeln!(
-                out,
-                "{:>10.2} ms  > {}",
-                uno.ms(),
-                report::escape(&line.text)
-            )?;
+            let (ms, text) = (uno.ms(), report::escape(&line.text));
+            writeln!(out, "{ms:>10.2} ms  > {text}")?;
             uno.send(line.text.as_bytes());
             uno.send(b"\n");
         }

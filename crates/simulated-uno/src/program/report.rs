@@ -42,11 +42,8 @@ impl SerialText {
     fn print_line(&mut self, out: &mut impl Write) -> io::Result<()> {
         let ms = self.last_cycle as f64 / CYCLES_PER_MS as f64;
         let text = String::from_utf8_lossy(&self.unfinished_line);
-        writeln!(
-            out,
-            "{ms:>10.2} ms  {}",
-            escape(text.trim_end_matches('\r'))
-        )?;
+        let text = escape(text.trim_end_matches('\r'));
+        writeln!(out, "{ms:>10.2} ms  {text}")?;
         self.unfinished_line.clear();
         Ok(())
     }
@@ -85,7 +82,6 @@ pub fn print_pulses(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io
             }
             continue;
         };
-        let (first_start, last_start) = (pulses[0].start, pulses[pulses.len() - 1].start);
         if shows_all {
             for pulse in &pulses {
                 let start = pulse.start as f64 / CYCLES_PER_MS as f64;
@@ -93,20 +89,15 @@ pub fn print_pulses(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io
             }
             continue;
         }
-        let period = match pulses.len() {
+        let count = pulses.len();
+        let total_us = to_us(pulses[count - 1].start - pulses[0].start);
+        let period = match count {
             1 => "-".to_owned(),
-            count => format!(
-                "{:.4}",
-                to_us(last_start - first_start) / (count - 1) as f64
-            ),
+            _ => format!("{:.4}", total_us / (count - 1) as f64),
         };
-        writeln!(
-            out,
-            "{pin:<4} {:>8} {:>12.4} {:>12.4} {period:>12}",
-            pulses.len(),
-            to_us(shortest_width),
-            to_us(longest_width)
-        )?;
+        let [shortest, longest] = [shortest_width, longest_width].map(to_us);
+        let widths = format!("{shortest:>12.4} {longest:>12.4}");
+        writeln!(out, "{pin:<4} {count:>8} {widths} {period:>12}")?;
     }
     Ok(())
 }

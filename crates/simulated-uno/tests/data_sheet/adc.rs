@@ -38,9 +38,8 @@ fn uno_with_statements(body: &str, pin_mv: &[u16]) -> Uno {
 fn conversion_results(uno: &Uno) -> Vec<u16> {
     let bytes = mark_values(uno);
     let pairs = bytes.chunks(2);
-    pairs
-        .map(|pair| u16::from_le_bytes([pair[0], pair[1]]))
-        .collect()
+    let results = pairs.map(|pair| u16::from_le_bytes([pair[0], pair[1]]));
+    results.collect()
 }
 
 /// Runs these statements once in the main program, and returns their conversion results.
@@ -194,10 +193,8 @@ fn the_first_conversion_takes_25_clocks_and_later_conversions_take_13() {
     let lengths = intervals(&mark_cycles(&uno));
     for (length, clocks) in lengths.into_iter().step_by(2).zip([25, 13, 13, 25]) {
         let range = clocks * CYCLES_PER_CLOCK - 4..(clocks + 1) * CYCLES_PER_CLOCK + 12;
-        assert!(
-            range.contains(&length),
-            "{length} cycles, expected {clocks} clocks"
-        );
+        let is_expected = range.contains(&length);
+        assert!(is_expected, "{length} cycles, expected {clocks} clocks");
     }
 }
 
@@ -205,17 +202,15 @@ fn the_first_conversion_takes_25_clocks_and_later_conversions_take_13() {
 fn the_prescaler_divides_as_in_table_24_5() {
     // ADPS 000 and 001: 2, 010: 4, ... 111: 128.
     for (select, divisor) in [2, 2, 4, 8, 16, 32, 64, 128].into_iter().enumerate() {
-        let mut uno = uno_with_statements(
-            &format!(
-                "ADMUX = 0x40; ADCSRA = 0xa0 | {select}; ADCSRA |= 0x40;
-                for (;;) {{ while (!(ADCSRA & 0x10)) {{}} GPIOR0 = 1; ADCSRA |= 0x10; }}"
-            ),
-            &[],
+        let body = format!(
+            "ADMUX = 0x40; ADCSRA = 0xa0 | {select}; ADCSRA |= 0x40;
+            for (;;) {{ while (!(ADCSRA & 0x10)) {{}} GPIOR0 = 1; ADCSRA |= 0x10; }}"
         );
+        let mut uno = uno_with_statements(&body, &[]);
         uno.run_ms(2);
         let cycles = mark_cycles(&uno);
-        let (first_cycle, last_cycle, count) =
-            (cycles[1], cycles[cycles.len() - 1], cycles.len() as u64 - 2);
+        let count = cycles.len() as u64 - 2;
+        let (first_cycle, last_cycle) = (cycles[1], cycles[cycles.len() - 1]);
         // Free running: "a new conversion will be started immediately". With the smallest divisors, the program's
         // loop is slower than a conversion.
         let is_expected = match divisor {
@@ -230,14 +225,12 @@ fn the_prescaler_divides_as_in_table_24_5() {
 fn the_two_lowest_prescaler_settings_divide_by_two() {
     // Table 24-5: 13 clocks are 26 cycles.
     for select in [0, 1] {
-        let mut uno = uno_with_statements(
-            &format!(
-                "ADMUX = 0x40; ADCSRA = 0xc0 | {select}; wait();
-                ADCSRA = 0xc0 | {select}; __builtin_avr_delay_cycles(18); GPIOR0 = ADCSRA & 0x40;
-                ADCSRA = 0xc0 | {select}; __builtin_avr_delay_cycles(40); GPIOR0 = ADCSRA & 0x40;"
-            ),
-            &[],
+        let body = format!(
+            "ADMUX = 0x40; ADCSRA = 0xc0 | {select}; wait();
+            ADCSRA = 0xc0 | {select}; __builtin_avr_delay_cycles(18); GPIOR0 = ADCSRA & 0x40;
+            ADCSRA = 0xc0 | {select}; __builtin_avr_delay_cycles(40); GPIOR0 = ADCSRA & 0x40;"
         );
+        let mut uno = uno_with_statements(&body, &[]);
         uno.run_ms(1);
         assert_eq!(mark_values(&uno), [0x40, 0], "ADPS {select}");
     }
@@ -257,14 +250,10 @@ fn the_adc_interrupt_wakes_the_cpu_and_clears_its_flag() {
 fn a_voltage_is_sampled_at_the_clock_in_table_24_1() {
     // "Sample & Hold (Cycles from Start of Conversion)": 1.5 clocks, in the first conversion 13.5. A conversion
     // starts at the next clock edge, at most one clock after ADSC is set.
-    for (body, last_sampled_clock, first_ignored_clock) in [
-        (
-            "start(); wait(); GPIOR0 = 0; start(); wait(); show();",
-            1,
-            3,
-        ),
-        ("GPIOR0 = 0; convert();", 13, 15),
-    ] {
+    let later_conversion = "start(); wait(); GPIOR0 = 0; start(); wait(); show();";
+    for (body, last_sampled_clock, first_ignored_clock) in
+        [(later_conversion, 1, 3), ("GPIOR0 = 0; convert();", 13, 15)]
+    {
         let result_after = |change_clock: u64| {
             let mut uno = uno_with_statements(&format!("ADMUX = 0x40; {body}"), &[]);
             uno.run_until(CYCLES_PER_MS, 1, |uno| !uno.marks().is_empty());

@@ -32,10 +32,8 @@ fn a_supply_below_the_brown_out_level_holds_the_chip_in_reset() {
     set_supply_and_run(&mut uno, 2726.0);
     assert!(!uno.is_held_in_reset());
     assert_eq!(mark_values(&uno)[0], 0x05);
-    assert_eq!(
-        reset_causes(&uno),
-        [ResetCause::PowerOn, ResetCause::BrownOut]
-    );
+    let causes = [ResetCause::PowerOn, ResetCause::BrownOut];
+    assert_eq!(reset_causes(&uno), causes);
 }
 
 #[test]
@@ -54,10 +52,8 @@ fn a_ramp_resets_and_restarts_the_chip_at_the_brown_out_levels() {
     uno.run_cycles(3_000_000);
     let restart = uno.reset_events()[1];
     assert_eq!(restart.cause, ResetCause::BrownOut);
-    assert!(
-        (restart.cycle - ramp_start).abs_diff(725_000) < 100,
-        "{restart:?}"
-    );
+    let is_on_time = (restart.cycle - ramp_start).abs_diff(725_000) < 100;
+    assert!(is_on_time, "{restart:?}");
 }
 
 #[test]
@@ -160,10 +156,8 @@ fn after_power_on_the_chip_starts_only_when_the_supply_is_high_enough() {
     assert!(uno.is_held_in_reset() && uno.marks().is_empty());
     uno.reset();
     uno.run_ms(1);
-    assert!(
-        uno.marks().is_empty(),
-        "the RESET pin does not start the chip either"
-    );
+    let has_no_mark = uno.marks().is_empty();
+    assert!(has_no_mark, "the RESET pin does not start the chip either");
     uno.ramp_supply_mv(5000.0, CYCLES_PER_MS);
     uno.run_ms(2);
     assert_eq!(mark_values(&uno)[0], 1);

@@ -47,18 +47,13 @@ fn a_foreign_interrupt_waits_until_interrupts_are_enabled_and_takes_its_cycles()
             uno.block_interrupts(5000);
             uno.run_until_cycle(10_000);
             let widths = pulse_widths(&uno);
-            assert!(
-                widths.iter().all(|width| *width == widths[0]),
-                "blocked at cycle {cycle}: {widths:?}"
-            );
+            let are_equal = widths.iter().all(|width| *width == widths[0]);
+            assert!(are_equal, "blocked at cycle {cycle}: {widths:?}");
             let starts: Vec<u64> = uno.pulses(LED).iter().map(|pulse| pulse.start).collect();
-            let periods = intervals(&starts);
-            let longer_periods: Vec<&u64> = periods.iter().filter(|p| **p != periods[0]).collect();
-            assert_eq!(
-                longer_periods,
-                [&(periods[0] + 5000)],
-                "blocked at cycle {cycle}"
-            );
+            let mut periods = intervals(&starts);
+            let period = periods[0];
+            periods.retain(|other_period| *other_period != period);
+            assert_eq!(periods, [period + 5000], "blocked at cycle {cycle}");
         }
     }
 }
@@ -108,9 +103,7 @@ fn bytes_beyond_the_receive_buffer_are_lost_while_interrupts_are_blocked() {
 
 #[test]
 fn interrupts_are_served_while_main_is_stalled() {
-    for fidelity in FIDELITIES {
-        let mut uno = Uno::with_image(compile_c(COUNTING_PROGRAM), fidelity);
-        uno.run_until_cycle(25_000);
+    for mut uno in unos_after(25_000, &compile_c(COUNTING_PROGRAM)) {
         uno.take_edges();
         uno.stall_main(100_000);
         uno.run_until_cycle(124_000);
@@ -126,9 +119,7 @@ fn interrupts_are_served_while_main_is_stalled() {
 
 #[test]
 fn a_poke_has_the_same_effect_as_a_store() {
-    for fidelity in FIDELITIES {
-        let mut uno = Uno::with_image(assemble("sbi DDRB, 5\nend: rjmp end"), fidelity);
-        uno.run_until_cycle(1000);
+    for mut uno in unos_after(1000, &assemble("sbi DDRB, 5\nend: rjmp end")) {
         uno.poke(0x25, 0x20);
         assert!(uno.is_high(LED));
         uno.poke(0x25, 0);

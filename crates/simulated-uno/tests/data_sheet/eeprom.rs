@@ -40,10 +40,8 @@ pub fn program(body: &str) -> Image {
 
 /// Returns a UNO that has run for a number of milliseconds and whose main program runs these statements once.
 fn run_once(body: &str, ms: u64) -> Uno {
-    uno_after_ms(
-        ms,
-        program(&format!("int main(void) {{ {body} for (;;) {{}} }}")),
-    )
+    let image = program(&format!("int main(void) {{ {body} for (;;) {{}} }}"));
+    uno_after_ms(ms, image)
 }
 
 #[test]
@@ -258,11 +256,8 @@ fn the_ready_interrupt_is_requested_while_eepe_is_zero() {
     let uno = uno_after_ms(15, image);
     assert_eq!(mark_values(&uno), [0, 1, 2, 3]);
     assert_eq!(uno.eeprom()[..4], [1, 2, 3, 0xff]);
-    let sleep_fraction = uno.sleep_cycles() as f64 / uno.cycle() as f64;
-    assert!(
-        sleep_fraction > 0.6,
-        "the CPU sleeps while a byte is programmed"
-    );
+    let is_asleep = uno.sleep_cycles() as f64 / uno.cycle() as f64 > 0.6;
+    assert!(is_asleep, "the CPU sleeps while a byte is programmed");
     let operations = uno.eeprom_operations();
     let starts: Vec<u64> = operations.iter().map(|operation| operation.cycle).collect();
     for interval in intervals(&starts) {

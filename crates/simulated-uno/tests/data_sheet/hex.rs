@@ -10,10 +10,8 @@ fn format_line(address: u16, record_type: u8, bytes: &[u8]) -> String {
     let [high, low] = address.to_be_bytes();
     let mut all_bytes = vec![bytes.len() as u8, high, low, record_type];
     all_bytes.extend(bytes);
-    let sum = all_bytes
-        .iter()
-        .fold(0u8, |sum, byte| sum.wrapping_add(*byte));
-    all_bytes.push(sum.wrapping_neg());
+    let add = |sum: u8, byte: &u8| sum.wrapping_add(*byte);
+    all_bytes.push(all_bytes.iter().fold(0u8, add).wrapping_neg());
     let digits: String = all_bytes.iter().map(|byte| format!("{byte:02X}")).collect();
     format!(":{digits}\r\n")
 }
@@ -29,11 +27,9 @@ fn hex_and_elf_images_of_a_program_give_the_same_edges() {
             for (;;) { PORTB = 0x20; _delay_us(100); PORTB = 0; _delay_us(300); } }",
     );
     let flash = elf.flash();
-    let lines = flash.chunks(16).enumerate();
-    let mut text: String = lines
-        .map(|(n, bytes)| format_line(16 * n as u16, 0, bytes))
-        .collect();
-    text += END_LINE;
+    let chunks = flash.chunks(16).enumerate();
+    let lines = chunks.map(|(n, bytes)| format_line(16 * n as u16, 0, bytes));
+    let text = lines.collect::<String>() + END_LINE;
     let hex = Image::parse_hex(&text).expect("the text is Intel HEX");
     assert_eq!(hex.flash(), flash);
     assert_eq!((hex.static_ram(), hex.symbols().len()), (0, 0));

@@ -1,7 +1,7 @@
 //! Tests of the simulated pins, memory and call timing against cycles counted with the data sheet.
 
 use simulated_uno::avr_gcc::{assemble, compile_c};
-use simulated_uno::{CYCLES_PER_MS, Call, Image, Pin, State, Uno, max_pins_high};
+use simulated_uno::{CYCLES_PER_MS, Call, Image, Pin, Pulse, State, Uno, max_pins_high};
 
 use super::{
     FIDELITIES, LED, compile_with_headers, new_uno, numbered_edges, pulse_widths, uno_after,
@@ -21,10 +21,8 @@ fn the_width_of_a_pulse_is_the_sum_of_its_instruction_cycles() {
     end: rjmp end",
     );
     for uno in unos_after(100, &image) {
-        let pulses = uno.pulses(LED);
-        assert_eq!(pulses.len(), 1);
         // sbi 2, ldi 1, ldi 1, out 1: high after 5 cycles.
-        assert_eq!((pulses[0].start, pulses[0].width), (5, 4));
+        assert_eq!(uno.pulses(LED), [Pulse { start: 5, width: 4 }]);
     }
 }
 
@@ -65,10 +63,8 @@ fn edges_have_arduino_numbers_and_pins_that_are_high_together_are_counted() {
     end: rjmp end",
     );
     let uno = uno_after(100, image);
-    let (first_edges, last_edges) = (
-        [(3, true), (9, true), (3, false)],
-        [(9, false), (11, true), (11, false)],
-    );
+    let first_edges = [(3, true), (9, true), (3, false)];
+    let last_edges = [(9, false), (11, true), (11, false)];
     assert_eq!(numbered_edges(&uno), [first_edges, last_edges].concat());
     assert_eq!(max_pins_high(&uno.edges()), 2);
 }
@@ -91,12 +87,8 @@ fn every_pin_of_every_port_is_recorded_under_its_arduino_number() {
     let image = assemble(&source);
     for uno in unos_after(200, &image) {
         for (pin, start, width) in &expected {
-            let pulses = uno.pulses(*pin);
-            let measured_pulses: Vec<_> = pulses
-                .iter()
-                .map(|pulse| (pulse.start, pulse.width))
-                .collect();
-            assert_eq!(measured_pulses, [(*start, *width)], "{pin}");
+            let (start, width) = (*start, *width);
+            assert_eq!(uno.pulses(*pin), [Pulse { start, width }], "{pin}");
         }
         assert_eq!(uno.edges().len(), 2 * 18, "D2 to D13, A0 to A5");
         assert_eq!(max_pins_high(&uno.edges()), 1);
@@ -204,10 +196,8 @@ fn sizes_of_memory_and_symbols_are_read_from_the_elf() {
 
 /// Runs a program for a number of cycles, and returns the calls of its function `work`.
 fn time_work(image: Image, cycles: u64) -> Vec<Call> {
-    let entry = image
-        .symbol("work")
-        .expect("the symbol `work` is global")
-        .address as u32;
+    let symbol = image.symbol("work").expect("the symbol `work` is global");
+    let entry = symbol.address as u32;
     new_uno(image).time_calls(entry, cycles)
 }
 
@@ -243,10 +233,8 @@ fn only_the_outermost_of_recursive_calls_is_timed() {
         }
         int main(void) { work(9); for (;;) {} }",
     );
-    let entry = image
-        .function("work")
-        .expect("the symbol `work` is a function")
-        .address as u32;
+    let symbol = image.function("work");
+    let entry = symbol.expect("the symbol `work` is a function").address as u32;
     let mut uno = new_uno(image);
     // Timing starts inside the first call, so the outermost timed call is the one with depth 8. All nested calls
     // have the same return address.
@@ -284,8 +272,6 @@ fn a_file_that_is_not_an_avr_elf_is_rejected() {
     let error = Image::read("no/such.elf").expect_err("the file does not exist");
     assert!(error.to_string().starts_with("cannot read no/such.elf"));
     let endless_error = Image::read("/dev/zero").expect_err("the file never ends");
-    assert_eq!(
-        endless_error.to_string(),
-        "not an AVR ELF file: it is longer than 4 MiB"
-    );
+    let expected = "not an AVR ELF file: it is longer than 4 MiB";
+    assert_eq!(endless_error.to_string(), expected);
 }

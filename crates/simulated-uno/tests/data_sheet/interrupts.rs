@@ -5,7 +5,7 @@ use simulated_uno::{Fidelity, Uno};
 
 use super::{
     CORRECTION_IS_OBSOLETE, FIDELITIES, LED, compile_with_headers, mark_cycles, mark_values,
-    uno_after, unos_after,
+    new_uno, uno_after, unos_after,
 };
 
 /// Program that sleeps, with Timer1 in CTC mode and a compare interrupt every 10 000 cycles. The handler's first
@@ -47,9 +47,8 @@ fn the_entry_of_a_compare_interrupt_from_sleep_takes_the_cycles_in_the_data_shee
     assert!(starts.len() >= 9);
     // jmp 3, then 2 * (ldi, out) 4, sbi 2, ldi 2, 2 * (ldi, sts) 6, (ldi, sts) 3,
     // (ldi, out) 2, ldi 1: the sts to TCCR1B begins at cycle 23.
-    let expected: Vec<u64> = (1..=starts.len() as u64)
-        .map(|n| 23 + n * 10_000 + 12)
-        .collect();
+    let numbers = 1..=starts.len() as u64;
+    let expected: Vec<u64> = numbers.map(|n| 23 + n * 10_000 + 12).collect();
     assert_eq!(starts, expected);
 
     // The CPU is awake for 20 cycles per interrupt: entry 8, jmp 3, out 1, out 1, reti 4, rjmp 2, sleep 1.
@@ -105,7 +104,7 @@ fn one_instruction_runs_between_sei_and_a_pending_interrupt() {
     // The handler makes the pin an input. Only one instruction after `sei` runs before the handler, so the LED is
     // switched on only if that instruction is `sbi PORTB, 5`.
     for (nops, has_edge) in [(0, true), (1, false)] {
-        let mut uno = Uno::with_image(assemble(&source_with_nops(nops)), Fidelity::DataSheet);
+        let mut uno = new_uno(assemble(&source_with_nops(nops)));
         uno.run_until(200_000, 1, |uno| !uno.interrupt_stats().is_empty());
         assert_eq!(!uno.edges().is_empty(), has_edge, "{nops} nops");
     }

@@ -75,11 +75,14 @@ fn pulse_widths(uno: &Uno) -> Vec<u64> {
 
 /// Returns the edges of all pins: for each edge the pin's Arduino number, and true if the edge is rising.
 fn numbered_edges(uno: &Uno) -> Vec<(u8, bool)> {
-    let edges = uno.edges();
-    edges
-        .iter()
-        .map(|edge| (edge.pin.number(), edge.is_rising))
-        .collect()
+    let edges = uno.edges().into_iter();
+    let numbered_edges = edges.map(|edge| (edge.pin.number(), edge.is_rising));
+    numbered_edges.collect()
+}
+
+/// Returns the cycles at which the bytes on the serial line end.
+fn transmission_cycles(uno: &Uno) -> Vec<u64> {
+    uno.transmitted().iter().map(|byte| byte.cycle).collect()
 }
 
 /// Returns the bytes that the program has sent on the serial line.
@@ -101,8 +104,6 @@ fn compile_with_headers(source: &str) -> Image {
 
 #[track_caller]
 fn assert_within(range: std::ops::Range<u64>, cycles: u64) {
-    assert!(
-        range.contains(&cycles),
-        "{cycles} cycles, expected {range:?}"
-    );
+    let is_within = range.contains(&cycles);
+    assert!(is_within, "{cycles} cycles, expected {range:?}");
 }

@@ -21,39 +21,40 @@ fn uno_with_two_bytes() -> Uno {
     uno
 }
 
+/// Returns the UNO of [`uno_with_two_bytes`] after this power cut.
+#[track_caller]
+fn uno_after_cut(cut: PowerCut, ones: u8) -> Uno {
+    let mut uno = uno_with_two_bytes();
+    uno.cut_power(cut, ones);
+    assert_eq!(*uno.run_ms(20), State::Off);
+    uno
+}
+
 #[test]
 fn a_power_cut_in_the_erase_phase_leaves_the_old_byte_with_the_chosen_bits_set() {
     for ones in [0, 0x01, 0x58, 0x0f, 0xff] {
-        let mut uno = uno_with_two_bytes();
-        uno.cut_power(PowerCut::InErase(0), ones);
-        assert_eq!(*uno.run_ms(20), State::Off);
+        let uno = uno_after_cut(PowerCut::InErase(0), ones);
         assert_eq!(uno.eeprom()[..2], [0xa6 | ones, 0xff]);
         let operations = uno.eeprom_operations();
         assert_eq!(operations.len(), 1);
         assert!(operations[0].is_torn);
         assert_eq!(operations[0].new_value, 0xa6 | ones);
         let elapsed_cycles = uno.cycle() - operations[0].cycle;
-        assert!(
-            elapsed_cycles.abs_diff(ATOMIC_CYCLES / 4) < 10,
-            "{elapsed_cycles}"
-        );
+        let is_on_time = elapsed_cycles.abs_diff(ATOMIC_CYCLES / 4) < 10;
+        assert!(is_on_time, "{elapsed_cycles}");
     }
 }
 
 #[test]
 fn a_power_cut_in_the_write_phase_leaves_the_new_byte_with_the_chosen_bits_set() {
     for ones in [0, 0x80, 0x4a, 0xff] {
-        let mut uno = uno_with_two_bytes();
-        uno.cut_power(PowerCut::InWrite(1), ones);
-        assert_eq!(*uno.run_ms(20), State::Off);
+        let uno = uno_after_cut(PowerCut::InWrite(1), ones);
         assert_eq!(uno.eeprom()[..2], [0x35, 0x5c | ones]);
         let operations = uno.eeprom_operations();
         assert!(!operations[0].is_torn && operations[1].is_torn);
         let elapsed_cycles = uno.cycle() - operations[1].cycle;
-        assert!(
-            elapsed_cycles.abs_diff(ATOMIC_CYCLES / 4 * 3) < 10,
-            "{elapsed_cycles}"
-        );
+        let is_on_time = elapsed_cycles.abs_diff(ATOMIC_CYCLES / 4 * 3) < 10;
+        assert!(is_on_time, "{elapsed_cycles}");
     }
 }
 
@@ -69,15 +70,10 @@ fn a_power_cut_at_a_cycle_tears_the_byte_according_to_its_phase() {
         (ATOMIC_CYCLES - 100, 0x5e),
         (ATOMIC_CYCLES + 100, 0x5c),
     ] {
-        let mut uno = uno_with_two_bytes();
-        uno.cut_power(PowerCut::AtCycle(start + delay_cycles), 0x02);
-        assert_eq!(*uno.run_ms(20), State::Off);
+        let uno = uno_after_cut(PowerCut::AtCycle(start + delay_cycles), 0x02);
         assert!(uno.cycle() - (start + delay_cycles) < 5);
-        assert_eq!(
-            uno.eeprom()[..2],
-            [0x35, expected],
-            "after {delay_cycles} cycles"
-        );
+        let bytes = uno.eeprom();
+        assert_eq!(bytes[..2], [0x35, expected], "after {delay_cycles} cycles");
     }
 }
 
@@ -100,15 +96,10 @@ fn erase_only_operations_set_torn_bits_and_write_only_operations_keep_them() {
 
 #[test]
 fn a_board_restarts_after_a_power_cut_with_the_same_eeprom() {
-    let mut uno = uno_with_two_bytes();
-    uno.cut_power(PowerCut::InWrite(0), 0x08);
-    uno.run_ms(20);
+    let mut uno = uno_after_cut(PowerCut::InWrite(0), 0x08);
     let cut_cycle = uno.cycle();
-    assert_eq!(
-        *uno.run_ms(20),
-        State::Off,
-        "the chip does not run without power"
-    );
+    let state = uno.run_ms(20);
+    assert_eq!(*state, State::Off, "the chip does not run without power");
     assert_eq!(uno.cycle(), cut_cycle);
     uno.power_cycle();
     assert_eq!(*uno.run_ms(20), State::Alive);

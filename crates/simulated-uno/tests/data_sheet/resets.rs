@@ -104,10 +104,8 @@ fn power_on_fills_the_sram_with_noise_that_depends_on_the_seed() {
             uno.set_noise_seed(seed);
             uno.power_cycle();
         }
-        let bytes: Vec<u8> = (SRAM_START..SRAM_END)
-            .map(|address| uno.peek(address))
-            .collect();
-        bytes
+        let bytes = (SRAM_START..SRAM_END).map(|address| uno.peek(address));
+        bytes.collect::<Vec<u8>>()
     };
     assert_eq!(
         sram_after_seed(None),
@@ -116,10 +114,8 @@ fn power_on_fills_the_sram_with_noise_that_depends_on_the_seed() {
     );
     assert_eq!(sram_after_seed(Some(1)), sram_after_seed(Some(1)));
     assert_ne!(sram_after_seed(Some(1)), sram_after_seed(Some(2)));
-    let ones: u32 = sram_after_seed(Some(0))
-        .iter()
-        .map(|byte| byte.count_ones())
-        .sum();
+    let bytes = sram_after_seed(Some(0)).into_iter();
+    let ones: u32 = bytes.map(u8::count_ones).sum();
     assert!((7_500..8_900).contains(&ones), "{ones} of 16 384 bits");
 }
 

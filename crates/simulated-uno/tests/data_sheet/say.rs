@@ -30,10 +30,8 @@ fn an_answer_is_the_next_line_without_its_line_end() {
         uno.run_ms(2);
         assert_eq!(uno.say("walk").as_deref(), Some("WALK"), "{fidelity:?}");
         assert_eq!(uno.say("stop 2").as_deref(), Some("STOP 2"));
-        assert!(
-            uno.transmitted().is_empty(),
-            "the answer is removed from the record"
-        );
+        let is_removed = uno.transmitted().is_empty();
+        assert!(is_removed, "the answer is removed from the record");
     }
 }
 

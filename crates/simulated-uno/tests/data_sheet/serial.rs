@@ -4,7 +4,7 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Uno};
 
 use super::{
     FIDELITIES, assert_within, compile_with_headers, intervals, mark_values, new_uno,
-    transmitted_bytes, uno_after, uno_after_ms, unos_after,
+    transmission_cycles, transmitted_bytes, uno_after, uno_after_ms, unos_after,
 };
 
 /// Cycles of a 10-bit frame at exactly 115 200 baud, the sender's baud rate.
@@ -28,9 +28,7 @@ fn program(body: &str) -> Image {
 
 #[test]
 fn an_echo_returns_the_sent_bytes() {
-    for fidelity in FIDELITIES {
-        let mut uno = Uno::with_image(program("put(get());"), fidelity);
-        uno.run_ms(1);
+    for mut uno in unos_after(CYCLES_PER_MS, &program("put(get());")) {
         uno.send(b"the quick brown fox");
         uno.run_ms(5);
         assert_eq!(transmitted_bytes(&uno), b"the quick brown fox");
@@ -40,8 +38,7 @@ fn an_echo_returns_the_sent_bytes() {
 
 #[test]
 fn an_echo_arrives_a_frame_after_its_byte() {
-    let mut uno = Uno::with_image(program("put(get());"), Fidelity::DataSheet);
-    uno.run_ms(1);
+    let mut uno = uno_after_ms(1, program("put(get());"));
     let start = uno.cycle();
     uno.send(b"x");
     uno.run_ms(1);
@@ -53,9 +50,8 @@ fn an_echo_arrives_a_frame_after_its_byte() {
 
 #[test]
 fn bytes_are_sent_back_to_back_in_frames_of_ten_bits() {
-    let mut uno = Uno::with_image(program("put('a');"), Fidelity::DataSheet);
-    uno.run_ms(10);
-    let frame_ends: Vec<u64> = uno.transmitted().iter().map(|byte| byte.cycle).collect();
+    let uno = uno_after_ms(10, program("put('a');"));
+    let frame_ends = transmission_cycles(&uno);
     assert!(frame_ends.len() > 100);
     // A frame may end in the middle of an instruction; this does not delay the following frames.
     let mut intervals = intervals(&frame_ends).into_iter();
@@ -64,17 +60,15 @@ fn bytes_are_sent_back_to_back_in_frames_of_ten_bits() {
 
 #[test]
 fn a_flood_has_the_baud_rate_over_a_second() {
-    let mut uno = Uno::with_image(program("get();"), Fidelity::DataSheet);
+    let mut uno = new_uno(program("get();"));
     uno.flood(b"0123456789");
     uno.run_ms(1000);
     let sent_count = uno.sent_byte_count();
     assert!(sent_count.abs_diff(11_520) <= 1, "{sent_count}");
     uno.flood(b"");
     uno.run_ms(10);
-    assert!(
-        uno.sent_byte_count() <= sent_count + 1,
-        "the flood has ended"
-    );
+    let has_ended = uno.sent_byte_count() <= sent_count + 1;
+    assert!(has_ended, "the flood has ended");
 }
 
 #[test]
@@ -89,11 +83,8 @@ fn two_bytes_wait_in_the_buffer_and_a_third_in_the_shift_register() {
         let mut uno = uno_after(3200, program(late_body));
         uno.send(sent_text.as_bytes());
         uno.run_ms(4);
-        assert_eq!(
-            (&*transmitted_bytes(&uno), uno.overrun_count()),
-            (kept_bytes, lost_count),
-            "{sent_text}"
-        );
+        assert_eq!(transmitted_bytes(&uno), kept_bytes, "{sent_text}");
+        assert_eq!(uno.overrun_count(), lost_count, "{sent_text}");
     }
     let mut uno = Uno::with_image(program(late_body), Fidelity::Stock);
     uno.run_cycles(3200);
@@ -147,8 +138,8 @@ fn the_data_register_interrupt_sends_without_gaps() {
     );
     let uno = uno_after_ms(20, image);
     assert_eq!(transmitted_bytes(&uno), (0..100).collect::<Vec<u8>>());
-    let frame_ends: Vec<u64> = uno.transmitted().iter().map(|byte| byte.cycle).collect();
-    assert_eq!(intervals(&frame_ends), [UNO_FRAME_CYCLES; 99]);
+    let frame_intervals = intervals(&transmission_cycles(&uno));
+    assert_eq!(frame_intervals, [UNO_FRAME_CYCLES; 99]);
 }
 
 #[test]
@@ -234,11 +225,8 @@ fn a_framing_error_is_flagged_only_while_its_byte_is_the_next_byte() {
     assert_eq!(receive_statuses(0), [0x90, 0x80, 0x80, 0]);
     assert_eq!(receive_statuses(1), [0x80, 0x90, 0x80, 0]);
     assert_eq!(receive_statuses(2), [0x80, 0x80, 0x90, 0]);
-    assert_eq!(
-        receive_statuses(3),
-        [0x80, 0x80, 0x80, 0],
-        "no byte has a framing error"
-    );
+    let expected = [0x80, 0x80, 0x80, 0];
+    assert_eq!(receive_statuses(3), expected, "no byte has a framing error");
 }
 
 #[test]

@@ -37,10 +37,8 @@ fn run(body: &str, ms: u64) -> Uno {
 /// Returns a UNO that has run for a number of milliseconds and whose main program clears MCUSR and then runs these
 /// statements once.
 fn run_once(body: &str, ms: u64) -> Uno {
-    run(
-        &format!("int main(void) {{ MCUSR = 0; {body} for (;;) {{}} }}"),
-        ms,
-    )
+    let program = format!("int main(void) {{ MCUSR = 0; {body} for (;;) {{}} }}");
+    run(&program, ms)
 }
 
 /// Returns the number of cycles from the mark with this index to the first reset by the watchdog.
@@ -96,10 +94,8 @@ fn the_time_out_starts_at_the_last_wdr_or_when_the_watchdog_is_switched_on() {
         ),
     ] {
         let elapsed_cycles = cycles_to_reset(&run_once(body, ms), mark_index);
-        assert!(
-            expected.contains(&elapsed_cycles),
-            "{message}: {elapsed_cycles}"
-        );
+        let is_expected = expected.contains(&elapsed_cycles);
+        assert!(is_expected, "{message}: {elapsed_cycles}");
     }
 }
 

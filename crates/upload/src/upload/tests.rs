@@ -52,6 +52,13 @@ fn run(board: BoardDouble) -> UploadRun {
     run_with_image(board, &test_image())
 }
 
+/// Uploads [`test_image`] to a board that has another program of 500 bytes and this change.
+fn run_over_old_program(change: impl FnOnce(&mut BoardDouble)) -> UploadRun {
+    let mut board = BoardDouble::with_program(&[9; 500]);
+    change(&mut board);
+    run(board)
+}
+
 /// Uploads an image to a board of unknown model.
 fn run_with_image(board: BoardDouble, image: &Image) -> UploadRun {
     run_with_target(board, image, Target::default())
@@ -84,11 +91,8 @@ impl UploadRun {
         let counts = *self.result.as_ref().expect("the image is written");
         let (flash, blank) = (&self.board.flash, BoardDouble::blank().flash);
         assert_eq!(flash[..600], pattern_bytes(600, 3));
-        assert_eq!(
-            flash[0x7e00..],
-            blank[0x7e00..],
-            "the boot loader is unchanged"
-        );
+        let (loader, expected) = (&flash[0x7e00..], &blank[0x7e00..]);
+        assert_eq!(loader, expected, "the boot loader is unchanged");
         assert!(self.board.has_started_program, "the program is started");
         counts
     }
@@ -152,14 +156,10 @@ fn an_upload_to_a_blank_board_writes_exactly_the_pages_of_the_image() {
 fn the_first_page_is_the_idle_loop_until_all_other_pages_are_written() {
     let run = run(BoardDouble::with_program(&[9; 5000]));
     run.assert_written();
-    assert_eq!(
-        run.reported_contents,
-        ["the board has another program, of 5000 bytes"]
-    );
-    assert_eq!(
-        run.board.written_addresses,
-        [&PAGE_ADDRESSES[..], &[0]].concat()
-    );
+    let contents = ["the board has another program, of 5000 bytes"];
+    assert_eq!(run.reported_contents, contents);
+    let expected_addresses = [&PAGE_ADDRESSES[..], &[0]].concat();
+    assert_eq!(run.board.written_addresses, expected_addresses);
 }
 
 #[test]
@@ -167,10 +167,8 @@ fn an_upload_to_a_board_that_has_the_image_only_starts_the_program() {
     let run = run(board_with_image());
     let counts = run.assert_written();
     assert_eq!((counts.written, counts.kept), (0, 5));
-    assert_eq!(
-        run.reported_contents,
-        ["the board has this program already"]
-    );
+    let contents = ["the board has this program already"];
+    assert_eq!(run.reported_contents, contents);
     assert!(run.board.written_addresses.is_empty());
 }
 
@@ -195,17 +193,14 @@ fn a_loader_that_ignores_two_sync_requests_needs_no_second_reset() {
 
 #[test]
 fn output_of_the_old_program_before_the_answer_is_skipped() {
-    let mut board = BoardDouble::with_program(&[9; 500]);
     // The output contains both bytes of a response, but never adjacent.
-    board.old_program_output = b"# t=1\r\n\x14\x15\x10ok\r\n".repeat(30);
-    run(board).assert_written();
+    let output = b"# t=1\r\n\x14\x15\x10ok\r\n".repeat(30);
+    run_over_old_program(|board| board.old_program_output = output).assert_written();
 }
 
 #[test]
 fn a_board_that_never_answers_is_reset_four_times_and_stays_unchanged() {
-    let mut board = BoardDouble::with_program(&[9; 500]);
-    board.is_mute = true;
-    let run = run(board);
+    let run = run_over_old_program(|board| board.is_mute = true);
     assert!(matches!(run.result, Err(UploadError::NoLoader)));
     let message = run.error_message();
     assert!(message.starts_with("no boot loader answers. Is it a UNO or a Nano?"));
@@ -289,17 +284,10 @@ fn a_board_with_another_chip_is_rejected_with_the_name_of_the_chip() {
 
 #[test]
 fn an_upload_recovers_from_the_loss_of_any_byte_to_the_board() {
-    let old_contents = [9; 500];
-    let undisturbed_board = run(BoardDouble::with_program(&old_contents)).board;
-    assert!(
-        undisturbed_board.received_count > 2000,
-        "{} bytes",
-        undisturbed_board.received_count
-    );
-    for lost_byte in 0..undisturbed_board.received_count {
-        let mut board = BoardDouble::with_program(&old_contents);
-        board.lost_byte_to_board = Some(lost_byte);
-        let run = run(board);
+    let byte_count = run_over_old_program(|_| {}).board.received_count;
+    assert!(byte_count > 2000, "{byte_count} bytes");
+    for lost_byte in 0..byte_count {
+        let run = run_over_old_program(|board| board.lost_byte_to_board = Some(lost_byte));
         run.assert_recovered(lost_byte);
         let flash = &run.board.flash;
         assert!(flash[..600] == pattern_bytes(600, 3), "byte {lost_byte}");
@@ -313,19 +301,12 @@ fn an_upload_recovers_from_the_loss_of_any_byte_to_the_board() {
 
 #[test]
 fn an_upload_recovers_from_the_loss_of_any_byte_from_the_board() {
-    let old_contents = [9; 500];
-    let undisturbed_board = run(BoardDouble::with_program(&old_contents)).board;
-    assert!(
-        undisturbed_board.sent_count > 30_000,
-        "{} bytes",
-        undisturbed_board.sent_count
-    );
+    let byte_count = run_over_old_program(|_| {}).board.sent_count;
+    assert!(byte_count > 30_000, "{byte_count} bytes");
     // Loses every byte of the synchronisation and of the first pages. Later, steps of 101 bytes lose every byte of the
     // response to the command that reads a page, on some page.
-    for lost_byte in (0..300).chain((300..undisturbed_board.sent_count).step_by(101)) {
-        let mut board = BoardDouble::with_program(&old_contents);
-        board.lost_byte_from_board = Some(lost_byte);
-        let run = run(board);
+    for lost_byte in (0..300).chain((300..byte_count).step_by(101)) {
+        let run = run_over_old_program(|board| board.lost_byte_from_board = Some(lost_byte));
         run.assert_recovered(lost_byte);
         run.assert_written();
     }
@@ -333,10 +314,9 @@ fn an_upload_recovers_from_the_loss_of_any_byte_from_the_board() {
 
 #[test]
 fn a_byte_that_flash_does_not_keep_is_reported_and_the_board_stays_idle() {
-    let mut board = BoardDouble::with_program(&[9; 500]);
     let expected_byte = test_image().bytes()[0x85];
-    board.stuck_bits = Some((0x85, expected_byte & expected_byte.wrapping_neg()));
-    let run = run(board);
+    let lowest_bit = expected_byte & expected_byte.wrapping_neg();
+    let run = run_over_old_program(|board| board.stuck_bits = Some((0x85, lowest_bit)));
     let message = run.error_message();
     assert!(message.contains("the byte at address 0x0085"), "{message}");
     assert!(message.ends_with("write the program again"), "{message}");
@@ -347,19 +327,14 @@ fn a_byte_that_flash_does_not_keep_is_reported_and_the_board_stays_idle() {
 #[test]
 fn a_board_unplugged_during_an_upload_stays_idle_until_the_next_upload() {
     for page_count in 1..=5 {
-        let mut board = BoardDouble::with_program(&[9; 500]);
-        board.unplugged_after_pages = Some(page_count);
-        let interrupted_run = run(board);
+        let interrupted_run =
+            run_over_old_program(|board| board.unplugged_after_pages = Some(page_count));
         let message = interrupted_run.error_message();
         assert!(message.starts_with("the port is gone"), "{message}");
-        assert!(
-            message.contains("an incomplete program, which does nothing"),
-            "{message}"
-        );
-        assert!(
-            interrupted_run.starts_with_idle_loop(),
-            "after {page_count} pages"
-        );
+        let is_state_named = message.contains("an incomplete program, which does nothing");
+        assert!(is_state_named, "{message}");
+        let is_idle = interrupted_run.starts_with_idle_loop();
+        assert!(is_idle, "after {page_count} pages");
         let mut board = interrupted_run.board;
         board.unplugged_after_pages = None;
         run(board).assert_written();
@@ -368,9 +343,7 @@ fn a_board_unplugged_during_an_upload_stays_idle_until_the_next_upload() {
 
 #[test]
 fn a_board_unplugged_before_the_first_page_stays_unchanged() {
-    let mut board = BoardDouble::with_program(&[9; 500]);
-    board.unplugged_after_pages = Some(0);
-    let run = run(board);
+    let run = run_over_old_program(|board| board.unplugged_after_pages = Some(0));
     let message = run.error_message();
     assert!(message.ends_with("Nothing was written: the board is unchanged"));
     assert_eq!(run.board.flash[..500], [9; 500]);

@@ -27,14 +27,11 @@ fn record_and_measure(
 
 /// Measures a gait in a video; returns the result and the camera.
 fn analyse_and_measure(video: &Video, gait: &Gait) -> (MeasuredGait, CameraEstimate) {
-    let analysed_video = video
-        .analyse(FULL_SCALE)
-        .expect("the video can be analysed");
+    let analysed_video = video.analyse(FULL_SCALE);
+    let analysed_video = analysed_video.expect("the video can be analysed");
     let measured = analysed_video.measure(gait, None);
-    (
-        measured.expect("the gait can be measured"),
-        analysed_video.camera,
-    )
+    let measured = measured.expect("the gait can be measured");
+    (measured, analysed_video.camera)
 }
 
 /// Returns the measured forward, left and turn components of a cycle, each with its true value.
@@ -98,12 +95,8 @@ fn measure_videos(
     };
     std::thread::scope(|scope| {
         let spawn_thread = |core: usize| {
-            scope.spawn(move || {
-                (core..video_count)
-                    .step_by(cores)
-                    .map(measure_one)
-                    .collect()
-            })
+            let indices = (core..video_count).step_by(cores);
+            scope.spawn(move || indices.map(measure_one).collect())
         };
         let threads: Vec<_> = (0..cores).map(spawn_thread).collect();
         let results = threads
@@ -154,10 +147,8 @@ fn in_short_videos_93_to_97_percent_of_true_values_lie_within_two_standard_error
     }
     // For 600 values, a fraction of 95 % has a standard deviation of 0.9 %.
     let hit_fraction = total_hit_count as f64 / (3 * video_count) as f64;
-    println!(
-        "all         within two errors {:5.1} %",
-        100.0 * hit_fraction
-    );
+    let hit_percent = 100.0 * hit_fraction;
+    println!("all         within two errors {hit_percent:5.1} %");
     assert!((0.93..=0.97).contains(&hit_fraction), "{hit_fraction}");
 }
 

@@ -7,22 +7,12 @@ use lizard_studio::render::{Pose, Studio};
 use lizard_studio::walk::{Variation, Walk, paper_gait, true_displacement};
 use lizard_video::{Frame, Gait, MeasuredGait, Setup, Video, VideoError};
 
-use crate::studio::{FULL_SCALE, record_frames, record_robot, record_walk, small_studio};
-
-/// Frames per second: a low rate suffices, because most tests check only the reason.
-const FRAME_RATE: f64 = 8.0;
-
-fn studio() -> Studio {
-    small_studio(5, 20.0)
-}
+use crate::studio::{FRAME_RATE, FULL_SCALE, record_frames, record_robot, record_walk, studio};
 
 /// Returns a walk that is centred on the origin.
 fn centred_walk(gait: &Gait, cycle_count: usize) -> Walk {
-    let start = [
-        -true_displacement(gait).forward * cycle_count as f64 / 2.0,
-        0.0,
-        0.0,
-    ];
+    let start_forward = -true_displacement(gait).forward * cycle_count as f64 / 2.0;
+    let start = [start_forward, 0.0, 0.0];
     let mut rng = Rng::with_seed(1);
     Walk::new(gait, start, cycle_count, Variation::default(), &mut rng)
 }
@@ -50,9 +40,8 @@ fn a_video_without_frames_or_tags_is_rejected() {
     let (gait, mut video) = (paper_gait("walk"), Video::default());
     assert_eq!(video.measure(FULL_SCALE, &gait), Err(VideoError::NoFrames));
     let grey = Frame::new(320, 240, vec![128; 320 * 240]).expect("the frame is complete");
-    video
-        .add_frame(0.0, &grey)
-        .expect("the frame fits the video");
+    let result = video.add_frame(0.0, &grey);
+    result.expect("the frame fits the video");
     assert_eq!(video.measure(FULL_SCALE, &gait), Err(VideoError::NoTag));
 }
 
@@ -64,13 +53,10 @@ fn the_error_names_a_tag_that_is_always_covered() {
     assert_eq!(error, VideoError::NoFloorTag { id: 2 });
     studio.covered_tags = vec![4];
     let error = expect_error(&studio, FULL_SCALE);
-    assert_matches!(
-        error,
-        VideoError::DeckTagTooRare {
-            visible_count: 0,
-            ..
-        }
-    );
+    let VideoError::DeckTagTooRare { visible_count, .. } = error else {
+        panic!("{error}");
+    };
+    assert_eq!(visible_count, 0);
 }
 
 #[test]
@@ -99,17 +85,10 @@ fn a_card_whose_arrow_points_to_the_tail_is_reported_as_another_gait() {
         let [x, y, heading] = walk.pose_at(time);
         [x, y, heading + std::f64::consts::PI]
     };
-    let mut rng = Rng::with_seed(2);
-    let video = record_robot(
-        &studio(),
-        walk.duration_s(),
-        FRAME_RATE,
-        turned_pose_at,
-        &mut rng,
-    );
-    let error = video
-        .measure(FULL_SCALE, &gait)
-        .expect_err("the robot walks backward");
+    let (duration_s, mut rng) = (walk.duration_s(), Rng::with_seed(2));
+    let video = record_robot(&studio(), duration_s, FRAME_RATE, turned_pose_at, &mut rng);
+    let measured = video.measure(FULL_SCALE, &gait);
+    let error = measured.expect_err("the robot walks backward");
     assert_matches!(error, VideoError::GaitMismatch { .. });
     assert!(error.to_string().contains("arrow"), "{error}");
 }
@@ -119,47 +98,51 @@ fn frames_of_another_size_and_times_that_do_not_increase_are_rejected() {
     let frame =
         |size| Frame::new(size, size, vec![128; size * size]).expect("the frame is complete");
     let mut video = Video::default();
-    video
-        .add_frame(0.0, &frame(64))
-        .expect("the first frame fits any video");
-    assert_eq!(
-        video.add_frame(0.1, &frame(65)),
-        Err(VideoError::SizeDiffers { frame_number: 2 })
-    );
-    assert_eq!(
-        video.add_frame(0.0, &frame(64)),
-        Err(VideoError::TimeNotLater { frame_number: 2 })
-    );
+    let result = video.add_frame(0.0, &frame(64));
+    result.expect("the first frame fits any video");
+    for (seconds, size, error) in [
+        (0.1, 65, VideoError::SizeDiffers { frame_number: 2 }),
+        (0.0, 64, VideoError::TimeNotLater { frame_number: 2 }),
+    ] {
+        let result = video.add_frame(seconds, &frame(size));
+        assert_eq!(result, Err(error), "{size} px at {seconds} s");
+    }
+}
+
+/// Records five cycles of `walk`. `studio_index` selects the studio of a frame from its index and the number of frames.
+fn record_in_two_studios(
+    studios: [Studio; 2],
+    studio_index: impl Fn(usize, usize) -> usize,
+) -> Video {
+    let walk = centred_walk(&paper_gait("walk"), 5);
+    let mut rng = Rng::with_seed(3);
+    let backgrounds = studios.map(|studio| studio.render_background(&mut rng));
+    let count = (walk.duration_s() * FRAME_RATE) as usize;
+    record_frames(walk.duration_s(), FRAME_RATE, |seconds| {
+        let background = &backgrounds[studio_index((seconds * FRAME_RATE) as usize, count)];
+        background.render_frame(seconds, |time| walk.pose_at(time), &mut rng)
+    })
 }
 
 /// Records a walk with a camera that moves halfway through the video. In the second half, `covered_tags` are covered.
 fn record_with_moved_camera(covered_tags: Vec<usize>) -> Video {
-    let walk = centred_walk(&paper_gait("walk"), 5);
-    let mut rng = Rng::with_seed(3);
     let first = studio();
     let mut second = first.clone();
     (second.camera_tilt, second.aim[0], second.covered_tags) =
         (first.camera_tilt + 1.0, first.aim[0] + 12.0, covered_tags);
-    let backgrounds = [first, second].map(|studio| studio.render_background(&mut rng));
-    let count = (walk.duration_s() * FRAME_RATE) as usize;
-    record_frames(walk.duration_s(), FRAME_RATE, |seconds| {
-        let background = &backgrounds[2 * (seconds * FRAME_RATE) as usize / count];
-        background.render_frame(seconds, |time| walk.pose_at(time), &mut rng)
-    })
+    record_in_two_studios([first, second], |index, count| 2 * index / count)
 }
 
 #[test]
 fn a_moving_camera_must_see_every_floor_tag() {
     let gait = paper_gait("walk");
-    let analysed_video = record_with_moved_camera(Vec::new())
-        .analyse(FULL_SCALE)
-        .expect("all tags are visible");
+    let analysed_video = record_with_moved_camera(Vec::new()).analyse(FULL_SCALE);
+    let analysed_video = analysed_video.expect("all tags are visible");
     assert!(analysed_video.camera.has_camera_moved);
     let measured = analysed_video.measure(&gait, None);
     check_distance(measured, &gait, 0.3);
-    let error = record_with_moved_camera(vec![1])
-        .measure(FULL_SCALE, &gait)
-        .expect_err("a tag is hidden");
+    let measured = record_with_moved_camera(vec![1]).measure(FULL_SCALE, &gait);
+    let error = measured.expect_err("a tag is hidden");
     assert_matches!(error, VideoError::CameraMoved { frame_count } if frame_count > 15);
 }
 
@@ -178,16 +161,10 @@ fn check_distance(
 #[test]
 fn a_floor_tag_may_be_covered_for_a_while_if_the_camera_stands_still() {
     let gait = paper_gait("walk");
-    let walk = centred_walk(&gait, 5);
-    let mut rng = Rng::with_seed(3);
     let uncovered = studio();
     let mut covered = uncovered.clone();
     covered.covered_tags = vec![0];
-    let backgrounds = [uncovered, covered].map(|studio| studio.render_background(&mut rng));
-    let video = record_frames(walk.duration_s(), FRAME_RATE, |seconds| {
-        let background = &backgrounds[(seconds * FRAME_RATE) as usize / 8 % 2];
-        background.render_frame(seconds, |time| walk.pose_at(time), &mut rng)
-    });
+    let video = record_in_two_studios([uncovered, covered], |index, _| index / 8 % 2);
     check_distance(video.measure(FULL_SCALE, &gait), &gait, 0.2);
 }
 
@@ -200,11 +177,8 @@ fn a_sheet_printed_too_small_gives_the_true_distance_if_the_ruler_is_measured() 
         ..FULL_SCALE
     };
     let gait = paper_gait("walk");
-    check_distance(
-        record_five_cycles(&studio).measure(setup, &gait),
-        &gait,
-        0.2,
-    );
+    let measured = record_five_cycles(&studio).measure(setup, &gait);
+    check_distance(measured, &gait, 0.2);
 }
 
 #[test]
@@ -279,10 +253,8 @@ fn movements_that_do_not_match_the_gait_are_rejected() {
 fn cycles_of_twice_or_four_times_the_duration_are_reported_as_another_pace() {
     let gait = paper_gait("walk");
     for multiple in [2, 4] {
-        let slow = Gait {
-            period: gait.period * f64::from(multiple),
-            path: gait.path.clone(),
-        };
+        let mut slow = gait.clone();
+        slow.period *= f64::from(multiple);
         let measured = record_cycles(&studio(), &slow, 3, 5.0).measure(FULL_SCALE, &gait);
         assert_eq!(measured, Err(VideoError::WrongPace { ratio: multiple }));
     }
@@ -292,10 +264,8 @@ fn cycles_of_twice_or_four_times_the_duration_are_reported_as_another_pace() {
 fn a_frame_rate_error_of_some_percent_does_not_change_the_distance_per_cycle() {
     let gait = paper_gait("walk");
     for rate_factor in [0.94, 1.04] {
-        let stretched = Gait {
-            period: gait.period * rate_factor,
-            path: gait.path.clone(),
-        };
+        let mut stretched = gait.clone();
+        stretched.period *= rate_factor;
         let video = record_cycles(&studio(), &stretched, 6, 12.0);
         let measured = check_distance(video.measure(FULL_SCALE, &gait), &gait, 0.2);
         let error = (measured.period.value / stretched.period - 1.0).abs();
@@ -310,9 +280,8 @@ fn a_frame_rate_error_of_some_percent_does_not_change_the_distance_per_cycle() {
 /// area otherwise.
 fn render_sheet(has_second_copy: bool) -> Frame {
     let mut rng = Rng::with_seed(2);
-    let frame = studio()
-        .render_background(&mut rng)
-        .render_frame(0.0, |_| [0.0; 3], &mut rng);
+    let background = studio().render_background(&mut rng);
+    let frame = background.render_frame(0.0, |_| [0.0; 3], &mut rng);
     let [width, height] = frame.size();
     let empty_row = vec![200; width];
     let rows = frame.grey().chunks(width);
@@ -324,21 +293,17 @@ fn render_sheet(has_second_copy: bool) -> Frame {
 #[test]
 fn a_tag_that_appears_twice_in_a_frame_is_rejected() {
     let result = Video::default().add_frame(0.0, &render_sheet(true));
-    assert_matches!(
-        result,
-        Err(VideoError::DuplicateTag {
-            frame_number: 1,
-            ..
-        })
-    );
+    let Err(VideoError::DuplicateTag { frame_number, .. }) = result else {
+        panic!("{result:?}");
+    };
+    assert_eq!(frame_number, 1);
 }
 
 #[test]
 fn a_second_copy_that_appears_later_is_noticed_within_sixteen_frames() {
     let mut video = Video::default();
-    video
-        .add_frame(0.0, &render_sheet(false))
-        .expect("each tag appears once");
+    let result = video.add_frame(0.0, &render_sheet(false));
+    result.expect("each tag appears once");
     let doubled_frame = render_sheet(true);
     let error = (1..=16).find_map(|n| video.add_frame(f64::from(n) / 30.0, &doubled_frame).err());
     assert_matches!(error, Some(VideoError::DuplicateTag { .. }));

@@ -17,41 +17,22 @@ const JIG: Jig = Jig {
 /// The load's torque as a fraction of the stall torque: 19.6 N mm of 176.5 N mm.
 const LOAD_FRACTION: f64 = 0.111;
 
-/// A simulated camera that only adds errors to angles, and renders no frames.
-#[derive(Clone, Copy)]
-struct AngleCamera {
-    /// Frames per second.
-    frame_rate: f64,
-    /// Exposure time, s.
-    exposure_seconds: f64,
-    /// Standard deviation of an angle, deg.
-    angle_sigma: f64,
-}
-
-impl AngleCamera {
-    /// Creates the camera of a phone in daylight.
-    fn phone(frame_rate: f64) -> Self {
-        Self {
-            frame_rate,
-            exposure_seconds: 1.0 / 120.0,
-            angle_sigma: 0.15,
-        }
-    }
-
-    /// Simulates the path of a card as its tag would show it. Each angle is the mean over the exposure time.
-    fn simulate_path(self, servo: &Servo, rng: &mut Rng) -> Vec<PathPoint> {
-        const BEGIN: f64 = 0.3;
-        let horn_angles = servo.simulate(1.0);
-        let path_point_at = |i: usize| {
-            let seconds = i as f64 / self.frame_rate + BEGIN;
-            let angles = [-0.4, -0.2, 0.0, 0.2, 0.4]
-                .map(|fraction| horn_angles.angle_at(seconds + fraction * self.exposure_seconds));
-            let angle = angles.iter().sum::<f64>() / 5.0 + self.angle_sigma * random_normal(rng);
-            point_at(seconds, angle)
-        };
-        let frame_count = (servo.end_s() - BEGIN) * self.frame_rate;
-        (0..frame_count as usize).map(path_point_at).collect()
-    }
+/// Simulates the path of a card as its tag would show it to a phone in daylight. Each angle is the mean over the
+/// exposure time. The camera only adds errors to angles, and renders no frames.
+fn simulate_path(frame_rate: f64, servo: &Servo, rng: &mut Rng) -> Vec<PathPoint> {
+    const BEGIN: f64 = 0.3;
+    const EXPOSURE_SECONDS: f64 = 1.0 / 120.0;
+    const ANGLE_SIGMA: f64 = 0.15;
+    let horn_angles = servo.simulate(1.0);
+    let path_point_at = |i: usize| {
+        let seconds = i as f64 / frame_rate + BEGIN;
+        let angles = [-0.4, -0.2, 0.0, 0.2, 0.4]
+            .map(|fraction| horn_angles.angle_at(seconds + fraction * EXPOSURE_SECONDS));
+        let angle = angles.iter().sum::<f64>() / 5.0 + ANGLE_SIGMA * random_normal(rng);
+        point_at(seconds, angle)
+    };
+    let frame_count = (servo.end_s() - BEGIN) * frame_rate;
+    (0..frame_count as usize).map(path_point_at).collect()
 }
 
 fn point_at(seconds: f64, angle: f64) -> PathPoint {
@@ -83,10 +64,8 @@ fn hit_fraction_and_mean_error(estimates: &[(Estimate, f64)]) -> [f64; 2] {
     let hits = estimates.iter().filter(|(estimate, truth)| {
         (estimate.value - truth).abs() <= 2.0 * estimate.standard_error
     });
-    let errors: f64 = estimates
-        .iter()
-        .map(|(estimate, _)| estimate.standard_error)
-        .sum();
+    let standard_error = |(estimate, _): &(Estimate, f64)| estimate.standard_error;
+    let errors: f64 = estimates.iter().map(standard_error).sum();
     let count = estimates.len() as f64;
     [hits.count() as f64 / count, errors / count]
 }
@@ -115,12 +94,9 @@ fn over_90_percent_of_estimates_lie_within_two_standard_errors_at_60_to_240_fram
         let mut estimates: [Vec<(Estimate, f64)>; 4] = Default::default();
         for _ in 0..60 {
             let servo = random_servo(&mut rng);
-            let path = AngleCamera::phone(frame_rate).simulate_path(&servo, &mut rng);
-            let measured = measure(&path);
-            for (i, estimate) in gain_rate_and_width(&measured, &servo)
-                .into_iter()
-                .enumerate()
-            {
+            let measured = measure(&simulate_path(frame_rate, &servo, &mut rng));
+            let results = gain_rate_and_width(&measured, &servo);
+            for (i, estimate) in results.into_iter().enumerate() {
                 estimates[i].push(estimate);
             }
             let time_constant = measured.rotor_time_constant;
@@ -143,7 +119,6 @@ fn over_90_percent_of_estimates_lie_within_two_standard_errors_at_60_to_240_fram
 fn a_known_load_gives_the_stall_torque_within_two_standard_errors_in_over_90_percent_of_video_pairs()
  {
     let mut rng = Rng::with_seed(2);
-    let camera = AngleCamera::phone(120.0);
     let video_pair = |rng: &mut Rng| {
         let free = random_servo(rng);
         let loaded = Servo {
@@ -151,23 +126,18 @@ fn a_known_load_gives_the_stall_torque_within_two_standard_errors_in_over_90_per
             first_command_s: 1.1,
             ..free.clone()
         };
-        [free, loaded].map(|servo| measure(&camera.simulate_path(&servo, rng)))
+        [free, loaded].map(|servo| measure(&simulate_path(120.0, &servo, rng)))
     };
     let mut stall_torques = Vec::new();
     for _ in 0..30 {
         let [free, loaded] = video_pair(&mut rng);
-        let stall_torque = free
-            .compute_stall_torque(&loaded, 19.6)
-            .expect("the load slows the servo");
+        let stall_torque = free.compute_stall_torque(&loaded, 19.6);
+        let stall_torque = stall_torque.expect("the load slows the servo");
         // The gears' friction reduces the stall torque.
-        stall_torques.push((
-            stall_torque,
-            19.6 / LOAD_FRACTION * (1.0 - FRICTION_FRACTION),
-        ));
-        assert_eq!(
-            loaded.compute_stall_torque(&free, 19.6),
-            Err(ServoError::VideosSwapped)
-        );
+        let truth = 19.6 / LOAD_FRACTION * (1.0 - FRICTION_FRACTION);
+        stall_torques.push((stall_torque, truth));
+        let swapped = loaded.compute_stall_torque(&free, 19.6);
+        assert_eq!(swapped, Err(ServoError::VideosSwapped));
     }
     let [hit_fraction, mean_error] = hit_fraction_and_mean_error(&stall_torques);
     println!("stall torque: within two errors {hit_fraction:.2}, mean error {mean_error:.1} N mm");
@@ -177,13 +147,10 @@ fn a_known_load_gives_the_stall_torque_within_two_standard_errors_in_over_90_per
 #[test]
 fn a_load_that_does_not_slow_the_servo_gives_no_torque() {
     let mut rng = Rng::with_seed(3);
-    let measurements = [0, 1].map(|_| {
-        let path = AngleCamera::phone(120.0).simulate_path(&Servo::default(), &mut rng);
-        measure(&path)
-    });
-    let error = measurements[0]
-        .compute_stall_torque(&measurements[1], 19.6)
-        .expect_err("the load does not slow the servo");
+    let [free, loaded] =
+        [0, 1].map(|_| measure(&simulate_path(120.0, &Servo::default(), &mut rng)));
+    let stall_torque = free.compute_stall_torque(&loaded, 19.6);
+    let error = stall_torque.expect_err("the load does not slow the servo");
     let message = error.to_string();
     assert!(message.contains("use a heavier weight"), "{message}");
 }
@@ -202,8 +169,7 @@ fn a_servo_that_turns_in_the_opposite_direction_has_a_negative_gain() {
         gain: -1.05,
         ..Servo::default()
     };
-    let path = AngleCamera::phone(120.0).simulate_path(&servo, &mut Rng::with_seed(4));
-    let gain = measure(&path).gain;
+    let gain = measure(&simulate_path(120.0, &servo, &mut Rng::with_seed(4))).gain;
     let deviation = (gain.value + 1.05).abs();
     assert!(deviation < 2.0 * gain.standard_error, "{gain:?}");
 }
@@ -214,8 +180,7 @@ fn a_servo_that_ignores_all_small_steps_has_only_a_largest_ignored_step() {
         dead_band: 4.0,
         ..Servo::default()
     };
-    let path = AngleCamera::phone(60.0).simulate_path(&servo, &mut Rng::with_seed(5));
-    let dead_band = measure(&path).dead_band;
+    let dead_band = measure(&simulate_path(60.0, &servo, &mut Rng::with_seed(5))).dead_band;
     assert_eq!(dead_band.width, None);
     assert_eq!(dead_band.largest_ignored_step, 3.0);
 }
@@ -237,7 +202,7 @@ fn a_horn_that_does_not_follow_all_steps_is_rejected_with_the_reason() {
     assert_eq!(expect_error(&still_path), ServoError::NoTurn { turn: 0.0 });
     let swaying_path = make_path(f64::sin);
     assert_eq!(expect_error(&swaying_path), ServoError::StepMismatch);
-    let complete_path = AngleCamera::phone(60.0).simulate_path(&Servo::default(), &mut rng);
+    let complete_path = simulate_path(60.0, &Servo::default(), &mut rng);
     let error = expect_error(&complete_path[..complete_path.len() / 2]);
     assert_matches!(error, ServoError::TooShort { .. });
 }
@@ -245,12 +210,11 @@ fn a_horn_that_does_not_follow_all_steps_is_rejected_with_the_reason() {
 #[test]
 fn a_video_in_slow_motion_or_with_few_frames_is_rejected_with_the_reason() {
     let mut rng = Rng::with_seed(7);
-    let mut path = AngleCamera::phone(240.0).simulate_path(&Servo::default(), &mut rng);
+    let mut path = simulate_path(240.0, &Servo::default(), &mut rng);
     path.iter_mut().for_each(|point| point.seconds *= 4.0);
     let error = expect_error(&path);
     assert_eq!(error, ServoError::WrongStepInterval { ratio: 4.0 });
-    let path = AngleCamera::phone(15.0).simulate_path(&Servo::default(), &mut rng);
-    let error = expect_error(&path);
+    let error = expect_error(&simulate_path(15.0, &Servo::default(), &mut rng));
     assert_matches!(error, ServoError::TooFewFrames { rate } if (rate - 15.0).abs() < 0.1);
     let message = error.to_string();
     assert!(message.contains("record at least 120 frames per second"));
@@ -263,7 +227,7 @@ fn a_slew_limit_below_the_servos_rate_is_reported_instead_of_a_rate() {
         slew_rate: slew,
         ..Servo::default()
     };
-    let path = AngleCamera::phone(120.0).simulate_path(&servo, &mut Rng::with_seed(8));
+    let path = simulate_path(120.0, &servo, &mut Rng::with_seed(8));
     let error = MeasuredServo::from_path(&path, Jig { slew, ..JIG })
         .expect_err("the servo is as fast as the slew limit");
     assert_matches!(error, ServoError::AtSlewLimit { .. });
@@ -286,17 +250,14 @@ fn in_at_least_85_percent_of_rendered_videos_the_true_value_lies_within_two_stan
             let servo = random_servo(&mut rng);
             let mut video = Video::default();
             servo.record(&studio, 1.0, frame_rate, &mut rng, |seconds, frame| {
-                video
-                    .add_frame(seconds, frame)
-                    .expect("the frame fits the video");
+                let result = video.add_frame(seconds, frame);
+                result.expect("the frame fits the video");
             });
             let analysed_video = video.analyse(setup).expect("the video can be analysed");
             let measured = measure(&analysed_video.path);
             println!("{frame_rate} frames per second, shutter {shutter:.4} s:");
-            for (i, (estimate, truth)) in gain_rate_and_width(&measured, &servo)
-                .into_iter()
-                .enumerate()
-            {
+            let results = gain_rate_and_width(&measured, &servo);
+            for (i, (estimate, truth)) in results.into_iter().enumerate() {
                 println!("  estimate {i}: {estimate:?}, truth {truth:.4}");
                 estimates[i].push((estimate, truth));
             }

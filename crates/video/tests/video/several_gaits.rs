@@ -3,15 +3,12 @@
 use std::assert_matches;
 
 use fastrand::Rng;
-use lizard_studio::render::Studio;
 use lizard_studio::walk::{Variation, WalkSeries, paper_gait};
 use lizard_video::{AnalysedVideo, Gait, GaitMatch, MeasuredGait, VideoError, min_rest_duration};
 
 use crate::accuracy::means_and_truths;
-use crate::studio::{FULL_SCALE, record_robot, small_studio};
+use crate::studio::{FRAME_RATE, FULL_SCALE, record_robot, studio};
 
-/// Frames per second.
-const FRAME_RATE: f64 = 8.0;
 /// A small variation of the cycles, as in a real robot.
 const VARIATION: Variation = Variation {
     cycle_deviation: [0.2, 0.2, 0.004],
@@ -27,10 +24,6 @@ fn record_walks(walks: &[(&Gait, usize)], rest: f64) -> (AnalysedVideo, WalkSeri
     let video = record_robot(&studio(), duration_s, FRAME_RATE, pose_at, &mut rng);
     let analysed_video = video.analyse(FULL_SCALE);
     (analysed_video.expect("all tags are visible"), series)
-}
-
-fn studio() -> Studio {
-    small_studio(5, 20.0)
 }
 
 /// Checks that a result matches the true movement of a gait.
@@ -55,14 +48,10 @@ fn each_gait_of_a_video_is_found_between_rests_and_measured() {
         // A found walk includes parts of the adjacent rests, and misses at most one frame of the movement.
         let lead = true_span[0] - found_span[0];
         let lag = found_span[1] - true_span[1];
-        assert!(
-            (-0.2..1.2).contains(&lead),
-            "{found_span:?}, truth {true_span:?}"
-        );
-        assert!(
-            (-0.2..1.2).contains(&lag),
-            "{found_span:?}, truth {true_span:?}"
-        );
+        for shift in [lead, lag] {
+            let is_small = (-0.2..1.2).contains(&shift);
+            assert!(is_small, "{shift} s: {found_span:?}, truth {true_span:?}");
+        }
     }
     let measure = |gait: &Gait, walk: [f64; 2]| {
         let measured = analysed_video.measure(gait, Some(walk));
@@ -98,16 +87,13 @@ fn two_gaits_with_the_same_path_are_both_reported() {
 #[test]
 fn a_walk_in_slow_motion_or_of_an_unknown_gait_matches_no_gait() {
     let gaits = ["walk", "left", "back", "trot"].map(paper_gait);
-    let slow = Gait {
-        period: 2.0 * gaits[0].period,
-        path: gaits[0].path.clone(),
-    };
+    let mut slow = gaits[0].clone();
+    slow.period *= 2.0;
     let (half_speed, _) = record_walks(&[(&slow, 3)], 1.0);
     let walks = half_speed.find_walks(2.0 * min_rest_duration(&gaits));
-    assert_eq!(
-        half_speed.match_gait(&gaits, walks[0]),
-        GaitMatch::NoMatch(VideoError::WrongPace { ratio: 2 })
-    );
+    let gait_match = half_speed.match_gait(&gaits, walks[0]);
+    let wrong_pace = VideoError::WrongPace { ratio: 2 };
+    assert_eq!(gait_match, GaitMatch::NoMatch(wrong_pace));
     let unknown = paper_gait("right");
     let (analysed_video, _) = record_walks(&[(&unknown, 4)], 1.0);
     let walks = analysed_video.find_walks(min_rest_duration(&gaits));
@@ -141,12 +127,9 @@ fn the_result_for_one_of_two_gaits_without_a_rest_between_them_is_right_or_an_er
 #[test]
 fn a_short_turn_of_one_degree_during_a_rest_is_not_a_walk() {
     let walk = paper_gait("walk");
-    let extra_heading_at = |time: f64| {
-        if (4.0..4.5).contains(&time) {
-            0.02
-        } else {
-            0.0
-        }
+    let extra_heading_at = |time: f64| match (4.0..4.5).contains(&time) {
+        true => 0.02,
+        false => 0.0,
     };
     let mut rng = Rng::with_seed(6);
     let series = WalkSeries::new([-60.0, 0.0, 0.0], &[(&walk, 3)], 1.0, VARIATION, &mut rng);
@@ -156,10 +139,8 @@ fn a_short_turn_of_one_degree_during_a_rest_is_not_a_walk() {
     };
     let video = record_robot(&studio(), 8.0, FRAME_RATE, pose_at, &mut rng);
     let analysed_video = video.analyse(FULL_SCALE).expect("all tags are visible");
-    assert_eq!(
-        analysed_video.find_walks(min_rest_duration(&[walk])).len(),
-        1
-    );
+    let walks = analysed_video.find_walks(min_rest_duration(&[walk]));
+    assert_eq!(walks.len(), 1);
 }
 
 /// Finds the largest deviation from the predicted path within a cycle. Returns its phase, axis, and size in standard
@@ -169,9 +150,8 @@ fn find_largest_deviation(measured: &MeasuredGait) -> (f64, usize, f64) {
         let differences = point.standardised_differences().map(f64::abs);
         (0..3).map(move |axis| (point.phase, axis, differences[axis]))
     });
-    deviations
-        .max_by(|a, b| a.2.total_cmp(&b.2))
-        .expect("the path has a point")
+    let largest = deviations.max_by(|a, b| a.2.total_cmp(&b.2));
+    largest.expect("the path has a point")
 }
 
 #[test]

@@ -5,21 +5,16 @@ use std::assert_matches;
 use fastrand::Rng;
 use lizard_studio::board::{EVENLY_LIFTED_BOARD, LiftedBoard, small_studio};
 use lizard_studio::render::{Studio, random_normal};
-use lizard_video::{AnalysedVideo, Estimate, MeasuredSlide, Setup, SlideError, Video};
+use lizard_video::{AnalysedVideo, Estimate, MeasuredSlide, SlideError, Video};
 
-/// The setup of all videos.
-const SETUP: Setup = Setup {
-    print_scale: 1.0,
-    deck_height: 83.0,
-};
+use crate::studio::FULL_SCALE;
 
 /// Records a board while it is lifted.
 fn record_board(board: &LiftedBoard, studio: &Studio, frame_rate: f64) -> Video {
     let mut video = Video::default();
     board.record(studio, frame_rate, |seconds, frame| {
-        video
-            .add_frame(seconds, frame)
-            .expect("the frame fits the video");
+        let result = video.add_frame(seconds, frame);
+        result.expect("the frame fits the video");
     });
     video
 }
@@ -29,7 +24,8 @@ fn measure_slide(board: &LiftedBoard) -> Result<MeasuredSlide, SlideError> {
 }
 
 fn analyse(video: &Video) -> AnalysedVideo {
-    video.analyse(SETUP).expect("the video can be analysed")
+    let analysed_video = video.analyse(FULL_SCALE);
+    analysed_video.expect("the video can be analysed")
 }
 
 /// Checks that an estimate lies within two standard errors of the true value, and that its standard error is below

@@ -11,6 +11,14 @@ pub const FULL_SCALE: Setup = Setup {
     deck_height: 83.0,
 };
 
+/// Frames per second: a low rate suffices for most tests.
+pub const FRAME_RATE: f64 = 8.0;
+
+/// Returns the studio of most tests.
+pub fn studio() -> Studio {
+    small_studio(5, 20.0)
+}
+
 /// Returns a studio with a fixed camera pose and a low resolution, in which the sheet fills the frame.
 pub fn small_studio(seed: u64, tilt: f64) -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(seed));

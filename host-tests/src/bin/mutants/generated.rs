@@ -58,6 +58,7 @@ pub fn affects_servos_or_memory(file: &str) -> bool {
 pub fn generate_mutants(file: &str, text: &str) -> Vec<Mutant> {
     let code = text.split("#[cfg(test)]").next().unwrap_or_default();
     let lines: Vec<&str> = code.lines().collect();
+    let is_in_core = file.starts_with("crates/core/");
     let mut mutants = Vec::new();
     for (index, line) in lines.iter().enumerate() {
         for (description, changed_line) in generate_changes(line) {
@@ -73,9 +74,7 @@ pub fn generate_mutants(file: &str, text: &str) -> Vec<Mutant> {
             mutants.push(Mutant {
                 file: file.into(),
                 description: format!("line {}: {description}", index + 1),
-                package: file
-                    .starts_with("crates/core/")
-                    .then(|| "lizard-core".into()),
+                package: is_in_core.then(|| "lizard-core".into()),
                 is_generated: true,
                 line: index + 1,
                 old: lines[first_index..=index].join("\n"),

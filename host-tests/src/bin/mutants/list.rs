@@ -63,14 +63,9 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
         }
         if line.is_empty() {
             if let Some(mutant) = open_entry.take() {
-                let Mutant {
-                    line,
-                    file,
-                    description,
-                    old,
-                    ..
-                } = &mutant;
-                if [file, description, old].into_iter().any(String::is_empty) {
+                let texts = [&mutant.file, &mutant.description, &mutant.old];
+                if texts.into_iter().any(String::is_empty) {
+                    let line = mutant.line;
                     return Err(format!(
                         "line {line}: an entry needs a file, a description and an old text"
                     ));
@@ -121,19 +116,16 @@ mod tests {
         let [mutant] = &mutants[..] else {
             panic!("{mutants:?}");
         };
-        assert_eq!(
-            (mutant.line, mutant.test_filter.as_deref()),
-            (3, Some("one"))
-        );
+        assert_eq!(mutant.line, 3);
+        assert_eq!(mutant.test_filter.as_deref(), Some("one"));
         let changed_text = mutant.apply("let b = 0;\nlet a = 1;\n");
         assert_eq!(changed_text.as_deref(), Ok("let b = 0;\nlet a = 2;"));
         for (text, reason) in [
             ("let a = 3;\n", "missing"),
             ("let a = 1;\nlet a = 1;\n\n", "2 times"),
         ] {
-            let error = mutant
-                .apply(text)
-                .expect_err("the old text must occur once");
+            let result = mutant.apply(text);
+            let error = result.expect_err("the old text must occur once");
             assert!(error.contains(reason), "{error}");
         }
     }

@@ -64,16 +64,11 @@ fn main() -> ExitCode {
 fn try_generated_mutants(filters: &[String], count: usize, seed: u64) -> Result<usize, String> {
     let scratch = ScratchTree::copy()?;
     let mut mutants = Vec::new();
-    for file in scratch
-        .files
-        .iter()
-        .filter(|file| generated::is_mutated(file))
-    {
-        if filters.is_empty() || filters.iter().any(|part| file.contains(part)) {
-            mutants.extend(generated::generate_mutants(
-                file,
-                &read_text(&root().join(file))?,
-            ));
+    for file in &scratch.files {
+        let is_selected = filters.is_empty() || filters.iter().any(|part| file.contains(part));
+        if is_selected && generated::is_mutated(file) {
+            let text = read_text(&root().join(file))?;
+            mutants.extend(generated::generate_mutants(file, &text));
         }
     }
     let generated_count = mutants.len();
@@ -116,10 +111,9 @@ fn try_generated_mutants(filters: &[String], count: usize, seed: u64) -> Result<
 /// Tries the listed mutants. Returns the number of mutants that no test catches.
 fn try_listed_mutants(filters: &[String]) -> Result<usize, String> {
     let list = read_list()?;
-    let is_selected = |Mutant {
-                           file, description, ..
-                       }: &&Mutant| {
-        let matches_part = |part: &String| file.contains(part) || description.contains(part);
+    let is_selected = |mutant: &&Mutant| {
+        let texts = [&mutant.file, &mutant.description];
+        let matches_part = |part: &String| texts.iter().any(|text| text.contains(part));
         filters.is_empty() || filters.iter().any(matches_part)
     };
     let list: Vec<&Mutant> = list.iter().filter(is_selected).collect();
@@ -135,9 +129,7 @@ fn try_listed_mutants(filters: &[String]) -> Result<usize, String> {
     let mut missed_mutants = Vec::new();
     for mutant in &list {
         let start = Instant::now();
-        let Mutant {
-            file, description, ..
-        } = mutant;
+        let (file, description) = (&mutant.file, &mutant.description);
         let outcome = match scratch.try_mutant(mutant)? {
             Outcome::Caught(test) => format!("caught by {test}"),
             Outcome::Missed => {
@@ -154,10 +146,8 @@ fn try_listed_mutants(filters: &[String]) -> Result<usize, String> {
     let (count, missed_count) = (list.len(), missed_mutants.len());
     let caught_count = count - missed_count;
     println!("{count} mutants, {caught_count} caught, {missed_count} missed");
-    for Mutant {
-        line, description, ..
-    } in missed_mutants
-    {
+    for mutant in missed_mutants {
+        let (line, description) = (mutant.line, &mutant.description);
         println!("missed: mutants.txt, line {line}: {description}");
     }
     Ok(missed_count)
@@ -268,10 +258,8 @@ impl ScratchTree {
     /// Runs the tests of a package in the copy: first the tests that should catch the mutant, then all. For a
     /// generated mutant, also runs the tests of the model checker and of the running firmware.
     fn test_in_package(&self, package: &str, mutant: &Mutant) -> Result<Outcome, String> {
-        if !matches!(
-            self.run_package_tests(package, &["--no-run"])?,
-            Some((true, _))
-        ) {
+        let build = self.run_package_tests(package, &["--no-run"])?;
+        if !matches!(build, Some((true, _))) {
             return Ok(Outcome::DoesNotCompile);
         }
         let is_generated = mutant.is_generated;

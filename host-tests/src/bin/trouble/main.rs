@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use std::thread;
 use std::time::Instant;
 
-use lizard_host_tests::trouble::{Scenario, collect_events, run_and_check, run_campaign};
+use lizard_host_tests::trouble::{Failure, Scenario, collect_events, run_and_check, run_campaign};
 use lizard_host_tests::{FirmwareBench, patrolling_robot, read_number};
 use lizard_rules::{Event, MS, Time};
 use simulated_uno::{FREQUENCY, Image};
@@ -18,7 +18,8 @@ use simulated_uno::{FREQUENCY, Image};
 const MAX_PRINTED_FAILURES: usize = 5;
 
 fn main() -> ExitCode {
-    let image = FirmwareBench::image_with(patrolling_robot());
+    let robot = patrolling_robot();
+    let image = FirmwareBench::image_with(robot);
     let seed = read_number("SEED").unwrap_or(1);
     if let Some(scenario_number) = read_number("ONLY") {
         return run_verbosely(&image, seed, scenario_number);
@@ -26,23 +27,17 @@ fn main() -> ExitCode {
     let count = read_number("COUNT").unwrap_or(10_000);
     let thread_count = thread::available_parallelism().map_or(1, |n| n.get());
     let start = Instant::now();
-    let summary = run_campaign(
-        &image,
-        patrolling_robot(),
-        seed,
-        count,
-        thread_count,
-        |done_count, failure| {
-            if let Some(failure) = failure {
-                let number = failure.scenario.number;
-                let (activity, violation) = (failure.scenario.activity, &failure.violations[0]);
-                println!("scenario {number} ({activity}) violates: {violation}");
-            } else if done_count.is_multiple_of(100) && std::io::stdout().is_terminal() {
-                print!("{done_count} of {count}\r");
-                _ = std::io::stdout().flush();
-            }
-        },
-    );
+    let report = |done_count: u64, failure: Option<&Failure>| {
+        if let Some(failure) = failure {
+            let number = failure.scenario.number;
+            let (activity, violation) = (failure.scenario.activity, &failure.violations[0]);
+            println!("scenario {number} ({activity}) violates: {violation}");
+        } else if done_count.is_multiple_of(100) && std::io::stdout().is_terminal() {
+            print!("{done_count} of {count}\r");
+            _ = std::io::stdout().flush();
+        }
+    };
+    let summary = run_campaign(&image, robot, seed, count, thread_count, report);
     for failure in summary.failures.iter().take(MAX_PRINTED_FAILURES) {
         println!(
             "\n{failure}  to run only this scenario: make trouble SEED={seed} ONLY={}",
@@ -53,10 +48,9 @@ fn main() -> ExitCode {
     let simulated_s = summary.cycle_count / FREQUENCY;
     let elapsed_s = start.elapsed().as_secs_f64();
     println!("seed {seed}: {count} scenarios, {simulated_s} s simulated in {elapsed_s:.0} s");
-    if summary.failures.is_empty() {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
+    match summary.failures.is_empty() {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::FAILURE,
     }
 }
 

@@ -119,16 +119,13 @@ impl World {
         let mut future_robot = self.running_robot.clone();
         future_robot.board.transmitter.text.clear();
         for line in future_robot.send(b"cal\r") {
-            let Some((servo, rest)) = line
-                .strip_prefix("# A")
-                .and_then(|tail| tail.split_at_checked(1))
-            else {
+            let tail = line.strip_prefix("# A");
+            let Some((servo, rest)) = tail.and_then(|tail| tail.split_at_checked(1)) else {
                 continue;
             };
             let (_, limits) = rest.split_once(" limit ").expect("cal prints the limits");
-            let (limits, _) = limits
-                .split_once(" dir ")
-                .expect("the direction follows the limits");
+            let limits = limits.split_once(" dir ");
+            let (limits, _) = limits.expect("the direction follows the limits");
             let answer = future_robot.send_line(&format!("limit {servo} {limits}"));
             if answer.starts_with("err ") {
                 return report_violation(Rule::LoadedLimitsValid, answer);
@@ -194,10 +191,8 @@ impl World {
         let mut future_robot = self.running_robot.clone();
         future_robot.run_without_reader(MOTION_FRAMES);
         if future_robot.main.control().activity() != Activity::Stop {
-            return report_violation(
-                Rule::CountedMotionEnds,
-                format!("{answer}, and then {}", future_robot.send_line("status")),
-            );
+            let observation = format!("{answer}, and then {}", future_robot.send_line("status"));
+            return report_violation(Rule::CountedMotionEnds, observation);
         }
         Ok(())
     }
@@ -209,23 +204,18 @@ impl World {
         let widths = pulses.0.map(|width| width.0);
         let slew = self.robot().slew().per_frame;
         for (servo, calibration) in self.running_robot.motion().calibration().iter().enumerate() {
-            let max_change_cycles = calibration
-                .max_width_change(slew)
-                .saturating_add(ROUNDING_CYCLES);
+            let max_change_cycles = calibration.max_width_change(slew);
+            let max_change_cycles = max_change_cycles.saturating_add(ROUNDING_CYCLES);
             self.observer.limits.max_change_cycles[servo] = max_change_cycles.into();
         }
         self.observer.observe_frame(self.now, widths);
         self.now += FRAME;
         self.was_main_late |= !has_main_run;
-        let motion = self.running_robot.motion();
-        let robot = self.robot();
+        let (robot, pose) = (self.robot(), self.running_robot.motion().pose());
         let is_pose_sent = has_main_run && widths.iter().any(|width| *width > 0);
-        if is_pose_sent
-            && Clearance::measure(&robot, motion.pose())
-                .first_hazard(&robot)
-                .is_some()
-        {
-            return report_violation(Rule::PosesGuarded, format!("{:?}", motion.pose()));
+        let find_hazard = || Clearance::measure(&robot, pose).first_hazard(&robot);
+        if is_pose_sent && find_hazard().is_some() {
+            return report_violation(Rule::PosesGuarded, format!("{pose:?}"));
         }
         self.observer.take_verdict()
     }

@@ -64,10 +64,9 @@ impl World {
             if queried_robot.is_stopped_by_watchdog() {
                 return Ok(());
             }
-            let line: &[u8] = if queried_robot.board.rate == self.sender_rate {
-                b"status\n"
-            } else {
-                &UNREADABLE_BYTES
+            let line: &[u8] = match queried_robot.board.rate == self.sender_rate {
+                true => b"status\n",
+                false => &UNREADABLE_BYTES,
             };
             queried_robot.board.send(line);
             for _ in 0..4 {
@@ -77,10 +76,8 @@ impl World {
                 return Ok(());
             }
         }
-        report_violation(
-            Rule::RateFound,
-            format!("at {} baud", self.sender_rate.baud()),
-        )
+        let observation = format!("at {} baud", self.sender_rate.baud());
+        report_violation(Rule::RateFound, observation)
     }
 
     /// Returns a clone of the robot, run until it has printed all its output.

@@ -33,16 +33,15 @@ export const boardStep: Step = {
         row(button(session.isFirmwareAnswering ? 'Continue' : 'Write the firmware', () => goTo('Firmware'), true), button('Disconnect', connect)),
       ];
     }
-    const elements = [
+    return [
       list(
         'Keep the servos\' supply, 5 V and 3 A, off until you fit the horns. The board needs only its USB cable.',
         'Use a USB cable that carries data; some cables only charge.',
         'Close other programs that use the port, such as a console.',
       ),
       hasSerial() ? row(button('Choose its port…', connect, true)) : warning(NO_SERIAL_MESSAGE),
+      note(findBluetoothProblem() ?? 'A board that already has this firmware can also be connected through a Bluetooth LE module: press Bluetooth… in this room.'),
+      note('Without a board, you can try every step with the simulated board.'),
     ];
-    elements.push(note(findBluetoothProblem() ?? 'A board that already has this firmware can also be connected through a Bluetooth LE module: press Bluetooth… in this room.'));
-    elements.push(note('Without a board, you can try every step with the simulated board.'));
-    return elements;
   },
 };

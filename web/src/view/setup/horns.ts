@@ -7,31 +7,27 @@ export const hornsStep: Step = {
   title: 'Fit the horns',
   needsRobot: true,
   selectedServo: () => null,
-  makeElements: ({ run, markDone }) => [
-    paragraph('The shafts are still empty, and each horn is screwed into its link. First end the pulses, so that no servo moves; then switch on the servos\' supply.'),
-    row(
-      button('Let the servos rest', () =>
-        run(async (calibrator) => {
-          await calibrator.rest();
-          return 'The pulses have ended. Switch on the servos\' supply now.';
-        }),
+  makeElements({ run, markDone }) {
+    const rest = () =>
+      run(async (calibrator) => {
+        await calibrator.rest();
+        return 'The pulses have ended. Switch on the servos\' supply now.';
+      });
+    const centerServos = () =>
+      run(async (calibrator) => {
+        await calibrator.centerServos();
+        markDone('Horns');
+        return 'Every servo now holds its middle position (pulse width 1500 µs).';
+      });
+    return [
+      paragraph('The shafts are still empty, and each horn is screwed into its link. First end the pulses, so that no servo moves; then switch on the servos\' supply.'),
+      row(button('Let the servos rest', rest), button('Turn all servos to their middle', centerServos, true)),
+      list(
+        'Press each crank onto its shaft, as near to the angle in the drawing as the teeth allow. The dashed line is at 0°.',
+        'Do not turn a crank by force while its servo has power; lift it off and refit it.',
+        'Insert the horns\' own screws. Do not connect the links before the signs are checked.',
       ),
-      button(
-        'Turn all servos to their middle',
-        () =>
-          run(async (calibrator) => {
-            await calibrator.centerServos();
-            markDone('Horns');
-            return 'Every servo now holds its middle position (pulse width 1500 µs).';
-          }),
-        true,
-      ),
-    ),
-    list(
-      'Press each crank onto its shaft, as near to the angle in the drawing as the teeth allow. The dashed line is at 0°.',
-      'Do not turn a crank by force while its servo has power; lift it off and refit it.',
-      'Insert the horns\' own screws. Do not connect the links before the signs are checked.',
-    ),
-    note('The 25 teeth are 14.4° apart; a crank is therefore off by at most 7.2°, which its trim corrects later. If the horns are already fitted, continue.'),
-  ],
+      note('The 25 teeth are 14.4° apart; a crank is therefore off by at most 7.2°, which its trim corrects later. If the horns are already fitted, continue.'),
+    ];
+  },
 };

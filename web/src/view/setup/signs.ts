@@ -63,9 +63,8 @@ export class SignsStep implements Step {
     ];
   }
 
-  private turnServo(tools: StepTools): void {
-    const { servo } = tools;
-    tools.run(async (calibrator) => {
+  private turnServo({ servo, run }: StepTools): void {
+    run(async (calibrator) => {
       const turnDeg = await calibrator.turnToCheckSign(servo);
       this.observedFault = null;
       this.lastTurn = { servo, turnDeg };
@@ -73,9 +72,8 @@ export class SignsStep implements Step {
     });
   }
 
-  private reverseSign(tools: StepTools): void {
-    const { servo } = tools;
-    tools.run(async (calibrator) => {
+  private reverseSign({ servo, run }: StepTools): void {
+    run(async (calibrator) => {
       await calibrator.reverseSign(servo);
       this.reset();
       return `The sign of A${servo + 1} is now "${calibrator.calibration.servos[servo].dir}". Turn it again and check.`;

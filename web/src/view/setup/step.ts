@@ -2,13 +2,12 @@
 import type { Calibrator } from '../../../generated/board';
 import type { BoardCalibrator } from '../../setup/board-calibrator';
 import type { Session } from '../../session';
-import type { WriteContent, BoardWriter } from '../writer';
+import type { WriteContent } from '../writer';
 import type { SelectedServo } from './drawing';
 
 /** The state and functions that the dialog offers to its steps. */
 export interface StepTools {
   readonly session: Session;
-  readonly writer: BoardWriter;
   /** The calibrator for the connected robot; null until its calibration is read. */
   readonly calibrator: BoardCalibrator | null;
   /** The selected servo, 0 to 3. */

@@ -30,11 +30,8 @@ fn the_mounts_of_lagging_legs_match_the_shape_of_the_twin() {
     let placement_of = |mount| placements[model.mount_index(mount)];
     for servo in 0..4 {
         let (leg, plan) = (shape.legs[servo], &model.assembly().layout().legs[servo]);
-        for (joint, mount) in leg
-            .joints
-            .into_iter()
-            .zip([Mount::Crank(servo), Mount::Follower(servo)])
-        {
+        let mounts = [Mount::Crank(servo), Mount::Follower(servo)];
+        for (joint, mount) in leg.joints.into_iter().zip(mounts) {
             let error = (to_chassis(placement_of(mount), plan.crank_joint) - joint).length();
             assert!(error < 1e-9, "{mount:?} is off by {error} mm");
         }
@@ -54,20 +51,16 @@ fn the_mounts_of_legs_that_do_not_lag_match_the_assembly() {
     let model = make_model("rigid");
     let robot = model.assembly().robot();
     let angles = [130.0, 45.0, 322.0, 219.0];
-    let pose = robot
-        .lizard()
-        .solve(&angles.into())
-        .expect("every loop closes");
-    let placements = model
-        .place_mounts(angles, [0.0; 4])
-        .expect("every loop closes");
+    let pose = robot.lizard().solve(&angles.into());
+    let pose = pose.expect("every loop closes");
+    let placements = model.place_mounts(angles, [0.0; 4]);
+    let placements = placements.expect("every loop closes");
     assert_eq!(placements.len(), model.mounts.len());
     for (mount, placement) in model.mounts.iter().zip(placements) {
         let Placement { origin, x_axis } = model.assembly().placement(*mount, &pose);
-        let coordinates = [origin.x, origin.y, x_axis.x, x_axis.y]
-            .into_iter()
-            .zip(placement);
-        let error = coordinates.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let expected = [origin.x, origin.y, x_axis.x, x_axis.y].into_iter();
+        let errors = expected.zip(placement).map(|(a, b)| (a - b).abs());
+        let error = errors.fold(0.0, f64::max);
         assert!(error < 1e-9, "{mount:?} is off by {error} mm");
     }
 }
@@ -81,10 +74,8 @@ fn list_corners(solids: &[Triangles]) -> Vec<Vec<[f32; 3]>> {
 #[test]
 fn every_solid_has_the_height_of_its_body_and_no_corner_outside_the_body() {
     let model = make_model("strut");
-    let (entry, solids) = (
-        model.entry(),
-        list_corners(&model.make_solids().expect("every solid is closed")),
-    );
+    let (entry, solids) = (model.entry(), model.make_solids());
+    let solids = list_corners(&solids.expect("every solid is closed"));
     let largest_solid_index = entry.bodies.iter().map(|body| body.solid).max();
     assert_eq!(largest_solid_index, Some(solids.len() - 1));
     for (body_entry, body) in entry.bodies.iter().zip(model.assembly().bodies()) {
@@ -97,11 +88,9 @@ fn every_solid_has_the_height_of_its_body_and_no_corner_outside_the_body() {
             (low.min(z), high.max(z))
         });
         let [from, to] = body.z();
-        assert!(
-            (low - from).abs() < 1e-4 && (high - to).abs() < 1e-4,
-            "{}: z from {low} to {high} mm",
-            body.name
-        );
+        let name = &body.name;
+        let has_height = (low - from).abs() < 1e-4 && (high - to).abs() < 1e-4;
+        assert!(has_height, "{name}: z from {low} to {high} mm");
         // Seen from above, each corner must lie on or within the body's shapes.
         for corner in &solids[body_entry.solid] {
             let [x, y, _] = corner.map(f64::from);
@@ -110,13 +99,12 @@ fn every_solid_has_the_height_of_its_body_and_no_corner_outside_the_body() {
                 matrix[1] * x + matrix[5] * y + matrix[13],
             );
             let shapes = body.prisms.iter().flat_map(|prism| &prism.filled_shapes);
-            let error = shapes
-                .map(|shape| shape.distance(&lizard_parts::Shape::disc(point, 0.0)))
-                .fold(f64::INFINITY, f64::min);
+            let corner = lizard_parts::Shape::disc(point, 0.0);
+            let distances = shapes.map(|shape| shape.distance(&corner));
+            let error = distances.fold(f64::INFINITY, f64::min);
             assert!(
                 error < 1e-3,
-                "{} has a corner {error} mm outside its shapes",
-                body.name
+                "{name} has a corner {error} mm outside its shapes"
             );
         }
     }
@@ -127,12 +115,8 @@ fn every_body_has_a_step_and_every_part_has_one_body_per_piece() {
     let model = make_model("strut");
     let entry = model.entry();
     assert_eq!(entry.steps.len(), 15);
-    assert!(
-        entry
-            .bodies
-            .iter()
-            .all(|body| (1..=14).contains(&body.step))
-    );
+    let mut steps = entry.bodies.iter().map(|body| body.step);
+    assert!(steps.all(|step| (1..=14).contains(&step)));
     let counts = entry.parts.iter().enumerate().map(|(index, part)| {
         let bodies = entry.bodies.iter().filter(|body| body.part == Some(index));
         (part, bodies.count())
@@ -147,10 +131,8 @@ fn every_body_has_a_step_and_every_part_has_one_body_per_piece() {
 fn the_refusal_of_impossible_parts_names_the_key_and_the_value() {
     let toml = format!("{PAPER}\n[parts]\nheight = 10.0");
     let refusal = Model::from_toml(&toml).err().expect("the robot is refused");
-    assert!(
-        refusal.refused.starts_with("parts.height ") && refusal.refused.ends_with(" 10 mm"),
-        "{}",
-        refusal.refused
-    );
+    let message = refusal.refused;
+    assert!(message.starts_with("parts.height "), "{message}");
+    assert!(message.ends_with(" 10 mm"), "{message}");
     assert!(Model::from_toml("[links]").is_err());
 }

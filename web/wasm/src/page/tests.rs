@@ -10,9 +10,8 @@ fn the_previous_robot_stays_after_a_refused_robot() {
     let mut page = PageState::default();
     assert_eq!(page.follow_pulses([24_000; 4]), None);
     page.read(PAPER_TOML).expect("paper.toml is valid");
-    let error = page
-        .read("[links]")
-        .expect_err("a robot without links is refused");
+    let result = page.read("[links]");
+    let error = result.expect_err("a robot without links is refused");
     assert!(error.refused.starts_with("robot.toml"), "{error:?}");
     assert!(page.follow_pulses([24_000; 4]).is_some());
 }
@@ -51,15 +50,12 @@ fn predict_walk_mm(page: &PageState) -> f64 {
 fn a_servo_keeps_its_angle_when_its_pulses_end() {
     let mut page = make_ideal_page();
     let get_scene = |frame: Option<Frame>| {
-        frame
-            .and_then(|frame| frame.scene)
-            .expect("every loop closes")
+        let scene = frame.and_then(|frame| frame.scene);
+        scene.expect("every loop closes")
     };
     let first_scene = get_scene(page.follow_pulses([24_000 + 1600, 24_000, 24_000, 24_000]));
-    assert!(
-        (first_scene.angles[0] - 148.590378).abs() < 1e-9,
-        "{first_scene:?}"
-    );
+    let error = first_scene.angles[0] - 148.590378;
+    assert!(error.abs() < 1e-9, "{first_scene:?}");
     assert_eq!(get_scene(page.follow_pulses([0; 4])), first_scene);
 }
 
@@ -69,10 +65,8 @@ fn real_servos_have_a_dead_band_and_limited_speed_but_ideal_servos_do_not() {
     let step_a1 = |page: &mut PageState, cycles: u32| {
         let frame = page.follow_pulses([24_000 + cycles, 24_000, 24_000, 24_000]);
         let frame = frame.expect("a robot was read");
-        (
-            frame.scene.expect("every loop closes").angles[0] - 138.590378,
-            frame.errors[0],
-        )
+        let scene = frame.scene.expect("every loop closes");
+        (scene.angles[0] - 138.590378, frame.errors[0])
     };
     let assert_near = |(turn, error): (f64, f64), expected: [f64; 2]| {
         assert!((turn - expected[0]).abs() < 1e-9, "turn {turn} deg");
@@ -107,11 +101,9 @@ fn follow_cycles(
     page.set_servos("ideal");
     let gait = page.robot().and_then(|robot| robot.gait(name));
     let gait = gait.expect("the robot has this gait");
-    let poses: Vec<[f64; 4]> = gait
-        .frames()
-        .step_by(frame_step as usize)
-        .map(|(_, phase)| gait.table_angles(phase))
-        .collect();
+    let frames = gait.frames().step_by(frame_step as usize);
+    let poses = frames.map(|(_, phase)| gait.table_angles(phase));
+    let poses: Vec<[f64; 4]> = poses.collect();
     let mut follow_cycle = || -> Vec<Frame> {
         let frame_at = |angles: &[f64; 4]| {
             let frame = page.follow_pose(*angles, frame_step);
@@ -124,11 +116,8 @@ fn follow_cycles(
     let slides = second_cycle.iter().map(|frame| frame.slides).collect();
     let lags = second_cycle.iter().flat_map(|frame| frame.lag);
     let largest_lag = lags.fold(0.0, |largest: f64, lag| largest.max(lag.abs()));
-    (
-        end_place(&first_cycle).displacement_to(end_place(&second_cycle)),
-        slides,
-        largest_lag,
-    )
+    let displacement = end_place(&first_cycle).displacement_to(end_place(&second_cycle));
+    (displacement, slides, largest_lag)
 }
 
 #[test]
@@ -148,11 +137,8 @@ fn a_cycle_followed_frame_by_frame_ends_where_predicted() {
                 );
             };
             // The poses in between are interpolated.
-            assert_near(
-                displacement.forward,
-                prediction.forward,
-                0.4 * f64::from(frame_step),
-            );
+            let tolerance = 0.4 * f64::from(frame_step);
+            assert_near(displacement.forward, prediction.forward, tolerance);
             assert_near(displacement.left, prediction.left, 0.5);
             assert_near(displacement.turn, prediction.turn, 0.3);
         }
@@ -163,9 +149,8 @@ fn a_cycle_followed_frame_by_frame_ends_where_predicted() {
 fn the_prediction_depends_on_the_servos_dead_band_torque_and_supply() {
     let mut page = make_paper_page();
     let predict_utilisations = |page: &PageState| {
-        predict_walk(page)
-            .utilisations
-            .expect("the servos are not ideal")
+        let utilisations = predict_walk(page).utilisations;
+        utilisations.expect("the servos are not ideal")
     };
     let sg90_mm = predict_walk_mm(&page);
     page.set_servos("ideal");
@@ -187,16 +172,15 @@ fn the_prediction_depends_on_the_servos_dead_band_torque_and_supply() {
         );
     }
     // docs/gaits.md lists these two values, for half and full pace, and also the value for 4 V that is checked below.
-    assert!(
-        (own_utilisations[9] - 0.45).abs() < 0.005 && (own_utilisations[19] - 0.72).abs() < 0.005,
-        "{own_utilisations:?}"
-    );
+    let assert_near = |utilisations: [f64; 20], step: usize, expected: f64| {
+        let error = utilisations[step] - expected;
+        assert!(error.abs() < 0.005, "{utilisations:?}");
+    };
+    assert_near(own_utilisations, 9, 0.45);
+    assert_near(own_utilisations, 19, 0.72);
     page.set_servos("own at 4.0");
     let low_supply_utilisations = predict_utilisations(&page);
-    assert!(
-        (low_supply_utilisations[19] - 0.87).abs() < 0.005,
-        "{low_supply_utilisations:?}"
-    );
+    assert_near(low_supply_utilisations, 19, 0.87);
     // An invalid supply has no effect.
     page.set_servos("own at 12");
     page.set_servos("own at a wall");
@@ -222,10 +206,8 @@ fn at_least_two_feet_stick_at_any_time_of_a_walk() {
 fn springs_set_on_the_page_act_as_predicted() {
     let mut page = make_ideal_page();
     let (rigid_prediction, rigid_mm) = (predict_walk(&page), predict_walk_mm(&page));
-    assert_eq!(
-        (rigid_prediction.lag, rigid_prediction.fraction),
-        (None, None)
-    );
+    assert_eq!(rigid_prediction.lag, None);
+    assert_eq!(rigid_prediction.fraction, None);
     for force in [0.35, 0.55] {
         page.set_floor(Floor {
             kind: LegDrive::Strut,
@@ -238,16 +220,14 @@ fn springs_set_on_the_page_act_as_predicted() {
             (displacement.forward - sprung_mm).abs() < 0.5,
             "followed {displacement:?}, predicted {sprung_prediction:?}"
         );
+        let predicted_lag = sprung_prediction.lag.expect("the legs have springs");
         assert!(
-            (largest_lag / sprung_prediction.lag.expect("the legs have springs") - 1.0).abs()
-                < 0.05,
+            (largest_lag / predicted_lag - 1.0).abs() < 0.05,
             "lag {largest_lag} deg, predicted {sprung_prediction:?}"
         );
-        let fraction = sprung_mm / rigid_mm;
-        assert!(
-            (sprung_prediction.fraction.expect("the legs have springs") - fraction).abs() < 0.01,
-            "{sprung_prediction:?}"
-        );
+        let predicted_fraction = sprung_prediction.fraction.expect("the legs have springs");
+        let error = predicted_fraction - sprung_mm / rigid_mm;
+        assert!(error.abs() < 0.01, "{sprung_prediction:?}");
     }
 }
 
@@ -339,8 +319,6 @@ fn a_foot_that_is_too_long_shortens_the_predicted_walk_on_stiff_feet() {
         predict_walk_mm(&page)
     };
     let level_mm = predict_with(2.0, 0.0);
-    assert!(
-        predict_with(3.3, 1.0) < 0.3 * level_mm
-            && predict_with(own_floor.leaf, 1.0) > 0.9 * level_mm
-    );
+    assert!(predict_with(3.3, 1.0) < 0.3 * level_mm);
+    assert!(predict_with(own_floor.leaf, 1.0) > 0.9 * level_mm);
 }

@@ -4,11 +4,8 @@ use super::*;
 use crate::paper::{PAPER_TOML, load_paper_robot, load_paper_robot_and_twin};
 
 fn get_bars(robot: &Robot, name: &str) -> Bars {
-    robot
-        .gait(name)
-        .expect("the robot has this gait")
-        .bars()
-        .expect("the gait has bars")
+    let gait = robot.gait(name).expect("the robot has this gait");
+    gait.bars().expect("the gait has bars")
 }
 
 fn try_bars(bars: &Bars, twin: &Twin) -> Result<Trial, RefusedTrial> {
@@ -19,8 +16,8 @@ fn try_bars(bars: &Bars, twin: &Twin) -> Result<Trial, RefusedTrial> {
 /// Puts a gait into the text of a robot.toml.
 fn put_into(bars: &Bars, text: &str) -> String {
     let gait = EditedGait::Bars(bars.clone());
-    gait.put_into(text, &load_paper_robot())
-        .expect("bars always have a table")
+    let text = gait.put_into(text, &load_paper_robot());
+    text.expect("bars always have a table")
 }
 
 #[test]
@@ -29,16 +26,10 @@ fn a_gait_rebuilt_from_its_bars_has_the_same_prediction() {
     for name in ["walk", "trot", "crawl", "left", "arc-left", "arc-right"] {
         let gait = robot.gait(name).expect("the robot has this gait");
         let trial = try_bars(&get_bars(&robot, name), &twin).expect("the gait is valid");
-        assert_eq!(
-            trial.prediction,
-            GaitPrediction::predict(&twin, gait),
-            "{name}"
-        );
-        assert_eq!(
-            trial.max_servo_speed,
-            gait.audit().peak_speed.speed,
-            "{name}"
-        );
+        let prediction = GaitPrediction::predict(&twin, gait);
+        assert_eq!(trial.prediction, prediction, "{name}");
+        let peak_speed = gait.audit().peak_speed.speed;
+        assert_eq!(trial.max_servo_speed, peak_speed, "{name}");
     }
     for name in ["stand", "look"] {
         let gait = robot.gait(name).expect("the robot has this gait");
@@ -77,10 +68,8 @@ fn a_reversed_gait_walks_the_same_distance_backward() {
         assert_eq!(twice_reversed.gain, bars.gain, "{name}");
         for (twice_start, start) in twice_reversed.start.into_iter().zip(bars.start) {
             let error = (twice_start - start).rem_euclid(1.0);
-            assert!(
-                error.min(1.0 - error) < 1e-9,
-                "{name}: {twice_start} and {start}"
-            );
+            let is_equal = error.min(1.0 - error) < 1e-9;
+            assert!(is_equal, "{name}: {twice_start} and {start}");
         }
     }
 }
@@ -93,16 +82,9 @@ fn a_refusal_offers_the_nearest_valid_values() {
         ..get_bars(&robot, "walk")
     };
     let refused_trial = try_bars(&too_large_gait, &twin).expect_err("the gait is too large");
-    assert!(
-        refused_trial.refusal.key.starts_with("gait.walk"),
-        "{:?}",
-        refused_trial.refusal
-    );
-    assert!(
-        !refused_trial.alternatives.is_empty(),
-        "{:?}",
-        refused_trial.refusal
-    );
+    let refusal = refused_trial.refusal;
+    assert!(refusal.key.starts_with("gait.walk"), "{refusal:?}");
+    assert!(!refused_trial.alternatives.is_empty(), "{refusal:?}");
     for Alternative { parameter, value } in refused_trial.alternatives {
         let is_valid_with = |value: f64| {
             let mut bars = too_large_gait.clone();
@@ -126,8 +108,8 @@ fn a_robot_toml_accepts_the_table() {
         amplitude: 18.5,
         ..get_bars(&robot, "arc-left")
     };
-    let robot = Robot::parse(&format!("{PAPER_TOML}\n{}", mine.to_toml()))
-        .expect("the robot with the gait is valid");
+    let robot = Robot::parse(&format!("{PAPER_TOML}\n{}", mine.to_toml()));
+    let robot = robot.expect("the robot with the gait is valid");
     assert_eq!(get_bars(&robot, "mine"), mine);
 }
 
@@ -150,12 +132,10 @@ fn a_gait_replaces_the_gait_of_the_same_name_or_else_is_added() {
         name: "mine".to_string(),
         ..walk
     };
-    let extended_robot =
-        Robot::parse(&put_into(&mine, &text)).expect("the extended robot is valid");
-    assert_eq!(
-        gait_names(&extended_robot).len(),
-        gait_names(&robot).len() + 1
-    );
+    let extended_robot = Robot::parse(&put_into(&mine, &text));
+    let extended_robot = extended_robot.expect("the extended robot is valid");
+    let gait_count = extended_robot.gaits().len();
+    assert_eq!(gait_count, robot.gaits().len() + 1);
     assert_eq!(get_bars(&extended_robot, "mine"), mine);
 }
 

@@ -84,11 +84,9 @@ impl BitGraph {
     fn for_automaton(automaton: &LineAutomaton) -> Self {
         let mut bytes: Vec<(usize, u8, Option<usize>)> = Vec::new();
         for (state, transitions) in automaton.transitions.iter().enumerate() {
-            bytes.extend(
-                transitions
-                    .iter()
-                    .map(|(byte, next_state)| (state, *byte, Some(*next_state))),
-            );
+            for (byte, next_state) in transitions {
+                bytes.push((state, *byte, Some(*next_state)));
+            }
         }
         // A line ends with LF, CR, or CR LF.
         let state_after_cr = automaton.transitions.len();
@@ -107,25 +105,17 @@ impl BitGraph {
         };
         let start_bit_index = |index: usize| 1 + 10 * index;
         let start_bits_after = |state: usize| {
-            let following_bytes = bytes
-                .iter()
-                .enumerate()
-                .filter(move |(_, (from_state, ..))| *from_state == state);
-            following_bytes
-                .map(|(index, _)| start_bit_index(index))
-                .collect::<Vec<_>>()
+            let byte_indices = (0..bytes.len()).filter(|index| bytes[*index].0 == state);
+            byte_indices.map(start_bit_index).collect::<Vec<_>>()
         };
         for (index, (_, byte, next_state)) in bytes.iter().enumerate() {
             let sent_bits = 1 << 9 | u16::from(*byte) << 1;
-            graph
-                .levels
-                .extend((0..10).map(|bit| sent_bits >> bit & 1 == 1));
-            graph
-                .successors
-                .extend((1..10).map(|bit| vec![start_bit_index(index) + bit]));
-            graph
-                .successors
-                .push(next_state.map_or(vec![0], start_bits_after));
+            let levels = (0..10).map(|bit| sent_bits >> bit & 1 == 1);
+            graph.levels.extend(levels);
+            let later_bits = (1..10).map(|bit| vec![start_bit_index(index) + bit]);
+            graph.successors.extend(later_bits);
+            let next_start_bits = next_state.map_or(vec![0], start_bits_after);
+            graph.successors.push(next_start_bits);
         }
         graph.first_start_bits = start_bits_after(LineAutomaton::START);
         graph
@@ -154,12 +144,10 @@ fn compute_sample_times(sender: BaudRate, receiver: BaudRate) -> BTreeSet<[usize
     for clock_step in 0..=400 {
         let ratio = ratio * (1.0 + MAX_CLOCK_ERROR * (f64::from(clock_step) / 200.0 - 1.0));
         for sample_point_step in 0..=32 {
-            let sample_point = SAMPLE_POINT_RANGE[0]
-                + (SAMPLE_POINT_RANGE[1] - SAMPLE_POINT_RANGE[0]) * f64::from(sample_point_step)
-                    / 32.0;
-            sample_times.insert(core::array::from_fn(|bit| {
-                ((bit as f64 + sample_point) * ratio) as usize
-            }));
+            let [earliest, latest] = SAMPLE_POINT_RANGE;
+            let sample_point = earliest + (latest - earliest) * f64::from(sample_point_step) / 32.0;
+            let sample_time = |bit: usize| ((bit as f64 + sample_point) * ratio) as usize;
+            sample_times.insert(core::array::from_fn(sample_time));
         }
     }
     sample_times
@@ -192,11 +180,8 @@ fn receive_byte(
             current_states = current_states.iter().flat_map(advance).collect();
         }
         let sample = |(line, bit_index, sampled_bits)| {
-            (
-                line,
-                bit_index,
-                sampled_bits | u16::from(graph.levels[bit_index]) << bit,
-            )
+            let level = u16::from(graph.levels[bit_index]);
+            (line, bit_index, sampled_bits | level << bit)
         };
         current_states = current_states
             .into_iter()
@@ -239,10 +224,8 @@ fn find_start_edges(states: BTreeSet<LinkState>, graph: &BitGraph) -> BTreeSet<L
 /// Finds the commands that a receiver may decode from a sender's bits, by visiting every state that the two can reach
 /// together. Each command is identified by its final automaton state.
 fn find_decodable_commands(sender: BaudRate, receiver: BaudRate) -> BTreeSet<usize> {
-    let (graph, automaton) = (
-        BitGraph::for_automaton(&LineAutomaton::for_canonical_commands()),
-        LineAutomaton::for_accepted_lines(),
-    );
+    let graph = BitGraph::for_automaton(&LineAutomaton::for_canonical_commands());
+    let automaton = LineAutomaton::for_accepted_lines();
     let initial_lines = [
         ReceivedLine::CommandPrefix(LineAutomaton::START),
         ReceivedLine::Mismatch(LineAutomaton::START, 1),
@@ -267,12 +250,8 @@ fn find_decodable_commands(sender: BaudRate, receiver: BaudRate) -> BTreeSet<usi
         to_visit = find_start_edges(end_states, &graph);
         to_visit.retain(|state| visited.insert(*state));
     }
-    println!(
-        "{} at {}: {} states",
-        sender.baud(),
-        receiver.baud(),
-        visited.len()
-    );
+    let [sender, receiver] = [sender, receiver].map(BaudRate::baud);
+    println!("{sender} at {receiver}: {} states", visited.len());
     commands
 }
 
@@ -291,15 +270,9 @@ fn a_receiver_faster_than_the_sender_never_decodes_a_line_end() {
     let graph = BitGraph::for_any_bytes();
     let automaton = LineAutomaton::for_accepted_lines();
     for (sender, receiver) in rate_pairs(false) {
-        let start_edges: BTreeSet<LinkState> = (0..graph.levels.len())
-            .filter(|bit_index| graph.levels[*bit_index])
-            .flat_map(|bit_index| {
-                graph.successors[bit_index]
-                    .iter()
-                    .filter(|next_bit| !graph.levels[**next_bit])
-            })
-            .map(|start_bit| (ReceivedLine::Garbled, *start_bit))
-            .collect();
+        let bit_indices = 0..graph.levels.len();
+        let all_states = bit_indices.map(|bit_index| (ReceivedLine::Garbled, bit_index));
+        let start_edges = find_start_edges(all_states.collect(), &graph);
         assert!(start_edges.len() > 128);
         for sample_times in compute_sample_times(sender, receiver) {
             let end_states = receive_byte(&start_edges, &graph, &automaton, sample_times);

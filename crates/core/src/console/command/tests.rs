@@ -89,12 +89,10 @@ fn a_yielding_word_is_a_command_unless_a_gait_has_the_same_name() {
 
         let robot_with_both = Sample::paper().with_gait(text).with_gait(&longer_name);
         let first_yielding_indices = [0, Word::Cal as usize, Word::ALL.len()];
+        let start_gait = |name: &str| Ok(gait_command(robot_with_both.gait_id(name)));
         for (line, gait_result) in [
-            (text, Ok(gait_command(robot_with_both.gait_id(text)))),
-            (
-                &*longer_name,
-                Ok(gait_command(robot_with_both.gait_id(&longer_name))),
-            ),
+            (text, start_gait(text)),
+            (&*longer_name, start_gait(&longer_name)),
             (
                 &std::format!("{text} 1 2"),
                 Err(LineError::WrongArguments(Text::CountUsage)),
@@ -233,10 +231,8 @@ fn the_first_words_of_a_gaits_name_yield_an_incomplete_name() {
     let parse_for_robot = |line: &str| parse(line.as_bytes(), &robot);
     assert_eq!(parse_for_robot("arc"), Err(LineError::IncompleteName));
     assert_eq!(parse_for_robot("arc to"), Err(LineError::IncompleteName));
-    assert_eq!(
-        parse_for_robot("arc  to\tleft"),
-        Ok(gait_command(robot.gait_id("arc to left")))
-    );
+    let command = Ok(gait_command(robot.gait_id("arc to left")));
+    assert_eq!(parse_for_robot("arc  to\tleft"), command);
     assert_eq!(parse_for_robot("arc t"), Err(LineError::UnknownCommand));
     assert_eq!(parse_for_robot("arc left"), Err(LineError::UnknownCommand));
     let count_error = Err(LineError::WrongArguments(Text::CountUsage));

@@ -29,8 +29,8 @@ use crate::sample::{GAIT_NAMES, SLOW_PACE, Sample};
 use crate::step::StepResult;
 use crate::virtual_board::{Eeprom, VirtualBoard, is_answer};
 use helpers::{
-    Dialogue, activity_name, assert_status, format_neutral_pose, measure_phase_advance,
-    parse_pairs, run_frame_and_read_widths, set_supply, start_asymmetric_robot,
+    Dialogue, activity_name, assert_line_starts, assert_status, format_neutral_pose,
+    measure_phase_advance, parse_pairs, run_frame_and_read_widths, set_supply,
     wake_asymmetric_robot, wake_robot,
 };
 
@@ -101,7 +101,7 @@ fn help_lists_all_gait_names_and_fills_each_line_before_the_next() {
         for number in 0..count {
             robot = robot.with_gait(&format!("{number:x>length$}")[..length]);
         }
-        let names: Vec<String> = crate::numbers::gaits::GaitId::all(robot.gait_count())
+        let names: Vec<String> = GaitId::all(robot.gait_count())
             .map(|id| robot.gait_name(id).map(char::from).collect())
             .collect();
         let printed_lines = wake_robot(robot).send(b"help\r");
@@ -140,26 +140,17 @@ fn run_until_guard_holds() -> Dialogue {
 fn each_hold_is_reported_once_and_status_shows_it_until_the_robot_moves_again() {
     let mut dialogue = run_until_guard_holds();
     let printed_lines = dialogue.read_lines();
-    assert_eq!(printed_lines.len(), 1);
-    assert!(
-        printed_lines[0].starts_with("# held in the last safe pose: "),
-        "{printed_lines:?}"
-    );
+    assert_line_starts(&printed_lines, &["# held in the last safe pose: "]);
     assert!(
         printed_lines[0].contains(" margin of ") || printed_lines[0].contains(" slider is at ")
     );
     assert!(dialogue.run_frames(100).is_empty());
     assert_status(&mut dialogue, &[("guard", "held"), ("fault", "guard")]);
-    dialogue.send_line("stand");
-    dialogue.run_frames(1);
+    dialogue.send_and_run("stand", 1);
     assert_status(&mut dialogue, &[("guard", "clear"), ("fault", "none")]);
     dialogue.run_frames(100);
-    dialogue.send_line("stray");
-    assert_eq!(
-        dialogue.run_frames(200).len(),
-        1,
-        "a second hold is reported again"
-    );
+    let printed_lines = dialogue.send_and_run("stray", 200);
+    assert_eq!(printed_lines.len(), 1, "a second hold is reported again");
 }
 
 #[test]
@@ -181,25 +172,21 @@ fn pending_lines_are_written_in_the_order_banner_answer_notice_hold_reason_repor
     let mut dialogue = Dialogue::power_on(*Sample::asymmetric());
     dialogue.board.send(b"stray\rwatch 1\rhelp\r");
     // Every line is read as soon as it is written, up to the first line of `help`.
-    let mut printed_lines = Vec::new();
-    let mut read_line_and_match_gaits = |dialogue: &mut Dialogue| {
+    let mut printed_lines: Vec<String> = Vec::new();
+    let lists_gaits = |line: &String| line.starts_with("# gaits: ");
+    while !printed_lines.last().is_some_and(lists_gaits) {
         while !dialogue.board.transmitter.text.ends_with("\r\n") {
             assert_eq!(dialogue.main.step(&mut dialogue.board), StepResult::Worked);
         }
         printed_lines.push(core::mem::take(&mut dialogue.board.transmitter.text));
-        printed_lines
-            .last()
-            .expect("a line has been read")
-            .starts_with("# gaits: ")
-    };
-    while !read_line_and_match_gaits(&mut dialogue) {}
+    }
     // From here on the output is not read, while the guard stops the robot, a pulse edge is late and a report becomes
     // pending.
     dialogue.run_without_reader(199);
     assert!(dialogue.motion().hazard().is_some());
     dialogue.board.late_edges = 1;
     dialogue.run_without_reader(1);
-    let remaining_lines = dialogue.read_lines();
+    printed_lines.extend(dialogue.read_lines());
     let expected_starts = [
         "# lizard ",
         "# calibration: ",
@@ -213,15 +200,7 @@ fn pending_lines_are_written_in_the_order_banner_answer_notice_hold_reason_repor
         "# held ",
         "# t=200 pose=",
     ];
-    printed_lines.extend(remaining_lines);
-    assert_eq!(
-        printed_lines.len(),
-        expected_starts.len(),
-        "{printed_lines:?}"
-    );
-    for (line, start) in printed_lines.iter().zip(expected_starts) {
-        assert!(line.starts_with(start), "{line}");
-    }
+    assert_line_starts(&printed_lines, &expected_starts);
 }
 
 #[test]
@@ -236,20 +215,12 @@ fn a_resting_robot_refuses_to_move_until_it_receives_stand() {
         }
         assert_eq!(dialogue.status_value("gait"), "rest");
         // Commands that move no servo are still executed, and errors are still reported.
-        for line in ["speed 50", "watch 0", "rest", "help"] {
-            dialogue.expect_accepted(line);
-        }
+        dialogue.expect_all_accepted(&["speed 50", "watch 0", "rest", "help"]);
         dialogue.expect_refused("pose 1 2 3 4", "3 A1 must be 61.37..215.36");
         dialogue.expect_refused("dance", "1 ");
-        dialogue.expect_accepted("stand");
-        dialogue.run_frames(25);
-        assert!(
-            dialogue
-                .run_frame()
-                .0
-                .iter()
-                .all(|width| *width > PulseWidth(0))
-        );
+        dialogue.send_and_run("stand", 25);
+        let widths = dialogue.run_frame().0;
+        assert!(widths.iter().all(|width| *width > PulseWidth(0)));
     }
 }
 
@@ -271,8 +242,7 @@ fn an_accepted_pose_is_reached_and_reported_to_a_hundredth_of_a_degree() {
     let mut dialogue = wake_asymmetric_robot();
     for pose in ["130.00 50.00 311.00 224.50", "136.37 45.01 306.05 229.99"] {
         let line = format!("pose {pose}");
-        dialogue.expect_accepted(&line);
-        dialogue.run_frames(120);
+        dialogue.send_and_run(&line, 120);
         assert_eq!(dialogue.status_value("pose"), pose.replace(' ', ","));
     }
 }

@@ -44,10 +44,8 @@ fn take_notices(safety: &mut Safety) -> std::vec::Vec<Notice> {
 fn a_healthy_board_causes_neither_a_reaction_nor_a_notice() {
     let mut safety = safety_without_boot();
     for _ in 0..1000 {
-        assert_eq!(
-            check_still_frame(&mut safety, &HEALTHY_BOARD),
-            Reaction::None
-        );
+        let reaction = check_still_frame(&mut safety, &HEALTHY_BOARD);
+        assert_eq!(reaction, Reaction::None);
     }
     assert_eq!(safety.fault(), None);
     assert_eq!(safety.next_notice(), None);
@@ -60,11 +58,9 @@ fn before_the_supply_has_been_measured_a_robot_may_move_but_not_write() {
     for _ in 0..20 {
         check_still_frame(&mut safety, &Health::default());
         assert!(!safety.allows_writing());
-        assert_eq!(
-            safety.response(Event::Save, State::Posing),
-            Response::Obey,
-            "the write waits for the measurement"
-        );
+        let response = safety.response(Event::Save, State::Posing);
+        let claim = "the write waits for the measurement";
+        assert_eq!(response, Response::Obey, "{claim}");
         assert_eq!(safety.response(Event::Move, State::Posing), Response::Obey);
     }
     // Writing is allowed after six readings.
@@ -190,15 +186,13 @@ fn a_falling_supply_first_forbids_writing_then_stops_the_robot_then_ends_the_pul
         )
     };
     let supply_fault = Some(Fault::Supply);
-    assert_eq!(observe_at(4.4), (Reaction::None, None, true, false, 1));
-    assert_eq!(
-        observe_at(4.2),
-        (Reaction::Freeze, supply_fault, false, false, 2)
-    );
-    assert_eq!(
-        observe_at(4.0),
-        (Reaction::EndPulses, supply_fault, false, false, 2)
-    );
+    for (volts, expected) in [
+        (4.4, (Reaction::None, None, true, false, 1)),
+        (4.2, (Reaction::Freeze, supply_fault, false, false, 2)),
+        (4.0, (Reaction::EndPulses, supply_fault, false, false, 2)),
+    ] {
+        assert_eq!(observe_at(volts), expected, "{volts} V");
+    }
 }
 
 #[test]
@@ -212,11 +206,8 @@ fn each_late_edge_stops_the_robot_and_is_reported() {
         assert_eq!(check_still_frame(&mut safety, &health), Reaction::Freeze);
         assert_eq!(safety.fault(), Some(Fault::LateEdge));
         assert_eq!(take_notices(&mut safety), [Notice::Fault]);
-        assert_eq!(
-            check_still_frame(&mut safety, &health),
-            Reaction::None,
-            "each edge is handled once"
-        );
+        let reaction = check_still_frame(&mut safety, &health);
+        assert_eq!(reaction, Reaction::None, "each edge is handled once");
     }
 }
 

@@ -70,10 +70,8 @@ fn every_voltage_is_rounded_down_to_hundredths_of_a_volt() {
             assert_eq!(f64::from(centivolts), expected_centivolts, "{case:?}");
             let rail_centivolts = Voltage::for_rail(reading, &SUPPLIES_WITH_RAIL).centivolts();
             let exact_rail_centivolts = 700.0 * 2200.0 / f64::from(reference) / 10.0;
-            assert_eq!(
-                f64::from(rail_centivolts),
-                exact_rail_centivolts.floor().min(8191.0)
-            );
+            let expected_centivolts = exact_rail_centivolts.floor().min(8191.0);
+            assert_eq!(f64::from(rail_centivolts), expected_centivolts);
         }
     }
     let unknown_voltage = Voltage::for_board(Reading::default(), &SUPPLIES);
@@ -98,10 +96,8 @@ fn a_falling_supply_reaches_each_level_after_six_frames() {
         (4.25, Level::Stop),
         (4.05, Level::Rest),
     ] {
-        assert_eq!(
-            measure_board_until_change(&mut supply, volts),
-            Some((6, level))
-        );
+        let change = measure_board_until_change(&mut supply, volts);
+        assert_eq!(change, Some((6, level)));
     }
     let mut supply = Supply::default();
     let change = measure_board_until_change(&mut supply, 3.9);
@@ -125,11 +121,8 @@ fn six_low_readings_lower_the_level_only_as_far_as_the_highest_of_them() {
                 };
                 supply.add_reading(compute_reading(volts, 0.0), &SUPPLIES);
             }
-            assert_eq!(
-                supply.level(),
-                level,
-                "{outlier_volts} V in frame {outlier_frame}"
-            );
+            let case = std::format!("{outlier_volts} V in frame {outlier_frame}");
+            assert_eq!(supply.level(), level, "{case}");
         }
     }
 }
@@ -143,11 +136,8 @@ fn fifty_high_readings_raise_the_level_only_as_far_as_the_lowest_of_them() {
             let volts = if frame == outlier_frame { 4.5 } else { 5.0 };
             supply.add_reading(compute_reading(volts, 0.0), &SUPPLIES);
         }
-        assert_eq!(
-            supply.level(),
-            Level::Slow,
-            "4.5 V in frame {outlier_frame}"
-        );
+        let level = supply.level();
+        assert_eq!(level, Level::Slow, "4.5 V in frame {outlier_frame}");
     }
 }
 
@@ -199,11 +189,8 @@ fn the_supply_with_the_lower_level_determines_the_level_and_is_reported() {
         (4.45, 5.0, Level::Rest, 5.0),
     ] {
         let mut supply = Supply::default();
-        measure_until_change(
-            &mut supply,
-            compute_reading(board_volts, rail_volts),
-            &supplies,
-        );
+        let reading = compute_reading(board_volts, rail_volts);
+        measure_until_change(&mut supply, reading, &supplies);
         assert_eq!(supply.level(), level);
         let reported_volts = f64::from(supply.limiting_voltage(&supplies).centivolts()) / 100.0;
         assert!(

@@ -5,7 +5,7 @@ use std::vec::Vec;
 
 use super::*;
 use crate::numbers::calibration::SweepRange;
-use crate::numbers::section::write_checksum;
+use crate::numbers::section::{Content, write_checksum};
 use crate::sample::Sample;
 
 /// The section of [`Sample::asymmetric`] with changed numbers.
@@ -43,6 +43,12 @@ impl ChangedSection {
 /// True if [`Robot::open`] accepts the section of [`Sample::asymmetric`] with `word` at `offset`.
 fn is_accepted_with(offset: u16, word: u16) -> bool {
     ChangedSection::new().with_word(offset, word).is_accepted()
+}
+
+/// True if [`Robot::open`] accepts the section of [`Sample::asymmetric`] after this change.
+fn is_accepted_after(change: impl FnOnce(&mut Content)) -> bool {
+    let content = Sample::asymmetric().with_changes(change).content;
+    ChangedSection(content.section_bytes()).is_accepted()
 }
 
 #[test]
@@ -83,47 +89,36 @@ fn each_servo_and_the_rail_require_a_usable_pin_of_their_own() {
 fn a_travel_must_cover_the_gaits_and_the_neutral_angle_with_tolerable_pulses() {
     for servo in 0..4 {
         let is_accepted_with_change = |change: &dyn Fn(&mut Calibration)| {
-            let mut content = Sample::asymmetric().content.clone();
-            let calibration = &mut content.calibration[servo];
-            calibration.gain = 11_395;
-            (calibration.travel_min, calibration.travel_max) = (Sweep(-9_000), Sweep(9_000));
-            change(calibration);
-            ChangedSection(content.section_bytes()).is_accepted()
+            is_accepted_after(|content| {
+                let calibration = &mut content.calibration[servo];
+                calibration.gain = 11_395;
+                (calibration.travel_min, calibration.travel_max) = (Sweep(-9_000), Sweep(9_000));
+                change(calibration);
+            })
         };
         assert!(is_accepted_with_change(&|_| {}));
-        for (min_pulse, is_tolerated) in [(7_998, false), (7_999, true), (8_000, true)] {
-            // The shortest pulse belongs to the travel's clockwise limit.
-            let set_shortest_pulse = |calibration: &mut Calibration| {
-                let pulse_below_neutral =
-                    calibration.neutral_width.0 - calibration.clamped_width(calibration.travel_min);
-                calibration.neutral_width.0 = min_pulse + pulse_below_neutral;
-            };
-            let is_accepted = is_accepted_with_change(&set_shortest_pulse);
-            assert_eq!(
-                is_accepted, is_tolerated,
-                "servo {servo}: {min_pulse} cycles"
-            );
-        }
-        for (max_pulse, is_tolerated) in [(40_001, true), (40_002, false)] {
-            let set_longest_pulse = |calibration: &mut Calibration| {
-                let pulse_above_neutral =
-                    calibration.clamped_width(calibration.travel_max) - calibration.neutral_width.0;
-                calibration.neutral_width.0 = max_pulse - pulse_above_neutral;
-            };
-            let is_accepted = is_accepted_with_change(&set_longest_pulse);
-            assert_eq!(
-                is_accepted, is_tolerated,
-                "servo {servo}: {max_pulse} cycles"
-            );
+        // The shortest pulse belongs to the travel's clockwise limit, the longest pulse to the other limit.
+        for (limit, pulse, is_tolerated) in [
+            (Sweep(-9_000), 7_998, false),
+            (Sweep(-9_000), 7_999, true),
+            (Sweep(-9_000), 8_000, true),
+            (Sweep(9_000), 40_001, true),
+            (Sweep(9_000), 40_002, false),
+        ] {
+            let is_accepted = is_accepted_with_change(&|calibration| {
+                let width = calibration.clamped_width(limit);
+                calibration.neutral_width.0 = pulse + calibration.neutral_width.0 - width;
+            });
+            assert_eq!(is_accepted, is_tolerated, "servo {servo}: {pulse} cycles");
         }
         // The travel must include the neutral angle even if the gaits do not need it.
         for (travel, has_neutral) in [([0, 900], true), ([1, 900], false), ([-900, -1], false)] {
-            let mut content = Sample::asymmetric().content.clone();
             let [min, max] = travel.map(Sweep);
-            let calibration = &mut content.calibration[servo];
-            (calibration.travel_min, calibration.travel_max) = (min, max);
-            content.needed_travel[servo] = SweepRange { min, max };
-            let is_accepted = ChangedSection(content.section_bytes()).is_accepted();
+            let is_accepted = is_accepted_after(|content| {
+                let calibration = &mut content.calibration[servo];
+                (calibration.travel_min, calibration.travel_max) = (min, max);
+                content.needed_travel[servo] = SweepRange { min, max };
+            });
             assert_eq!(is_accepted, has_neutral, "{travel:?}");
         }
         let needed_travel = Sample::asymmetric().content.needed_travel[servo];
@@ -139,15 +134,11 @@ fn a_travel_must_cover_the_gaits_and_the_neutral_angle_with_tolerable_pulses() {
 
 #[test]
 fn a_section_whose_neutral_pose_is_unsafe_is_refused() {
-    for change in 0..3 {
-        let mut content = Sample::asymmetric().content.clone();
-        assert!(ChangedSection(content.section_bytes()).is_accepted());
-        match change {
-            0 => content.limits.leg.0 = i16::MAX,
-            1 => content.limits.type1.0 = i16::MAX,
-            _ => content.limits.type2.0 = i16::MAX,
-        }
-        let is_accepted = ChangedSection(content.section_bytes()).is_accepted();
-        assert!(!is_accepted, "change {change}");
-    }
+    assert!(is_accepted_after(|_| {}));
+    let changes: [fn(&mut Content); 3] = [
+        |content| content.limits.leg.0 = i16::MAX,
+        |content| content.limits.type1.0 = i16::MAX,
+        |content| content.limits.type2.0 = i16::MAX,
+    ];
+    assert_eq!(changes.map(is_accepted_after), [false; 3]);
 }

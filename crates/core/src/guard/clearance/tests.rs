@@ -120,11 +120,8 @@ fn check_errors(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
         if index < 2 && five_bar_pose.gap.x.abs() <= bound.gap_x {
             continue;
         }
-        let exact = if index < 2 && five_bar_pose.gap.x < 0.0 {
-            -exact
-        } else {
-            exact
-        };
+        let is_crossed = index < 2 && five_bar_pose.gap.x < 0.0;
+        let exact = if is_crossed { -exact } else { exact };
         let max_error = match index {
             0..2 => bound.type2,
             2 | 5 => bound.type1_left,
@@ -183,24 +180,15 @@ fn the_bounds_decide_nearly_every_pose_and_are_narrow_at_neutral() {
             .new_tree(&mut runner)
             .expect("the strategy yields a robot with poses")
             .current();
-        let decided_poses = poses
-            .iter()
-            .filter(|pose| decide_safety(&robot, pose).is_some());
-        decided_count += decided_poses.count();
+        let is_decided = |pose: &&Pose| decide_safety(&robot, pose).is_some();
+        decided_count += poses.iter().filter(is_decided).count();
         let standing_bounds = Bounds::compute(&robot, &Pose::NEUTRAL);
-        let (type2, type1) = (
-            standing_bounds.max_end_error(|end| end.type2),
-            standing_bounds.max_end_error(bounds::EndErrors::type1),
-        );
-        assert!(
-            type2 < 0.01 && type1 < 0.02,
-            "type-2 {type2}, type-1 {type1}"
-        );
-        assert!(
-            standing_bounds.sliders.iter().all(|mm| *mm < 0.05),
-            "{:?}",
-            standing_bounds.sliders
-        );
+        let type2 = standing_bounds.max_end_error(|end| end.type2);
+        let type1 = standing_bounds.max_end_error(bounds::EndErrors::type1);
+        assert!(type2 < 0.01, "type-2 {type2}, type-1 {type1}");
+        assert!(type1 < 0.02, "type-2 {type2}, type-1 {type1}");
+        let sliders = standing_bounds.sliders;
+        assert!(sliders.iter().all(|mm| *mm < 0.05), "{sliders:?}");
     }
     assert!(decided_count > 1900, "{decided_count} of 2000");
 }
@@ -212,9 +200,8 @@ fn a_sample_that_is_safe_only_in_floating_point_does_not_stand_safely() {
     let mut measurements = Measurements::paper();
     let robot = Sample::new(measurements);
     assert!(robot.stands_safely());
-    let solution = robot
-        .solve(&Pose::NEUTRAL)
-        .expect("the sample has a neutral pose");
+    let solution = robot.solve(&Pose::NEUTRAL);
+    let solution = solution.expect("the sample has a neutral pose");
     measurements.limits.stroke_max = solution.left.s.max(solution.right.s) + 1e-9;
     assert!(measurements.limits.is_safe(&solution));
     assert!(!Sample::new(measurements).stands_safely());

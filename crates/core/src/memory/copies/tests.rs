@@ -32,11 +32,8 @@ fn make_settings(robot: &Sample, n: i16) -> Settings {
 /// Saves settings as the console does, and returns them with their save number.
 fn save_settings(settings: &Settings, eeprom: &mut Eeprom) -> Settings {
     let mut saved_settings = *settings;
-    if let Some(mut record_write) = start_save(&mut saved_settings, eeprom) {
-        let mut progress = Progress::InProgress;
-        while progress == Progress::InProgress {
-            progress = record_write.advance(saved_settings.bytes(), eeprom);
-        }
+    if let Some(record_write) = start_save(&mut saved_settings, eeprom) {
+        let progress = record_write.complete(saved_settings.bytes(), eeprom);
         assert!(progress == Progress::Done, "the EEPROM is worn");
     }
     saved_settings
@@ -163,11 +160,8 @@ fn any_flipped_bit_leaves_the_last_or_the_previous_settings() {
         if settings == last_settings {
             last_count += 1;
         } else {
-            assert_eq!(
-                (settings, state),
-                (previous_settings, SavedState::OneCopy),
-                "bit {bit}"
-            );
+            let previous = (previous_settings, SavedState::OneCopy);
+            assert_eq!((settings, state), previous, "bit {bit}");
             previous_count += 1;
         }
     }
@@ -199,11 +193,8 @@ fn settings_for_other_servos_or_of_another_format_are_not_used() {
     let other_robot = robot
         .clone()
         .with_changes(|content| content.servo_hash ^= 0x0001_0000);
-    let loaded = load_settings(&other_robot, &eeprom);
-    assert_eq!(
-        loaded,
-        (Settings::for_robot(&other_robot), SavedState::Foreign)
-    );
+    let expected_loaded = (Settings::for_robot(&other_robot), SavedState::Foreign);
+    assert_eq!(load_settings(&other_robot, &eeprom), expected_loaded);
     let mut foreign_bytes = *make_settings(&robot, 1).bytes();
     foreign_bytes[0] = 2;
     save_settings(&Settings::from_bytes(foreign_bytes), &mut eeprom);
@@ -244,23 +235,17 @@ fn settings_whose_travel_does_not_cover_a_gait_are_not_used() {
 fn a_boot_gait_is_found_by_its_name_and_replaced_by_stand_if_it_no_longer_exists() {
     let (robot, mut eeprom) = robot_with_blank_memory();
     let saved_settings = save_settings(&make_settings(&robot, 1), &mut eeprom);
-    assert_eq!(
-        saved_settings.boot(&robot),
-        Boot::Gait(robot.gait_id("sway left"))
-    );
+    let boot_left = |robot: &Sample| Boot::Gait(robot.gait_id("sway left"));
+    assert_eq!(saved_settings.boot(&robot), boot_left(&robot));
     let robot_with_fewer_gaits = robot
         .clone()
         .with_changes(|content| _ = content.gaits.remove(1));
-    assert_eq!(
-        saved_settings.boot(&robot_with_fewer_gaits),
-        Boot::Gait(robot_with_fewer_gaits.gait_id("sway left"))
-    );
+    let boot = saved_settings.boot(&robot_with_fewer_gaits);
+    assert_eq!(boot, boot_left(&robot_with_fewer_gaits));
     let robot_with_fewest_gaits =
         robot_with_fewer_gaits.with_changes(|content| _ = content.gaits.remove(1));
-    assert_eq!(
-        saved_settings.boot(&robot_with_fewest_gaits),
-        Boot::Gait(GaitId::STAND)
-    );
+    let boot = saved_settings.boot(&robot_with_fewest_gaits);
+    assert_eq!(boot, Boot::Gait(GaitId::STAND));
     let mut rest_settings = saved_settings;
     rest_settings.set_boot(Boot::Rest, &robot);
     assert_eq!(rest_settings.boot(&robot), Boot::Rest);
@@ -273,14 +258,14 @@ fn a_rest_pose_is_read_until_it_is_invalidated_and_only_for_the_same_servos() {
     for sweeps in [[0, 1, -2, 30_000], [-100, 4000, 17, -32_768]] {
         let rest_pose = Pose(sweeps.map(Sweep));
         let saved_settings = Settings::for_pose(&rest_pose, &robot);
-        let mut record_write = REST_POSE_ADDRESS.start_write();
-        while record_write.advance(saved_settings.bytes(), &mut eeprom) == Progress::InProgress {}
+        let record_write = REST_POSE_ADDRESS.start_write();
+        record_write.complete(saved_settings.bytes(), &mut eeprom);
         assert_eq!(read_rest_pose(&robot, &eeprom), Some(rest_pose));
         let other_robot = robot.clone().with_changes(|content| content.servo_hash = 7);
         assert_eq!(read_rest_pose(&other_robot, &eeprom), None);
     }
-    let mut record_write = REST_POSE_ADDRESS.start_invalidation();
-    while record_write.advance(&[0; CONTENT_BYTES], &mut eeprom) == Progress::InProgress {}
+    let record_write = REST_POSE_ADDRESS.start_invalidation();
+    record_write.complete(&[0; CONTENT_BYTES], &mut eeprom);
     assert_eq!(read_rest_pose(&robot, &eeprom), None);
     let is_outside = |address: &u16| !(128..128 + RECORD_BYTES).contains(address);
     let mut addresses = eeprom.log.iter().map(|(address, ..)| address);

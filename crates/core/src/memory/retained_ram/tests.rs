@@ -95,11 +95,9 @@ fn a_stored_servo_state_survives_a_reset_but_not_a_loss_of_power() {
         }
         let unpowered_ram = ram.copy_after_reset();
         assert_eq!(begin(&unpowered_ram, Some(Cause::Power)), Restart::NONE);
-        assert_eq!(
-            begin(&unpowered_ram, Some(Cause::External)).servo_state_before,
-            None,
-            "no servo state has been stored since power-on"
-        );
+        let servo_state = begin(&unpowered_ram, Some(Cause::External)).servo_state_before;
+        let claim = "no servo state has been stored since power-on";
+        assert_eq!(servo_state, None, "{claim}");
     }
 }
 
@@ -144,11 +142,8 @@ fn a_reset_between_any_two_stores_of_begin_keeps_the_servo_state() {
         let torn_ram = ram.with_reset_after(kept_count);
         begin(&torn_ram, None);
         let restart = begin(&torn_ram.copy_after_reset(), None);
-        assert_eq!(
-            restart.servo_state_before,
-            Some(make_servo_state(5)),
-            "{kept_count} stores"
-        );
+        let expected = Some(make_servo_state(5));
+        assert_eq!(restart.servo_state_before, expected, "{kept_count} stores");
         assert!((1..=2).contains(&restart.reset_count));
         assert!(matches!(restart.cause, Cause::Watchdog | Cause::External));
     }
@@ -170,10 +165,8 @@ fn every_cause_is_determined_from_its_flag_or_from_ram() {
             mark_hung(&ram);
         }
         let restart = begin(&ram, reported_cause);
-        assert_eq!(
-            (restart.cause, restart.is_supply_suspected),
-            (expected_cause, is_supply_suspected)
-        );
+        assert_eq!(restart.cause, expected_cause);
+        assert_eq!(restart.is_supply_suspected, is_supply_suspected);
     }
 }
 

@@ -250,11 +250,8 @@ fn a_gait_brakes_along_its_cycle_before_the_move_to_another_gait_begins() {
         phase = gait.advance(phase, pace);
         assert_eq!((motion.pace(), motion.phase()), (pace, phase));
         assert_eq!(motion.pose(), &gait.pose(motion.robot.waves(), phase));
-        assert_eq!(
-            motion.gait_name(),
-            Some("swing"),
-            "the activity is that of the next target"
-        );
+        let claim = "the activity is that of the next target";
+        assert_eq!(motion.gait_name(), Some("swing"), "{claim}");
     }
     motion.advance_frame();
     assert!(motion.is_moving());
@@ -359,10 +356,8 @@ fn a_stopped_gait_restarts_at_its_first_pose() {
     while motion.is_moving() {
         motion.advance_frame();
     }
-    let first_pose = motion
-        .robot
-        .gait(motion.robot.gait_id("sway"))
-        .pose(motion.robot.waves(), 0);
+    let gait = motion.robot.gait(motion.robot.gait_id("sway"));
+    let first_pose = gait.pose(motion.robot.waves(), 0);
     assert_eq!((motion.pose(), motion.phase()), (&first_pose, 0));
 }
 

@@ -133,12 +133,9 @@ mod tests {
 
     /// Finds the two bytes that change the checksum `from` to `to`.
     fn find_bytes_between(from: Checksum, to: Checksum) -> [u8; 2] {
-        let pairs = (0..=u16::MAX).map(u16::to_le_bytes);
-        let mut matching_pairs =
-            pairs.filter(|[low, high]| from.with_byte(*low).with_byte(*high) == to);
-        matching_pairs
-            .next()
-            .expect("two bytes can change any checksum to any other")
+        let mut pairs = (0..=u16::MAX).map(u16::to_le_bytes);
+        let pair = pairs.find(|[low, high]| from.with_byte(*low).with_byte(*high) == to);
+        pair.expect("two bytes can change any checksum to any other")
     }
 
     #[test]
@@ -181,15 +178,10 @@ mod tests {
                     Checksum::compute(&bytes[CRC_RANGE_START..]),
                     target,
                 ));
-                assert!(
-                    has_other_length_with_sum(&bytes),
-                    "{length} and {other_length}"
-                );
+                let case = std::format!("{length} and {other_length}");
+                assert!(has_other_length_with_sum(&bytes), "{case}");
                 let sums = compute_prefix_checksums(&bytes[CRC_RANGE_START..]);
-                assert!(
-                    has_undetected_length(length as u16, &sums),
-                    "{length} and {other_length}"
-                );
+                assert!(has_undetected_length(length as u16, &sums), "{case}");
                 counts[usize::from(other_length > length)] += 1;
             }
         }

@@ -2,8 +2,6 @@
 
 mod report;
 
-use std::io::{self, Write};
-
 use lizard_robot::{CheckedGait, Robot};
 use lizard_tune::{
     BuiltGait, Comparison, GaitKind, ScoredParameters, Tuning, TuningError, trial_count,
@@ -84,13 +82,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let Some(comparison) = tune(&robot, &args)? else {
         return Ok(());
     };
-    let mut out = io::stdout().lock();
-    if args.json {
-        json::write_line(&mut out, &comparison)?;
-    } else {
-        report::print(&comparison, &mut out)?;
-    }
-    Ok(out.flush()?)
+    json::print_json_or_text(args.json, &comparison, || report::format(&comparison))
 }
 
 /// Searches for a gait and compares it with the given one; `None` if this process computed only a part of the search.
@@ -171,13 +163,12 @@ fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure
     };
     let kinds = GaitKind::ALL.into_iter().zip(pieces);
     let scored = kinds.flat_map(|(kind, piece)| {
-        piece
-            .into_iter()
-            .map(move |(score, parameters)| ScoredParameters {
-                kind,
-                score,
-                parameters,
-            })
+        let to_scored = move |(score, parameters)| ScoredParameters {
+            kind,
+            score,
+            parameters,
+        };
+        piece.into_iter().map(to_scored)
     });
     let best = tuning.build_best(scored.collect());
     best.map(Some).ok_or_else(|| {
@@ -204,9 +195,8 @@ mod tests {
 
     fn run_tune(arguments: &str) -> Result<Comparison, String> {
         let robot = Robot::parse(PAPER_TOML).expect("paper.toml is valid");
-        let command_line = CommandLine::try_parse_from(
-            std::iter::once("tune").chain(arguments.split_whitespace()),
-        );
+        let words = ["tune"].into_iter().chain(arguments.split_whitespace());
+        let command_line = CommandLine::try_parse_from(words);
         let args = command_line.map_err(|error| error.to_string())?.args;
         let comparison = tune(&robot, &args).map_err(|failure| failure.to_string())?;
         Ok(comparison.expect("one process computes all parts"))
@@ -221,26 +211,17 @@ mod tests {
         assert!(tuned.speeds[0] > 1.15 * walk.speeds[0], "{comparison:?}");
         assert!(comparison.faster_count >= 195, "{comparison:?}");
         // The printed text can be appended to a robot.toml, and its gait moves as predicted.
-        let mut printed = Vec::new();
-        report::print(&comparison, &mut printed).expect("writing to a vector succeeds");
-        let printed = String::from_utf8(printed).expect("the output is UTF-8");
-        let robot =
-            Robot::parse(&format!("{PAPER_TOML}\n{printed}")).expect("the printed gait is valid");
-        let gait = robot
-            .gait("tuned")
-            .expect("the printed gait is in the file");
-        let forward = robot
-            .predict(gait)
-            .forward
-            .expect("the contact model predicts the distance");
-        assert!(
-            (forward / gait.period() - tuned.predicted).abs() < 0.01,
-            "{forward}"
-        );
-        assert!(
-            include_str!("../../../../../docs/twin.md").contains(&format!("```text\n{printed}```")),
-            "docs/twin.md does not quote\n{printed}"
-        );
+        let printed = report::format(&comparison);
+        let robot = Robot::parse(&format!("{PAPER_TOML}\n{printed}"));
+        let robot = robot.expect("the printed gait is valid");
+        let gait = robot.gait("tuned").expect("the printed gait exists");
+        let forward = robot.predict(gait).forward;
+        let forward = forward.expect("the contact model predicts the distance");
+        let speed = forward / gait.period();
+        assert!((speed - tuned.predicted).abs() < 0.01, "{forward}");
+        let docs = include_str!("../../../../../docs/twin.md");
+        let is_quoted = docs.contains(&format!("```text\n{printed}```"));
+        assert!(is_quoted, "docs/twin.md does not quote\n{printed}");
     }
 
     #[test]

@@ -1,14 +1,12 @@
 //! The result of `lizard tune` as text.
 
-use std::io::{self, Write};
+use std::fmt::Write as _;
 
 use lizard_tune::{Comparison, SPREAD_TEXT};
 
-/// Prints the comparison as a part of a robot.toml: everything except the gait's table is a comment.
-///
-/// # Errors
-/// Fails if writing fails.
-pub fn print(comparison: &Comparison, out: &mut impl Write) -> io::Result<()> {
+/// Formats the comparison as a part of a robot.toml: everything except the gait's table is a comment.
+pub fn format(comparison: &Comparison) -> String {
+    let mut text = String::new();
     let Comparison {
         unit,
         robot_count,
@@ -16,43 +14,44 @@ pub fn print(comparison: &Comparison, out: &mut impl Write) -> io::Result<()> {
         ..
     } = comparison;
     let (gait, tuned) = (&comparison.gait.name, &comparison.tuned.name);
-    writeln!(
-        out,
+    _ = writeln!(
+        text,
         "# {unit} at servo speeds up to {:.1} deg/s; the last three columns: {robot_count} random robots and floors\n#",
         comparison.rate
-    )?;
-    let name_width = [gait, tuned]
-        .map(|name| name.len())
-        .into_iter()
-        .fold(8, usize::max);
-    writeln!(
-        out,
+    );
+    let name_width = gait.len().max(tuned.len()).max(8);
+    _ = writeln!(
+        text,
         "# {:name_width$}  cycle, s   deg/s  least margin          ideal   SG-90     5 %    50 %    95 %",
         "gait"
-    )?;
+    );
     for row in [&comparison.gait, &comparison.tuned] {
         let [low, median, high] = row.speeds;
         let (margin_name, margin) = row.margin;
-        writeln!(
-            out,
+        _ = writeln!(
+            text,
             "# {:name_width$}  {:8.2}  {:6.1}  {margin:.3} {margin_name:10}  {:9.1}  {:6.1}  {low:6.1}  {median:6.1}  {high:6.1}",
             row.name, row.period, row.rate, row.predicted, row.sg90
-        )?;
+        );
     }
-    writeln!(out, "#")?;
+    _ = writeln!(text, "#");
     if comparison.is_better() {
-        writeln!(
-            out,
+        _ = writeln!(
+            text,
             "# {tuned} is faster than {gait} on {faster_count} of {robot_count} robots; its 5 % quantile is {:.0} % higher.",
             100.0 * comparison.gain()
-        )?;
+        );
     } else {
-        writeln!(
-            out,
+        _ = writeln!(
+            text,
             "# The search found no gait with a higher 5 % quantile than {gait}. The best one is\n\
              # faster on {faster_count} of {robot_count} robots:"
-        )?;
+        );
     }
-    writeln!(out, "# At random: {}.\n", SPREAD_TEXT.replace('\n', "\n# "))?;
-    write!(out, "{}", comparison.fragment)
+    _ = writeln!(
+        text,
+        "# At random: {}.\n",
+        SPREAD_TEXT.replace('\n', "\n# ")
+    );
+    text + &comparison.fragment
 }

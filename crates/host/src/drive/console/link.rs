@@ -141,11 +141,8 @@ impl<P: Read + Write> Link<P> {
     /// # Errors
     /// Fails if the port is gone.
     pub fn send(&mut self, line: &str) -> Result<(), LinkError> {
-        let bytes = format!("{line}\n");
-        self.port
-            .write_all(bytes.as_bytes())
-            .map_err(to_link_error)?;
-        self.port.flush().map_err(to_link_error)
+        let sent = self.port.write_all(format!("{line}\n").as_bytes());
+        sent.and_then(|()| self.port.flush()).map_err(to_link_error)
     }
 
     /// Sends a line and waits for its answer: the first line that does not begin with `#`.
@@ -255,10 +252,9 @@ impl<P: Read + Write> Console for Link<P> {
 
 /// Converts an operating system error, which for an open port nearly always means that the port is gone.
 fn to_link_error(error: io::Error) -> LinkError {
-    if is_port_gone(&error) {
-        LinkError::Gone
-    } else {
-        LinkError::Io(error)
+    match is_port_gone(&error) {
+        true => LinkError::Gone,
+        false => LinkError::Io(error),
     }
 }
 
@@ -305,6 +301,13 @@ mod tests {
             Link::new(port, timeouts)
         }
 
+        /// Connects to a lizard, whose banner precedes the pieces, and reads the banner.
+        fn connect_lizard(pieces: &[Option<&'static str>]) -> Link<Self> {
+            let mut link = Self::connect(&[&[Some(BANNER_LINE)][..], pieces].concat());
+            link.wait_for_robot().expect("the device is a lizard");
+            link
+        }
+
         fn release_piece(&mut self) {
             match self.pieces.pop_front() {
                 Some(Some(piece)) => self.ready_bytes.extend(piece.bytes()),
@@ -343,27 +346,15 @@ mod tests {
     const BANNER_LINE: &str = "# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands\r\n";
 
     #[test]
-    fn a_banner_directly_after_a_partial_line_is_found() {
-        for cut_line in ["", "ok wal", "# t=12 pose=138.5", "\u{fffd}x"] {
-            let bytes = format!("{cut_line}# lizard 0.2.0 robot paper 1\r\n");
-            let bytes: &'static str = bytes.leak();
+    fn a_banner_after_noise_or_a_partial_line_is_found() {
+        let noise = "\u{fffd}\x00x\n# t=7 po\r\n";
+        for sent in ["", "ok wal", "# t=12 pose=138.5", "\u{fffd}x", noise] {
+            let bytes: &'static str = format!("{sent}# lizard 0.2.0 robot paper 1a\r\n").leak();
             let mut link = ScriptedPort::connect(&[Some(bytes)]);
-            let banner = link.wait_for_robot().expect("the robot sends a banner");
-            assert_eq!(
-                banner.as_deref(),
-                Some("# lizard 0.2.0 robot paper 1"),
-                "{cut_line:?}"
-            );
+            let banner = link.wait_for_robot().expect("the device is a lizard");
+            let expected = Some("# lizard 0.2.0 robot paper 1a");
+            assert_eq!(banner.as_deref(), expected, "{sent:?}");
         }
-    }
-
-    #[test]
-    fn a_banner_after_noise_is_found() {
-        let mut link = ScriptedPort::connect(&[Some(
-            "\u{fffd}\x00x\n# t=7 po\r\n# lizard 0.2.0 robot paper 1a\r\n",
-        )]);
-        let banner = link.wait_for_robot().expect("the device is a lizard");
-        assert_eq!(banner.as_deref(), Some("# lizard 0.2.0 robot paper 1a"));
     }
 
     #[test]
@@ -377,27 +368,19 @@ mod tests {
     #[test]
     fn the_error_quotes_another_device_or_reports_silence() {
         let get_error = |pieces: &[Option<&'static str>]| {
-            let error = ScriptedPort::connect(pieces)
-                .wait_for_robot()
-                .expect_err("the device must be refused");
-            error.to_string()
+            let result = ScriptedPort::connect(pieces).wait_for_robot();
+            result.expect_err("the device must be refused").to_string()
         };
-        let other_device_message = get_error(&[Some("start\nGrbl 1.1\n"), Some("error:20\n")]);
-        assert!(
-            other_device_message
-                .starts_with("this is not a lizard: expected `# lizard ...`, got `start`"),
-            "{other_device_message}"
-        );
+        let message = get_error(&[Some("start\nGrbl 1.1\n"), Some("error:20\n")]);
+        let start = "this is not a lizard: expected `# lizard ...`, got `start`";
+        assert!(message.starts_with(start), "{message}");
         assert!(get_error(&[]).starts_with("no response"));
     }
 
     #[test]
     fn the_answer_is_the_first_line_that_is_not_a_note() {
-        let mut link = ScriptedPort::connect(&[
-            Some(BANNER_LINE),
-            Some("# boot stand\r\n# deadman 0\r\nok cal\r\n"),
-        ]);
-        link.wait_for_robot().expect("the device is a lizard");
+        let answer = Some("# boot stand\r\n# deadman 0\r\nok cal\r\n");
+        let mut link = ScriptedPort::connect_lizard(&[answer]);
         let reply = link.ask("cal").expect("the robot answers");
         assert_eq!(reply.notes, ["# boot stand", "# deadman 0"]);
         assert_eq!(reply.answer, "ok cal");
@@ -405,22 +388,16 @@ mod tests {
 
     #[test]
     fn the_refusal_names_the_line_and_the_reason() {
-        let mut link =
-            ScriptedPort::connect(&[Some(BANNER_LINE), Some("err 3 trim must be -20..20\r\n")]);
-        link.wait_for_robot().expect("the device is a lizard");
-        let error = link
-            .command("trim 1 50")
-            .expect_err("the trim must be refused");
-        assert_eq!(
-            error.to_string(),
-            "the robot refuses `trim 1 50`: 3 trim must be -20..20"
-        );
+        let answer = Some("err 3 trim must be -20..20\r\n");
+        let result = ScriptedPort::connect_lizard(&[answer]).command("trim 1 50");
+        let message = result.expect_err("the trim must be refused").to_string();
+        let expected = "the robot refuses `trim 1 50`: 3 trim must be -20..20";
+        assert_eq!(message, expected);
     }
 
     #[test]
     fn silence_and_a_missing_port_are_different_errors() {
-        let mut link = ScriptedPort::connect(&[Some(BANNER_LINE), Some("# a note\r\n"), None]);
-        link.wait_for_robot().expect("the device is a lizard");
+        let mut link = ScriptedPort::connect_lizard(&[Some("# a note\r\n"), None]);
         assert!(matches!(link.ask("walk"), Err(LinkError::NoAnswer(line)) if line == "walk"));
         assert!(matches!(link.ask("walk"), Err(LinkError::Gone)));
     }
@@ -428,12 +405,8 @@ mod tests {
     #[test]
     fn an_endless_line_is_truncated_and_control_characters_are_replaced() {
         let mut link = ScriptedPort::connect(&[]);
-        for _ in 0..2000 {
-            link.push_byte(b'a');
-        }
-        link.push_byte(b'\n');
-        for byte in b"\x1b[2Jhi\r\n\r\n\n" {
-            link.push_byte(*byte);
+        for byte in ("a".repeat(2000) + "\n\x1b[2Jhi\r\n\r\n\n").bytes() {
+            link.push_byte(byte);
         }
         assert_eq!(link.lines[0].len(), MAX_LINE_BYTES);
         assert_eq!(link.lines[1], "\u{fffd}[2Jhi");

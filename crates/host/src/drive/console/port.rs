@@ -166,57 +166,55 @@ mod tests {
         open(name).expect_err("the port must not open")
     }
 
+    /// Creates a file, which is not a port; also returns its name.
+    fn create_file() -> (tempfile::NamedTempFile, String) {
+        let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
+        let name = file.path().display().to_string();
+        (file, name)
+    }
+
     #[test]
     fn a_missing_port_and_an_ordinary_file_have_different_errors() {
         let message = open_error("/dev/no-such-port").to_string();
         assert!(message.starts_with("/dev/no-such-port does not exist; USB serial ports"));
-        let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
-        let name = file.path().display().to_string();
-        assert_eq!(
-            open_error(&name).to_string(),
-            format!("{name} is not a serial port")
-        );
+        let (_file, name) = create_file();
+        let message = open_error(&name).to_string();
+        assert_eq!(message, format!("{name} is not a serial port"));
         assert_eq!(crate::Failure::from(open_error(&name)).exit_code(), 2);
     }
 
-    /// Starts a program that has `file` open for some seconds.
+    /// Tries to open a file while another program has it open for some seconds; returns the file's name, that program
+    /// and the error.
     #[cfg(target_os = "linux")]
-    fn hold_open(file: &tempfile::NamedTempFile, seconds: &str) -> std::process::Child {
-        std::process::Command::new("sleep")
+    fn open_held(seconds: &str) -> (String, std::process::Child, String) {
+        let (file, name) = create_file();
+        let process = std::process::Command::new("sleep")
             .arg(seconds)
             .stdin(file.reopen().expect("the file can be reopened"))
             .spawn()
-            .expect("`sleep` starts")
+            .expect("`sleep` starts");
+        let message = open_error(&name).to_string();
+        (name, process, message)
     }
 
     #[cfg(target_os = "linux")]
     #[test]
     fn open_waits_for_a_program_that_is_about_to_close_the_port() {
-        let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
-        let name = file.path().display().to_string();
-        let mut process = hold_open(&file, "0.1");
-        let message = open_error(&name).to_string();
-        TIME_LIMIT
-            .wait_for_exit(&mut process)
-            .expect("the process ends");
+        let (name, mut process, message) = open_held("0.1");
+        let exit = TIME_LIMIT.wait_for_exit(&mut process);
+        exit.expect("the process ends");
         assert_eq!(message, format!("{name} is not a serial port"));
     }
 
     #[cfg(target_os = "linux")]
     #[test]
     fn the_error_names_the_program_that_has_the_port_open() {
-        let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
-        let name = file.path().display().to_string();
-        let mut process = hold_open(&file, "60");
-        let message = open_error(&name).to_string();
+        let (name, mut process, message) = open_held("60");
         process.kill().expect("the process can be killed");
-        TIME_LIMIT
-            .wait_for_exit(&mut process)
-            .expect("the process ends");
-        let id = process.id();
-        assert_eq!(
-            message,
-            format!("{name} is open in sleep (process {id}); close that program and try again")
-        );
+        let exit = TIME_LIMIT.wait_for_exit(&mut process);
+        exit.expect("the process ends");
+        let holder = format!("sleep (process {})", process.id());
+        let expected = format!("{name} is open in {holder}; close that program and try again");
+        assert_eq!(message, expected);
     }
 }

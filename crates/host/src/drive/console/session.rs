@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use lizard_core::console::text::Text;
 
-use super::deadman::{self, Deadman};
+use super::deadman::{self, Deadman, DeadmanLine};
 use super::link::BANNER_START;
 use super::recorder::Event;
 use crate::Failure;
@@ -48,7 +48,7 @@ enum QueuedLine {
     /// A user's line.
     Line(String),
     /// The program's own line about `deadman`.
-    Deadman(deadman::DeadmanLine),
+    Deadman(DeadmanLine),
 }
 
 impl Request {
@@ -163,21 +163,18 @@ impl Session {
             Some(deadman) => deadman.plan_lines(line),
             None => (&[][..], &[][..]),
         };
-        self.queue
-            .extend(before.iter().copied().map(QueuedLine::Deadman));
+        let to_queued = |line: &DeadmanLine| QueuedLine::Deadman(*line);
+        self.queue.extend(before.iter().map(to_queued));
         self.queue.push_back(QueuedLine::Line(line.to_owned()));
-        self.queue
-            .extend(after.iter().copied().map(QueuedLine::Deadman));
+        self.queue.extend(after.iter().map(to_queued));
     }
 
     /// Returns the line that restores the robot's own `deadman` before the program ends, so that the robot continues
     /// its gait; `None` if `deadman` is not set.
     pub fn restore_deadman(&mut self) -> Option<String> {
-        let deadman = self
-            .deadman
-            .as_mut()
-            .filter(|deadman| deadman.is_overridden)?;
-        Some(deadman.apply_line(deadman::DeadmanLine::Restore))
+        let deadman = self.deadman.as_mut()?;
+        let is_overridden = deadman.is_overridden;
+        is_overridden.then(|| deadman.apply_line(DeadmanLine::Restore))
     }
 
     /// Makes the next `status` due at once; queued lines still come first.
@@ -187,9 +184,7 @@ impl Session {
 
     /// True while `deadman` is set because the robot walks or is about to walk.
     pub fn is_driven(&self) -> bool {
-        self.deadman
-            .as_ref()
-            .is_some_and(|deadman| deadman.is_overridden)
+        matches!(&self.deadman, Some(deadman) if deadman.is_overridden)
     }
 
     /// Stops the robot. Queued lines are dropped, because they could start it again.
@@ -219,16 +214,14 @@ impl Session {
         if self.pending_request.is_some() || now < self.late_answers_until {
             return None;
         }
-        let (request, line) = if self.is_watch_due {
-            self.is_watch_due = false;
+        let (request, line) = if std::mem::take(&mut self.is_watch_due) {
             (Request::Watch, "watch 1".to_owned())
-        } else if let Some((request, line)) = self.pop_queued_line() {
-            (request, line)
+        } else if let Some(queued) = self.pop_queued_line() {
+            queued
         } else if self.polls_status && now >= self.next_status_time {
-            let interval = if self.is_driven() {
-                deadman::LINE_INTERVAL
-            } else {
-                STATUS_INTERVAL
+            let interval = match self.is_driven() {
+                true => deadman::LINE_INTERVAL,
+                false => STATUS_INTERVAL,
             };
             self.next_status_time = now + interval;
             (Request::Status, "status".to_owned())
@@ -277,13 +270,9 @@ impl Session {
     /// Queues the line that restores the robot's own `deadman` if the robot neither walks nor is about to walk.
     fn end_driving(&mut self) {
         let is_walking = self.status.as_ref().is_some_and(Status::is_moving);
-        if let Some(deadman) = &self.deadman
-            && deadman.is_overridden
-            && !is_walking
-            && self.queue.is_empty()
-        {
-            self.queue
-                .push_back(QueuedLine::Deadman(deadman::DeadmanLine::Restore));
+        if self.is_driven() && !is_walking && self.queue.is_empty() {
+            let restore = QueuedLine::Deadman(DeadmanLine::Restore);
+            self.queue.push_back(restore);
         }
     }
 
@@ -292,10 +281,8 @@ impl Session {
         let visible_line = Some(line.to_owned());
         let is_stop_refused = self.unanswered_stop.is_some() && is_stop_refusal(line);
         if (line == "ok stop" || is_stop_refused) && !self.is_stop_pending() {
-            return self
-                .handle_stop_answer(line)
-                .then_some(visible_line)
-                .flatten();
+            let is_visible = self.handle_stop_answer(line);
+            return visible_line.filter(|_| is_visible);
         }
         if let (Some((Request::Deadman(_), _)), Some(deadman)) =
             (&self.pending_request, &mut self.deadman)
@@ -316,22 +303,17 @@ impl Session {
         self.is_silent = false;
         let status = Status::parse(line);
         self.status = status.clone().or(self.status.take());
-        match self
-            .pending_request
-            .take_if(|(request, _)| request.is_answered_by(line))
-        {
+        let is_answered = |(request, _): &mut (Request, Instant)| request.is_answered_by(line);
+        match self.pending_request.take_if(is_answered) {
             Some((Request::Status, _)) if status.is_some() => {
                 self.events.push(Event::Status(line.to_owned()));
                 self.end_driving();
                 return None;
             }
-            Some((Request::Deadman(_), _)) => {
-                if line.starts_with("err ") {
-                    return self.drop_queued_lines();
-                }
-                return None;
+            Some((Request::Deadman(_), _)) if line.starts_with("err ") => {
+                return self.drop_queued_lines();
             }
-            Some((Request::Watch, _)) => return None,
+            Some((Request::Deadman(_) | Request::Watch, _)) => return None,
             Some((Request::Line(sent_line), _)) if line.starts_with("err ") => {
                 self.record_failure(sent_line, line)
             }
@@ -375,10 +357,9 @@ impl Session {
             && elapsed_since(stop.request_time) >= SILENCE_TIMEOUT
         {
             stop.is_reported = true;
-            return Some(
-                "(no answer: the robot may still move; stop is repeated until it answers)"
-                    .to_owned(),
-            );
+            let message =
+                "(no answer: the robot may still move; stop is repeated until it answers)";
+            return Some(message.to_owned());
         }
         let is_overdue =
             |(request, start): &mut (Request, Instant)| elapsed_since(*start) >= request.timeout();
@@ -411,9 +392,9 @@ impl Session {
         let Some((line, reason)) = &self.first_failure else {
             return Ok(());
         };
+        let (failed_count, count) = (self.failed_count, self.user_line_count);
         Err(Failure::Operation(format!(
-            "the robot did not accept {} of {} lines, the first `{line}`: {reason}",
-            self.failed_count, self.user_line_count
+            "the robot did not accept {failed_count} of {count} lines, the first `{line}`: {reason}"
         )))
     }
 

@@ -46,11 +46,8 @@ pub enum ChoiceError {
 /// Returns this machine's USB serial ports, sorted by name. Other ports, such as a mainboard's, are used only if
 /// the user names them.
 pub fn list() -> Vec<UsbPort> {
-    let mut ports: Vec<UsbPort> = serialport::available_ports()
-        .unwrap_or_default()
-        .into_iter()
-        .filter_map(to_usb_port)
-        .collect();
+    let ports = serialport::available_ports().unwrap_or_default();
+    let mut ports: Vec<UsbPort> = ports.into_iter().filter_map(to_usb_port).collect();
     ports.sort_by(|a, b| a.name.cmp(&b.name));
     ports
 }
@@ -127,53 +124,39 @@ mod tests {
 
     fn choose_from(ports: &[(&str, u16)]) -> Result<String, String> {
         let ports: Vec<UsbPort> = ports.iter().map(|(name, id)| port(name, *id)).collect();
-        choose(&ports, "console")
-            .map(|port| port.to_string())
-            .map_err(|error| error.to_string())
+        let port = choose(&ports, "console").map_err(|error| error.to_string())?;
+        Ok(port.to_string())
     }
 
     #[test]
-    fn the_only_uno_among_other_devices_is_chosen() {
-        assert_eq!(
-            choose_from(&[
-                ("ttyUSB0", 0x0403),
-                ("ttyACM0", 0x2341),
-                ("ttyACM1", 0x1546)
-            ]),
-            Ok("/dev/ttyACM0 (Arduino Uno)".to_owned())
-        );
-        assert_eq!(
-            choose_from(&[("ttyUSB0", 0x0403), ("ttyUSB1", 0x1a86)]),
-            Ok("/dev/ttyUSB1".to_owned())
-        );
-    }
-
-    #[test]
-    fn the_only_port_is_chosen_with_any_chip() {
-        assert_eq!(
-            choose_from(&[("ttyUSB0", 0x0403)]),
-            Ok("/dev/ttyUSB0".to_owned())
-        );
+    fn the_only_uno_or_the_only_port_with_any_chip_is_chosen() {
+        let other_port = ("ttyUSB0", 0x0403);
+        for (ports, chosen) in [
+            (
+                &[other_port, ("ttyACM0", 0x2341), ("ttyACM1", 0x1546)][..],
+                "ttyACM0 (Arduino Uno)",
+            ),
+            (&[other_port, ("ttyUSB1", 0x1a86)][..], "ttyUSB1"),
+            (&[other_port][..], "ttyUSB0"),
+        ] {
+            assert_eq!(choose_from(ports), Ok(format!("/dev/{chosen}")));
+        }
     }
 
     #[test]
     fn errors_for_no_port_and_several_ports_name_the_remedy() {
         let message = choose_from(&[]).expect_err("the choice must fail without a port");
-        assert!(
-            message.contains("carries data") && message.contains("lizard console /dev/ttyACM0")
-        );
-        assert_eq!(
-            choose_from(&[
-                ("ttyACM0", 0x2341),
-                ("ttyUSB0", 0x1a86),
-                ("ttyUSB1", 0x0403)
-            ]),
-            Err(
-                "several boards found: /dev/ttyACM0 (Arduino Uno), /dev/ttyUSB0. Select one: \
-                 lizard console /dev/ttyACM0"
-                    .to_owned()
-            )
-        );
+        for part in ["carries data", "lizard console /dev/ttyACM0"] {
+            assert!(message.contains(part), "{message}");
+        }
+        let ports = [
+            ("ttyACM0", 0x2341),
+            ("ttyUSB0", 0x1a86),
+            ("ttyUSB1", 0x0403),
+        ];
+        let message = "several boards found: /dev/ttyACM0 (Arduino Uno), /dev/ttyUSB0. Select one: \
+                       lizard console /dev/ttyACM0";
+        assert_eq!(choose_from(&ports), Err(message.to_owned()));
         assert!(choose_from(&[("ttyUSB0", 1), ("ttyUSB1", 2)]).is_err());
     }
 }

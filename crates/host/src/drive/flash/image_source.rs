@@ -77,13 +77,9 @@ mod tests {
     fn the_error_names_a_file_that_is_not_an_image() {
         let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
         std::fs::write(file.path(), "[servo]\n").expect("the file can be written");
-        let message = read_hex_image(file.path())
-            .expect_err("a TOML file must be refused")
-            .to_string();
+        let failure = read_hex_image(file.path()).expect_err("a TOML file must be refused");
         let name = file.path().display();
-        assert_eq!(
-            message,
-            format!("{name}: line 1 is not Intel HEX: missing start code ':'")
-        );
+        let expected = format!("{name}: line 1 is not Intel HEX: missing start code ':'");
+        assert_eq!(failure.to_string(), expected);
     }
 }

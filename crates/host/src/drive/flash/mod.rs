@@ -198,12 +198,11 @@ fn to_failure(error: UploadError) -> Failure {
 fn format_summary(counts: PageCounts, duration: Duration) -> String {
     let [written, kept] = [counts.written, counts.kept].map(|pages| pages * PAGE_BYTES);
     let seconds = duration.as_secs_f64();
-    match written {
-        0 => format!("nothing to write: all {kept} bytes are correct; {seconds:.1} s"),
-        _ => {
-            format!("{written} bytes written and verified, {kept} already correct; {seconds:.1} s")
-        }
-    }
+    let text = match written {
+        0 => format!("nothing to write: all {kept} bytes are correct"),
+        _ => format!("{written} bytes written and verified, {kept} already correct"),
+    };
+    format!("{text}; {seconds:.1} s")
 }
 
 /// Waits for the firmware's first line and returns it, or a fixed text if the firmware answers without one.
@@ -223,14 +222,10 @@ mod tests {
             let duration = Duration::from_millis(1240);
             format_summary(PageCounts { written, kept }, duration)
         };
-        assert_eq!(
-            summarise(2, 210),
-            "256 bytes written and verified, 26880 already correct; 1.2 s"
-        );
-        assert_eq!(
-            summarise(0, 212),
-            "nothing to write: all 27136 bytes are correct; 1.2 s"
-        );
+        let partial_text = "256 bytes written and verified, 26880 already correct; 1.2 s";
+        assert_eq!(summarise(2, 210), partial_text);
+        let unchanged_text = "nothing to write: all 27136 bytes are correct; 1.2 s";
+        assert_eq!(summarise(0, 212), unchanged_text);
     }
 
     fn port(name: &str, vendor_id: u16) -> UsbPort {
@@ -253,14 +248,12 @@ mod tests {
     #[test]
     fn no_port_and_several_ports_are_errors_that_name_the_remedy() {
         let choice_error = |ports: &[UsbPort]| {
-            let error =
-                choose_port(ports).expect_err("the choice must fail unless there is one port");
-            error.to_string()
+            let failure = choose_port(ports).expect_err("the choice must fail");
+            failure.to_string()
         };
         assert!(choice_error(&[]).ends_with("lizard flash /dev/ttyACM0"));
-        assert_eq!(
-            choice_error(&[port("COM3", 0x2341), port("COM4", 0x2341)]),
-            "several boards found: COM3, COM4. Select one: lizard flash COM3"
-        );
+        let ports = ["COM3", "COM4"].map(|name| port(name, 0x2341));
+        let message = "several boards found: COM3, COM4. Select one: lizard flash COM3";
+        assert_eq!(choice_error(&ports), message);
     }
 }

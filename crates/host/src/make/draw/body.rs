@@ -33,12 +33,8 @@ pub struct Sheet<Projection> {
 impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
     /// Draws a bar between two points.
     pub fn draw_bar(&self, start: Vector, end: Vector, colour: &str, width_mm: f64) -> Line {
-        line(
-            (self.project)(start),
-            (self.project)(end),
-            colour,
-            width_mm * self.pixels_per_mm,
-        )
+        let [start, end] = [start, end].map(&self.project);
+        line(start, end, colour, width_mm * self.pixels_per_mm)
     }
 
     /// Draws a joint: a white disc.
@@ -48,11 +44,8 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
 
     /// Draws a disc with an edge.
     pub fn draw_disc(&self, point: Vector, radius_mm: f64, fill: &str) -> Circle {
-        add_outline(
-            circle((self.project)(point), radius_mm * self.pixels_per_mm, fill),
-            DARK,
-            0.6 * self.pixels_per_mm,
-        )
+        let disc = circle((self.project)(point), radius_mm * self.pixels_per_mm, fill);
+        add_outline(disc, DARK, 0.6 * self.pixels_per_mm)
     }
 
     /// Draws a rectangle that turns with the robot, from its centre, half its size and its corner radius, mm.
@@ -66,24 +59,15 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
         let (x, y) = (self.project)(centre);
         let [half_width, half_height] =
             [half_size.x, half_size.y].map(|half| half * self.pixels_per_mm);
-        let shape = rectangle(
-            (x - half_width, y - half_height),
-            (2.0 * half_width, 2.0 * half_height),
-            fill,
-        )
-        .set("rx", round_hundredths(corner_radius * self.pixels_per_mm));
+        let corner = (x - half_width, y - half_height);
+        let mut shape = rectangle(corner, (2.0 * half_width, 2.0 * half_height), fill)
+            .set("rx", round_hundredths(corner_radius * self.pixels_per_mm));
         let svg_rotation_deg = round_hundredths(-self.rotation_deg);
-        match svg_rotation_deg == 0.0 {
-            true => Group::new().add(shape),
-            false => Group::new().add(shape.set(
-                "transform",
-                format!(
-                    "rotate({svg_rotation_deg} {} {})",
-                    round_hundredths(x),
-                    round_hundredths(y)
-                ),
-            )),
+        if svg_rotation_deg != 0.0 {
+            let [x, y] = [x, y].map(round_hundredths);
+            shape = shape.set("transform", format!("rotate({svg_rotation_deg} {x} {y})"));
         }
+        Group::new().add(shape)
     }
 
     /// Adds the leg parts beside and below the plate to `group`.
@@ -106,22 +90,14 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
     /// Adds the plate and its servos to `group`.
     pub fn draw_plate(&self, mut group: Group, plate: &Plate) -> Group {
         let centre = Vector::default();
-        let half_size_with = |margin: f64| plate.half_size + Vector::new(margin, margin);
         for (margin, colour) in [(EDGE_WIDTH_MM, EDGE_COLOUR), (0.0, PLATE_COLOUR)] {
+            let arm_width = 2.0 * (plate.arm_half_width + margin);
             for [start, end] in plate.arms.as_flattened() {
-                group = group.add(self.draw_bar(
-                    *start,
-                    *end,
-                    colour,
-                    2.0 * (plate.arm_half_width + margin),
-                ));
+                group = group.add(self.draw_bar(*start, *end, colour, arm_width));
             }
-            group = group.add(self.draw_rectangle(
-                centre,
-                half_size_with(margin),
-                plate.corner_radius + margin,
-                colour,
-            ));
+            let half_size = plate.half_size + Vector::new(margin, margin);
+            let corner_radius = plate.corner_radius + margin;
+            group = group.add(self.draw_rectangle(centre, half_size, corner_radius, colour));
         }
         for (case_centre, colour) in plate.case_centres.into_iter().zip(SERVO_COLOURS) {
             let case = self.draw_rectangle(case_centre, plate.case_size * 0.5, 1.3, colour);
@@ -137,28 +113,27 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
         shafts: [Vector; 4],
         legs: &[LegPoints; 4],
     ) -> Group {
-        for (servo, leg) in legs.iter().enumerate() {
+        for ((leg, shaft), colour) in legs.iter().zip(shafts).zip(SERVO_COLOURS) {
             let [servo_arm_tip, crank_joint] = leg.strut_anchors;
-            group = group.add(self.draw_bar(leg.pivots[0], crank_joint, SERVO_COLOURS[servo], 3.2));
+            group = group.add(self.draw_bar(leg.pivots[0], crank_joint, colour, 3.2));
             for (pivot, joint) in leg.pivots.into_iter().zip(leg.joints) {
                 group = group
-                    .add(self.draw_bar(pivot, joint, SERVO_COLOURS[servo], 3.2))
+                    .add(self.draw_bar(pivot, joint, colour, 3.2))
                     .add(self.draw_joint(pivot, 1.7))
                     .add(self.draw_joint(joint, 1.7));
             }
             group = group
                 .add(self.draw_bar(servo_arm_tip, crank_joint, STRUT_COLOUR, 1.6))
                 .add(self.draw_joint(crank_joint, 1.2))
-                .add(self.draw_bar(shafts[servo], servo_arm_tip, SERVO_COLOURS[servo], 3.0));
+                .add(self.draw_bar(shaft, servo_arm_tip, colour, 3.0));
         }
         group
     }
 
     /// Adds the screws that hold the struts to the servo arms. They lie above all other parts.
     pub fn draw_strut_screws(&self, group: Group, legs: &[LegPoints; 4]) -> Group {
-        let screws = legs
-            .iter()
-            .map(|leg| self.draw_joint(leg.strut_anchors[0], 1.2));
+        let anchors = legs.iter().map(|leg| leg.strut_anchors[0]);
+        let screws = anchors.map(|anchor| self.draw_joint(anchor, 1.2));
         screws.fold(group, Group::add)
     }
 }

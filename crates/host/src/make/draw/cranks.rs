@@ -41,11 +41,9 @@ const SHAFT_TO_CASE_END_MM: f64 = 6.0;
 
 /// Draws the cranks of a robot at their neutral angles, as SVG text.
 pub fn draw_cranks(robot: &Robot) -> String {
-    let mut group = draw_chassis(robot);
-    for servo in 0..4 {
-        group = group.add(draw_crank(robot, servo));
-    }
-    group = group.add(draw_example(robot)).add(draw_compass_rose());
+    let cranks = (0..4).map(|servo| draw_crank(robot, servo));
+    let group = cranks.fold(draw_chassis(robot), Group::add);
+    let group = group.add(draw_example(robot)).add(draw_compass_rose());
     render_svg(PAGE_SIZE, group)
 }
 
@@ -73,10 +71,8 @@ fn compute_scale(robot: &Robot) -> f64 {
 
 /// Returns the position on the page of a point in the chassis frame.
 fn to_page_point(point: Vector, scale: f64) -> (f64, f64) {
-    (
-        ROBOT_CENTRE.0 + scale * point.x,
-        ROBOT_CENTRE.1 - scale * point.y,
-    )
+    let (x, y) = ROBOT_CENTRE;
+    (x + scale * point.x, y - scale * point.y)
 }
 
 /// Returns the point at a distance and in a direction (degrees counter-clockwise) from another point, on the page.
@@ -85,84 +81,54 @@ fn offset_point(start: (f64, f64), degrees: f64, distance: f64) -> (f64, f64) {
     (start.0 + distance * cos, start.1 - distance * sin)
 }
 
-/// Draws an arc of a circle; angles count counter-clockwise.
-fn draw_arc(
-    centre: (f64, f64),
-    radius: f64,
-    start_deg: f64,
-    end_deg: f64,
-    colour: &str,
-) -> Polyline {
+/// Draws a dark arc of a circle; angles count counter-clockwise.
+fn draw_arc(centre: (f64, f64), radius: f64, [start_deg, end_deg]: [f64; 2]) -> Polyline {
     const SEGMENT_COUNT: usize = 40;
-    let points: Vec<(f64, f64)> = (0..=SEGMENT_COUNT)
-        .map(|index| {
-            let fraction = index as f64 / SEGMENT_COUNT as f64;
-            offset_point(centre, start_deg + (end_deg - start_deg) * fraction, radius)
-        })
-        .collect();
-    curve(&points, colour, 1.6)
+    let points = (0..=SEGMENT_COUNT).map(|index| {
+        let fraction = index as f64 / SEGMENT_COUNT as f64;
+        offset_point(centre, start_deg + (end_deg - start_deg) * fraction, radius)
+    });
+    curve(&points.collect::<Vec<_>>(), DARK, 1.6)
 }
 
-/// Draws an arc with an arrowhead at its end.
-fn draw_arrow(
-    centre: (f64, f64),
-    radius: f64,
-    start_deg: f64,
-    end_deg: f64,
-    colour: &str,
-) -> Group {
+/// Draws a dark arc with an arrowhead at its end.
+fn draw_arrow(centre: (f64, f64), radius: f64, [start_deg, end_deg]: [f64; 2]) -> Group {
     const BARB_LENGTH: f64 = 8.0;
     let tip = offset_point(centre, end_deg, radius);
     // The backward direction of the arc at its end; the barbs lie on both sides of this direction.
-    let back_deg = if end_deg > start_deg {
-        end_deg - 90.0
-    } else {
-        end_deg + 90.0
+    let back_deg = match end_deg > start_deg {
+        true => end_deg - 90.0,
+        false => end_deg + 90.0,
     };
     let barb_end = |lean_deg: f64| offset_point(tip, back_deg + lean_deg, BARB_LENGTH);
     Group::new()
-        .add(draw_arc(centre, radius, start_deg, end_deg, colour))
-        .add(curve(&[barb_end(28.0), tip, barb_end(-28.0)], colour, 1.6))
+        .add(draw_arc(centre, radius, [start_deg, end_deg]))
+        .add(curve(&[barb_end(28.0), tip, barb_end(-28.0)], DARK, 1.6))
 }
 
 /// Draws the plate, the servos, and an arrow that points to the head.
 fn draw_chassis(robot: &Robot) -> Group {
     let (scale, crank_ends) = (compute_scale(robot), compute_crank_ends(robot));
-    let half_width = crank_ends
-        .iter()
-        .map(|(shaft, _)| shaft.x.abs())
-        .fold(0.0, f64::max)
-        + 9.0;
+    let shaft_xs = crank_ends.iter().map(|(shaft, _)| shaft.x.abs());
+    let half_width = shaft_xs.fold(0.0, f64::max) + 9.0;
     let half_height = crank_ends[0].0.y + 9.0;
     let corner = to_page_point(Vector::new(-half_width, half_height), scale);
     let size = (2.0 * half_width * scale, 2.0 * half_height * scale);
-    let mut group = Group::new().add(add_outline(
-        rectangle(corner, size, "#f4f1ea").set("rx", 12),
-        "#b8b0a0",
-        1.5,
-    ));
-    for (servo, (shaft, _)) in crank_ends.into_iter().enumerate() {
+    let plate = rectangle(corner, size, "#f4f1ea").set("rx", 12);
+    let mut group = Group::new().add(add_outline(plate, "#b8b0a0", 1.5));
+    let (case_width, case_length) = CASE_SIZE_MM;
+    for ((shaft, _), colour) in crank_ends.into_iter().zip(SERVO_COLOURS) {
         // The longer part of a servo's case lies between the shaft and the robot's centre.
-        let upper_y = if shaft.y > 0.0 {
-            shaft.y + SHAFT_TO_CASE_END_MM
-        } else {
-            shaft.y + CASE_SIZE_MM.1 - SHAFT_TO_CASE_END_MM
+        let upper_y = match shaft.y > 0.0 {
+            true => shaft.y + SHAFT_TO_CASE_END_MM,
+            false => shaft.y + case_length - SHAFT_TO_CASE_END_MM,
         };
-        let corner = to_page_point(Vector::new(shaft.x - CASE_SIZE_MM.0 / 2.0, upper_y), scale);
-        group = group.add(
-            rectangle(
-                corner,
-                (CASE_SIZE_MM.0 * scale, CASE_SIZE_MM.1 * scale),
-                SERVO_COLOURS[servo],
-            )
-            .set("rx", 3)
-            .set("fill-opacity", 0.25),
-        );
+        let corner = to_page_point(Vector::new(shaft.x - case_width / 2.0, upper_y), scale);
+        let case = rectangle(corner, (case_width * scale, case_length * scale), colour);
+        group = group.add(case.set("rx", 3).set("fill-opacity", 0.25));
     }
-    let (tail, tip) = (
-        (ROBOT_CENTRE.0, ROBOT_CENTRE.1 + 44.0),
-        (ROBOT_CENTRE.0, ROBOT_CENTRE.1 - 30.0),
-    );
+    let (x, y) = ROBOT_CENTRE;
+    let (tail, tip) = ((x, y + 44.0), (x, y - 30.0));
     group
         .add(line(tail, tip, GREY, 3.0))
         .add(line(tip, (tip.0 - 8.0, tip.1 + 12.0), GREY, 3.0))
@@ -177,54 +143,28 @@ fn draw_crank(robot: &Robot, servo: usize) -> Group {
     let (shaft, tip) = compute_crank_ends(robot)[servo];
     let (shaft_point, tip_point) = (to_page_point(shaft, scale), to_page_point(tip, scale));
     let angle_deg = robot.servos()[servo].neutral.rem_euclid(360.0);
-    let colour = SERVO_COLOURS[servo];
+    let (name, colour) = (SERVO_NAMES[servo], SERVO_COLOURS[servo]);
     // Three lines of text stand outside the robot.
-    let first_line_y = if shaft.y > 0.0 {
-        tip_point.1 - 56.0
-    } else {
-        tip_point.1 + 28.0
+    let first_line_y = match shaft.y > 0.0 {
+        true => tip_point.1 - 56.0,
+        false => tip_point.1 + 28.0,
     };
+    let line_point = |offset: f64| (tip_point.0, first_line_y + offset);
+    let ray_end = (shaft_point.0 + 36.0, shaft_point.1);
+    let zero_ray = line(shaft_point, ray_end, DARK, 1.2);
+    let crank = line(shaft_point, tip_point, colour, 11.0);
+    let name_text = text(name, line_point(0.0), 18.0, colour, Anchor::Middle);
+    let angle_text = text_middle(&format!("{angle_deg:.2}°"), line_point(37.0), 16.0);
     Group::new()
-        .add(
-            line(
-                shaft_point,
-                (shaft_point.0 + 36.0, shaft_point.1),
-                DARK,
-                1.2,
-            )
-            .set("stroke-dasharray", "3 3"),
-        )
-        .add(
-            line(shaft_point, tip_point, colour, 11.0)
-                .set("id", format!("crank-{}", SERVO_NAMES[servo])),
-        )
+        .add(zero_ray.set("stroke-dasharray", "3 3"))
+        .add(crank.set("id", format!("crank-{name}")))
         .add(add_outline(circle(tip_point, 6.5, "white"), DARK, 2.0))
-        .add(draw_arrow(shaft_point, 22.0, 0.0, angle_deg, DARK))
+        .add(draw_arrow(shaft_point, 22.0, [0.0, angle_deg]))
         .add(circle(shaft_point, 8.0, DARK))
         .add(circle(shaft_point, 3.0, "white"))
-        .add(
-            text(
-                SERVO_NAMES[servo],
-                (tip_point.0, first_line_y),
-                18.0,
-                colour,
-                Anchor::Middle,
-            )
-            .set("font-weight", "bold"),
-        )
-        .add(text_middle(
-            SERVO_POSITIONS[servo],
-            (tip_point.0, first_line_y + 18.0),
-            14.0,
-        ))
-        .add(
-            text_middle(
-                &format!("{angle_deg:.2}°"),
-                (tip_point.0, first_line_y + 37.0),
-                16.0,
-            )
-            .set("id", format!("angle-{}", SERVO_NAMES[servo])),
-        )
+        .add(name_text.set("font-weight", "bold"))
+        .add(text_middle(SERVO_POSITIONS[servo], line_point(18.0), 14.0))
+        .add(angle_text.set("id", format!("angle-{name}")))
 }
 
 /// Draws the first servo's spline, enlarged, with a crank that is off by [`EXAMPLE_ERROR_DEG`], and explains the trim.
@@ -234,12 +174,10 @@ fn draw_example(robot: &Robot) -> Group {
     let exact_deg = robot.servos()[servo].neutral;
     let fitted_deg = exact_deg - EXAMPLE_ERROR_DEG;
     let servo_number = servo + 1;
+    let max_error_deg = TOOTH_PITCH_DEG / 2.0;
     let lines = [
         format!("{TOOTH_COUNT} teeth, {TOOTH_PITCH_DEG}° apart. On the best"),
-        format!(
-            "tooth, a crank is off by at most {}°.",
-            TOOTH_PITCH_DEG / 2.0
-        ),
+        format!("tooth, a crank is off by at most {max_error_deg}°."),
         String::new(),
         "Dashed: the crank's correct angle.".into(),
         format!("Grey: a crank {EXAMPLE_ERROR_DEG}° further clockwise."),
@@ -247,41 +185,23 @@ fn draw_example(robot: &Robot) -> Group {
         "corrects it: + counter-clockwise,".into(),
         "\u{2212} clockwise, seen from above.".into(),
     ];
+    let point_at = |degrees: f64, radius: f64| offset_point(SPLINE_CENTRE, degrees, radius);
+    let draw_example_crank = |degrees: f64, colour: &str, width: f64| {
+        let end = point_at(degrees, EXAMPLE_CRANK_LENGTH);
+        line(SPLINE_CENTRE, end, colour, width)
+    };
+    let fitted_crank = draw_example_crank(fitted_deg, GREY, 13.0).set("id", "fitted-crank");
+    let exact_crank =
+        draw_example_crank(exact_deg, SERVO_COLOURS[servo], 3.0).set("id", "exact-crank");
+    let (arrow_radius, arrow_ends) = (EXAMPLE_CRANK_LENGTH + 12.0, [fitted_deg - 7.0, exact_deg]);
+    let trim_point = point_at(exact_deg + 4.0, EXAMPLE_CRANK_LENGTH + 16.0);
     let mut group = Group::new()
         .add(draw_spline(fitted_deg))
-        .add(
-            line(
-                SPLINE_CENTRE,
-                offset_point(SPLINE_CENTRE, fitted_deg, EXAMPLE_CRANK_LENGTH),
-                GREY,
-                13.0,
-            )
-            .set("stroke-opacity", 0.5)
-            .set("id", "fitted-crank"),
-        )
-        .add(
-            line(
-                SPLINE_CENTRE,
-                offset_point(SPLINE_CENTRE, exact_deg, EXAMPLE_CRANK_LENGTH),
-                SERVO_COLOURS[servo],
-                3.0,
-            )
-            .set("stroke-dasharray", "9 5")
-            .set("id", "exact-crank"),
-        )
-        .add(draw_arrow(
-            SPLINE_CENTRE,
-            EXAMPLE_CRANK_LENGTH + 12.0,
-            fitted_deg - 7.0,
-            exact_deg,
-            DARK,
-        ))
+        .add(fitted_crank.set("stroke-opacity", 0.5))
+        .add(exact_crank.set("stroke-dasharray", "9 5"))
+        .add(draw_arrow(SPLINE_CENTRE, arrow_radius, arrow_ends))
         .add(circle(SPLINE_CENTRE, 6.0, DARK))
-        .add(text_end(
-            "trim",
-            offset_point(SPLINE_CENTRE, exact_deg + 4.0, EXAMPLE_CRANK_LENGTH + 16.0),
-            14.0,
-        ))
+        .add(text_end("trim", trim_point, 14.0))
         // The angle between two teeth is marked where the drawing has room.
         .add(draw_tooth_mark(fitted_deg - 9.0 * TOOTH_PITCH_DEG));
     for (index, line_text) in lines.iter().enumerate() {
@@ -300,10 +220,10 @@ fn draw_spline(degrees: f64) -> Polygon {
     let corners: Vec<String> = (0..4 * TOOTH_COUNT)
         .map(|corner| {
             // A tooth has two corners at its tip; two more lie between the teeth.
-            let radius = if corner % 4 < 2 {
-                SPLINE_RADII.1
-            } else {
-                SPLINE_RADII.0
+            let (root_radius, tip_radius) = SPLINE_RADII;
+            let radius = match corner % 4 < 2 {
+                true => tip_radius,
+                false => root_radius,
             };
             let corner_degrees = degrees + TOOTH_PITCH_DEG / 4.0 * (corner as f64 - 0.5);
             let (x, y) = offset_point(SPLINE_CENTRE, corner_degrees, radius);
@@ -321,34 +241,19 @@ fn draw_spline(degrees: f64) -> Polygon {
 /// Draws a mark for the angle from the tooth at `degrees` to the next tooth.
 fn draw_tooth_mark(degrees: f64) -> Group {
     let (inner_radius, outer_radius) = (SPLINE_RADII.1 + 3.0, SPLINE_RADII.1 + 26.0);
+    let point_at = |degrees: f64, radius: f64| offset_point(SPLINE_CENTRE, degrees, radius);
     let draw_ray = |degrees| {
-        line(
-            offset_point(SPLINE_CENTRE, degrees, inner_radius),
-            offset_point(SPLINE_CENTRE, degrees, outer_radius),
-            DARK,
-            1.2,
-        )
+        let [start, end] = [inner_radius, outer_radius].map(|radius| point_at(degrees, radius));
+        line(start, end, DARK, 1.2)
     };
-    let text_point = offset_point(
-        SPLINE_CENTRE,
-        degrees + TOOTH_PITCH_DEG / 2.0,
-        outer_radius + 3.0,
-    );
+    let arc_ends = [degrees, degrees + TOOTH_PITCH_DEG];
+    let (text_x, text_y) = point_at(degrees + TOOTH_PITCH_DEG / 2.0, outer_radius + 3.0);
+    let label = format!("{TOOTH_PITCH_DEG}°");
     Group::new()
-        .add(draw_ray(degrees))
-        .add(draw_ray(degrees + TOOTH_PITCH_DEG))
-        .add(draw_arc(
-            SPLINE_CENTRE,
-            outer_radius - 7.0,
-            degrees,
-            degrees + TOOTH_PITCH_DEG,
-            DARK,
-        ))
-        .add(text_start(
-            &format!("{TOOTH_PITCH_DEG}°"),
-            (text_point.0, text_point.1 + 5.0),
-            14.0,
-        ))
+        .add(draw_ray(arc_ends[0]))
+        .add(draw_ray(arc_ends[1]))
+        .add(draw_arc(SPLINE_CENTRE, outer_radius - 7.0, arc_ends))
+        .add(text_start(&label, (text_x, text_y + 5.0), 14.0))
 }
 
 /// Draws a compass rose that shows the zero direction and the positive sense of angles.
@@ -358,7 +263,7 @@ fn draw_compass_rose() -> Group {
     let mut group = Group::new()
         .add(text_middle("angles, seen from above", caption, 14.0))
         .add(add_outline(circle(centre, 46.0, "none"), GREY, 1.2))
-        .add(draw_arrow(centre, 30.0, 0.0, 70.0, DARK));
+        .add(draw_arrow(centre, 30.0, [0.0, 70.0]));
     for (degrees, label, anchor, offset) in [
         (0.0, "0° right", Anchor::Start, (8.0, 5.0)),
         (90.0, "90° head", Anchor::Middle, (0.0, -8.0)),

@@ -6,7 +6,8 @@ use svg::node::element::Group;
 
 use super::top_view::{LABEL_GAP_MM, PAGE_SIZE, Point, SKIN_REACH_MM, TopView};
 use crate::shared::shapes::{
-    Anchor, DARK, GREY, SERVO_COLOURS, line, pin_name, text, text_middle, text_start,
+    Anchor, DARK, GREY, SERVO_COLOURS, SERVO_POSITIONS, line, pin_name, text, text_middle,
+    text_start,
 };
 
 /// Distance of the servos' names from the middle of the page, horizontally and vertically, pixels.
@@ -20,29 +21,19 @@ impl TopView<'_> {
             let shaft = self.shafts()[servo];
             let side = if matches!(servo, 0 | 3) { -1.0 } else { 1.0 };
             let sign = shaft.y.signum();
-            let anchor = outward_anchor(side);
-            let (x, y) = (
-                PAGE_SIZE.0 / 2.0 + side * SERVO_NAME_DISTANCE,
-                PAGE_SIZE.1 / 2.0 - sign * SERVO_NAME_DISTANCE,
-            );
+            let (anchor, colour) = (outward_anchor(side), SERVO_COLOURS[servo]);
+            let x = PAGE_SIZE.0 / 2.0 + side * SERVO_NAME_DISTANCE;
+            let y = PAGE_SIZE.1 / 2.0 - sign * SERVO_NAME_DISTANCE;
             let shaft_point = self.to_page_point(shaft + Vector::new(side * 3.5, sign * 2.0));
-            let name_text = format!(
-                "{} · {}",
-                SERVO_NAMES[servo],
-                pin_name(self.robot.servos()[servo].pin)
-            );
+            let pin = pin_name(self.robot.servos()[servo].pin);
+            let name_text = format!("{} · {pin}", SERVO_NAMES[servo]);
             let symbol = ["θ1", "θ4", "θ8", "θ5"][servo];
             let angle_text = format!("{symbol} = {:.2}°", angles[servo].rem_euclid(360.0));
-            let start = (x + 6.0 * -side, y - 4.0);
+            let pointer = line((x + 6.0 * -side, y - 4.0), shaft_point, colour, 1.2);
+            let name = text(&name_text, (x, y - 8.0), 20.0, colour, anchor);
             group = group
-                .add(
-                    line(start, shaft_point, SERVO_COLOURS[servo], 1.2)
-                        .set("stroke-dasharray", "3 4"),
-                )
-                .add(
-                    text(&name_text, (x, y - 8.0), 20.0, SERVO_COLOURS[servo], anchor)
-                        .set("font-weight", "bold"),
-                )
+                .add(pointer.set("stroke-dasharray", "3 4"))
+                .add(name.set("font-weight", "bold"))
                 .add(text(&angle_text, (x, y + 16.0), 18.0, DARK, anchor));
         }
         group = self.draw_part_labels(group);
@@ -64,26 +55,20 @@ impl TopView<'_> {
         for (side, slider) in [(-1.0, solution.left), (1.0, solution.right)] {
             let anchor = outward_anchor(side);
             let (x, y) = self.to_page_point(Vector::new(side * 50.0 * self.size_ratio(), 0.0));
-            let travel_text = if slider.s.abs() < 0.05 {
-                "s = 0.0 mm".to_owned()
-            } else {
-                format!("s = {:+.1} mm", slider.s)
+            let travel_text = match slider.s.abs() < 0.05 {
+                true => "s = 0.0 mm".to_owned(),
+                false => format!("s = {:+.1} mm", slider.s),
             };
             group = group
                 .add(text("slider", (x, y - 4.0), 17.0, GREY, anchor))
                 .add(text(&travel_text, (x, y + 18.0), 17.0, GREY, anchor));
         }
-        for servo in 0..4 {
+        for (servo, position) in SERVO_POSITIONS.into_iter().enumerate() {
             let foot = self.foot(servo);
             let side = foot.x.signum();
-            let (x, y) = self.to_page_point(foot + Vector::new(side * 24.0, -2.0));
-            let name = [
-                "front left foot",
-                "front right foot",
-                "back right foot",
-                "back left foot",
-            ][servo];
-            group = group.add(text(name, (x, y), 17.0, GREY, outward_anchor(side)));
+            let point = self.to_page_point(foot + Vector::new(side * 24.0, -2.0));
+            let name = format!("{position} foot");
+            group = group.add(text(&name, point, 17.0, GREY, outward_anchor(side)));
         }
         group
     }
@@ -107,10 +92,9 @@ fn draw_axes_and_scale_bar(mut group: Group, scale: f64) -> Group {
             let (sin, cos) = sin_cos(degrees + lean_deg);
             (tip.0 + 11.0 * cos, tip.1 - 11.0 * sin)
         };
-        let name_point = if degrees == 0.0 {
-            (tip.0 + 10.0, tip.1 + 6.0)
-        } else {
-            (tip.0 - 10.0, tip.1 - 12.0)
+        let name_point = match degrees == 0.0 {
+            true => (tip.0 + 10.0, tip.1 + 6.0),
+            false => (tip.0 - 10.0, tip.1 - 12.0),
         };
         group = group
             .add(line(origin, tip, DARK, 2.0))
@@ -120,13 +104,8 @@ fn draw_axes_and_scale_bar(mut group: Group, scale: f64) -> Group {
     }
     let end = (PAGE_SIZE.0 - 60.0, PAGE_SIZE.1 - 48.0);
     let start = (end.0 - 50.0 * scale, end.1);
-    for tick in [start, end] {
-        group = group.add(line(
-            (tick.0, tick.1 - 7.0),
-            (tick.0, tick.1 + 7.0),
-            DARK,
-            2.0,
-        ));
+    for (x, y) in [start, end] {
+        group = group.add(line((x, y - 7.0), (x, y + 7.0), DARK, 2.0));
     }
     let label_point = ((start.0 + end.0) / 2.0, end.1 - 12.0);
     group

@@ -17,24 +17,19 @@ pub fn route_between_rows(
     first_turn_y: f64,
 ) -> Vec<Path> {
     let leads_right = |wire: usize| ends[wire].0 > starts[wire].0;
-    (0..starts.len())
-        .map(|wire| {
-            // The wires on the side to which this wire leads; those that also lead there turn first.
-            let outer_wires = match leads_right(wire) {
-                true => wire + 1..starts.len(),
-                false => 0..wire,
-            };
-            let is_same_side = |outer_wire: &usize| leads_right(*outer_wire) == leads_right(wire);
-            let outer_count = outer_wires.filter(is_same_side).count();
-            let turn_y = first_turn_y + WIRE_SPACING * outer_count as f64;
-            vec![
-                starts[wire],
-                (starts[wire].0, turn_y),
-                (ends[wire].0, turn_y),
-                ends[wire],
-            ]
-        })
-        .collect()
+    let route_wire = |wire: usize| {
+        // The wires on the side to which this wire leads; those that also lead there turn first.
+        let outer_wires = match leads_right(wire) {
+            true => wire + 1..starts.len(),
+            false => 0..wire,
+        };
+        let is_same_side = |outer_wire: &usize| leads_right(*outer_wire) == leads_right(wire);
+        let outer_count = outer_wires.filter(is_same_side).count();
+        let turn_y = first_turn_y + WIRE_SPACING * outer_count as f64;
+        let (start, end) = (starts[wire], ends[wire]);
+        vec![start, (start.0, turn_y), (end.0, turn_y), end]
+    };
+    (0..starts.len()).map(route_wire).collect()
 }
 
 /// Returns the end of a path down a board's right side to a pin in its lower row, from the [`turn_point`] on.

@@ -81,10 +81,9 @@ impl<'a> TopView<'a> {
 
     /// Returns the position on the page of a point in the chassis frame.
     pub(super) fn to_page_point(&self, point: Point) -> (f64, f64) {
-        (
-            PAGE_SIZE.0 / 2.0 + self.pixels_per_mm * point.x,
-            PAGE_SIZE.1 / 2.0 - self.pixels_per_mm * point.y,
-        )
+        let (centre_x, centre_y) = (PAGE_SIZE.0 / 2.0, PAGE_SIZE.1 / 2.0);
+        let scale = self.pixels_per_mm;
+        (centre_x + scale * point.x, centre_y - scale * point.y)
     }
 
     /// Returns the size of the robot's plate relative to the plate of the paper's robot.
@@ -98,20 +97,6 @@ impl<'a> TopView<'a> {
             pixels_per_mm: self.pixels_per_mm,
             rotation_deg: 0.0,
         }
-    }
-
-    fn draw_bar(
-        &self,
-        start: Point,
-        end: Point,
-        colour: &str,
-        width_mm: f64,
-    ) -> svg::node::element::Line {
-        self.sheet().draw_bar(start, end, colour, width_mm)
-    }
-
-    fn draw_joint(&self, point: Point, radius_mm: f64) -> svg::node::element::Circle {
-        self.sheet().draw_joint(point, radius_mm)
     }
 
     pub(super) fn angles(&self) -> [f64; 4] {
@@ -130,66 +115,46 @@ impl<'a> TopView<'a> {
     /// Draws a lizard's pale outline, so that the mechanism looks like an animal.
     fn draw_skin(&self, group: Group) -> Group {
         // The coordinates are in mm for the paper's robot, and are multiplied by `size_ratio`. The skin's head and tail
-        // follow their points (`format_near`); the flanks are fixed to the chassis (`format_on_chassis`).
+        // follow their points; the flanks are fixed to the chassis.
         let size_ratio = self.size_ratio();
-        let format_near = |point: Point, x: f64, y: f64| {
-            let (x, y) = self.to_page_point(point + Vector::new(x, y) * size_ratio);
-            format!("{x:.1} {y:.1}")
-        };
-        let format_on_chassis = |x: f64, y: f64| format_near(Vector::default(), x, y);
-        let head = self.solution.head_point();
-        let tail = self.solution.tail_point();
-        let commands = [
-            format!("M {}", format_near(head, 0.0, 30.0)),
-            format!(
-                "C {} {} {}",
-                format_near(head, 18.0, 30.0),
-                format_near(head, 27.0, 2.0),
-                format_on_chassis(27.0, 84.0)
-            ),
-            format!(
-                "C {} {} {}",
-                format_on_chassis(44.0, 50.0),
-                format_on_chassis(44.0, -50.0),
-                format_on_chassis(27.0, -84.0)
-            ),
-            format!(
-                "C {} {} {}",
-                format_near(tail, 22.0, 0.0),
-                format_near(tail, 6.0, -6.0),
-                format_near(tail, 3.0, -26.0)
-            ),
-            format!("L {}", format_near(tail, -3.0, -26.0)),
-            format!(
-                "C {} {} {}",
-                format_near(tail, -6.0, -6.0),
-                format_near(tail, -22.0, 0.0),
-                format_on_chassis(-27.0, -84.0)
-            ),
-            format!(
-                "C {} {} {}",
-                format_on_chassis(-44.0, -50.0),
-                format_on_chassis(-44.0, 50.0),
-                format_on_chassis(-27.0, 84.0)
-            ),
-            format!(
-                "C {} {} {} Z",
-                format_near(head, -27.0, 2.0),
-                format_near(head, -18.0, 30.0),
-                format_near(head, 0.0, 30.0)
-            ),
+        let (head, tail) = (self.solution.head_point(), self.solution.tail_point());
+        let chassis = Vector::default();
+        // Each C begins a curve with two control points and an end.
+        let points = [
+            ("M ", head, 0.0, 30.0),
+            ("C ", head, 18.0, 30.0),
+            ("", head, 27.0, 2.0),
+            ("", chassis, 27.0, 84.0),
+            ("C ", chassis, 44.0, 50.0),
+            ("", chassis, 44.0, -50.0),
+            ("", chassis, 27.0, -84.0),
+            ("C ", tail, 22.0, 0.0),
+            ("", tail, 6.0, -6.0),
+            ("", tail, 3.0, -26.0),
+            ("L ", tail, -3.0, -26.0),
+            ("C ", tail, -6.0, -6.0),
+            ("", tail, -22.0, 0.0),
+            ("", chassis, -27.0, -84.0),
+            ("C ", chassis, -44.0, -50.0),
+            ("", chassis, -44.0, 50.0),
+            ("", chassis, -27.0, 84.0),
+            ("C ", head, -27.0, 2.0),
+            ("", head, -18.0, 30.0),
+            ("", head, 0.0, 30.0),
         ];
-        let outline = Path::new()
-            .set("d", commands.join(" "))
-            .set("fill", SKIN_COLOUR);
+        let commands = points.map(|(command, base, x, y)| {
+            let (x, y) = self.to_page_point(base + Vector::new(x, y) * size_ratio);
+            format!("{command}{x:.1} {y:.1}")
+        });
+        let outline = Path::new().set("d", commands.join(" ") + " Z");
         let draw_eye = |x: f64| {
-            circle(
-                self.to_page_point(head + Vector::new(x, 12.0) * size_ratio),
-                6.5,
-                DARK,
-            )
+            let centre = self.to_page_point(head + Vector::new(x, 12.0) * size_ratio);
+            circle(centre, 6.5, DARK)
         };
-        group.add(outline).add(draw_eye(-9.0)).add(draw_eye(9.0))
+        group
+            .add(outline.set("fill", SKIN_COLOUR))
+            .add(draw_eye(-9.0))
+            .add(draw_eye(9.0))
     }
 
     /// Draws a side's slider, a prismatic joint between the arms of the front and the rear servo.
@@ -203,16 +168,16 @@ impl<'a> TopView<'a> {
             Side::Right => links.l17,
         };
         let direction = (front_tip - rear_tip) * (1.0 / slider.d);
+        let tube_end = rear_tip + direction * tube_length;
+        let sheet = self.sheet();
         group = group
-            .add(self.draw_bar(rear_tip, front_tip, STEEL_COLOUR, 1.8))
-            .add(self.draw_bar(rear_tip, rear_tip + direction * tube_length, "#9a9a9a", 5.0));
+            .add(sheet.draw_bar(rear_tip, front_tip, STEEL_COLOUR, 1.8))
+            .add(sheet.draw_bar(rear_tip, tube_end, "#9a9a9a", 5.0));
         for (servo, tip) in [(front, front_tip), (rear, rear_tip)] {
+            let arm = sheet.draw_bar(self.shafts()[servo], tip, SERVO_COLOURS[servo], 3.0);
             group = group
-                .add(
-                    self.draw_bar(self.shafts()[servo], tip, SERVO_COLOURS[servo], 3.0)
-                        .set("stroke-opacity", 0.75),
-                )
-                .add(self.draw_joint(tip, 2.0));
+                .add(arm.set("stroke-opacity", 0.75))
+                .add(sheet.draw_joint(tip, 2.0));
         }
         group
     }
@@ -220,34 +185,21 @@ impl<'a> TopView<'a> {
     /// Draws the five-bar of the head or tail: two cranks, two couplers, and the end point.
     fn draw_five_bar(&self, mut group: Group, end: End) -> Group {
         let (servos, point) = (end.servos(), self.solution.point(end));
+        let (sheet, scale) = (self.sheet(), self.pixels_per_mm);
         for servo in servos {
-            group = group.add(self.draw_bar(self.crank_tip(servo), point, STEEL_COLOUR, 3.4));
+            group = group.add(sheet.draw_bar(self.crank_tip(servo), point, STEEL_COLOUR, 3.4));
         }
         for servo in servos {
             let (shaft, tip) = (self.shafts()[servo], self.crank_tip(servo));
+            let shaft_point = self.to_page_point(shaft);
             group = group
-                .add(self.draw_bar(shaft, tip, SERVO_COLOURS[servo], 4.6))
-                .add(self.draw_joint(tip, 2.3))
-                .add(circle(
-                    self.to_page_point(shaft),
-                    3.4 * self.pixels_per_mm,
-                    DARK,
-                ))
-                .add(circle(
-                    self.to_page_point(shaft),
-                    1.2 * self.pixels_per_mm,
-                    "white",
-                ));
+                .add(sheet.draw_bar(shaft, tip, SERVO_COLOURS[servo], 4.6))
+                .add(sheet.draw_joint(tip, 2.3))
+                .add(circle(shaft_point, 3.4 * scale, DARK))
+                .add(circle(shaft_point, 1.2 * scale, "white"));
         }
-        group.add(add_outline(
-            circle(
-                self.to_page_point(point),
-                3.4 * self.pixels_per_mm,
-                "#f0e442",
-            ),
-            DARK,
-            2.5,
-        ))
+        let end_disc = circle(self.to_page_point(point), 3.4 * scale, "#f0e442");
+        group.add(add_outline(end_disc, DARK, 2.5))
     }
 
     pub(super) fn foot(&self, servo: usize) -> Point {
@@ -287,11 +239,8 @@ mod tests {
                     let crank = tip - view.shafts()[servo];
                     assert!((crank.length() - 30.0).abs() < 1e-9);
                     assert!((wrap(crank.angle() - view.angles()[servo])).abs() < 1e-9);
-                    let point = if servo < 2 {
-                        view.solution.head_point()
-                    } else {
-                        view.solution.tail_point()
-                    };
+                    let end = if servo < 2 { End::Head } else { End::Tail };
+                    let point = view.solution.point(end);
                     assert!(((point - tip).length() - 50.0).abs() < 1e-9);
                 }
             });
@@ -301,14 +250,10 @@ mod tests {
     #[test]
     fn the_feet_are_beside_the_hips_at_neutral() {
         with_view(None, |view| {
-            let feet: Vec<(f64, f64)> = (0..4)
-                .map(|servo| view.foot(servo))
-                .map(|foot| (foot.x.round(), foot.y.round()))
-                .collect();
-            assert_eq!(
-                feet,
-                [(-80.0, 55.0), (80.0, 55.0), (80.0, -55.0), (-80.0, -55.0)]
-            );
+            let feet = [0, 1, 2, 3].map(|servo| view.foot(servo));
+            let feet = feet.map(|foot| (foot.x.round(), foot.y.round()));
+            let expected = [(-80.0, 55.0), (80.0, 55.0), (80.0, -55.0), (-80.0, -55.0)];
+            assert_eq!(feet, expected);
         });
     }
 
@@ -330,18 +275,12 @@ mod tests {
     #[test]
     fn a_large_robot_fits_the_page() {
         let robot = built_in_robot("large");
-        let solution = robot
-            .lizard()
-            .solve(&robot.neutral_pose())
-            .expect("the neutral pose closes");
+        let solution = robot.lizard().solve(&robot.neutral_pose());
+        let solution = solution.expect("the neutral pose closes");
         let view = TopView::new(&robot, &solution);
-        let mut joints = view
-            .legs()
-            .iter()
-            .flat_map(|leg| leg.joints)
-            .collect::<Vec<_>>();
-        joints.extend([solution.head_point(), solution.tail_point()]);
-        for joint in joints {
+        let ends = [solution.head_point(), solution.tail_point()];
+        let joints = view.legs().into_iter().flat_map(|leg| leg.joints);
+        for joint in joints.chain(ends) {
             let (x, y) = view.to_page_point(joint);
             assert!((50.0..PAGE_SIZE.0 - 50.0).contains(&x), "{x}");
             assert!((50.0..PAGE_SIZE.1 - 50.0).contains(&y), "{y}");

@@ -80,12 +80,9 @@ impl Uno {
     /// Draws the board and emphasizes the pins in `used_pins`.
     pub fn draw(&self, used_pins: &[u8]) -> Group {
         let size = (BOARD_SIZE.0 * PIN_PITCH, BOARD_SIZE.1 * PIN_PITCH);
-        let mut group = Group::new().add(add_outline(
-            rectangle(self.upper_left_corner, size, "#dfeaec").set("rx", 8),
-            DARK,
-            1.5,
-        ));
-        group = self.draw_components(group);
+        let board = rectangle(self.upper_left_corner, size, "#dfeaec").set("rx", 8);
+        let group = Group::new().add(add_outline(board, DARK, 1.5));
+        let mut group = self.draw_components(group);
         for number in 0..=19 {
             let name = pin_name(number);
             let is_used = used_pins.contains(&number);
@@ -116,15 +113,8 @@ impl Uno {
     /// Adds the sockets, the chip and the LED to `group`.
     fn draw_components(&self, group: Group) -> Group {
         let draw_block = |x: f64, top: f64, size: (f64, f64), fill| {
-            add_outline(
-                rectangle(
-                    self.to_page_point(x, top),
-                    (size.0 * PIN_PITCH, size.1 * PIN_PITCH),
-                    fill,
-                ),
-                DARK,
-                1.2,
-            )
+            let size = (size.0 * PIN_PITCH, size.1 * PIN_PITCH);
+            add_outline(rectangle(self.to_page_point(x, top), size, fill), DARK, 1.2)
         };
         let led = self.to_page_point(9.4, 13.6);
         group
@@ -140,34 +130,25 @@ impl Uno {
     /// Draws a pin's name beside the pin, rotated to read upwards.
     fn draw_label(&self, pin: (f64, f64), name: &str, is_used: bool) -> Text {
         let is_upper = pin.1 < self.upper_left_corner.1 + BOARD_SIZE.1 * PIN_PITCH / 2.0;
-        let (y, anchor) = if is_upper {
-            (pin.1 + 9.0, Anchor::End)
-        } else {
-            (pin.1 - 9.0, Anchor::Start)
+        let (y, anchor) = match is_upper {
+            true => (pin.1 + 9.0, Anchor::End),
+            false => (pin.1 - 9.0, Anchor::Start),
         };
         let x = pin.0 + 4.5;
         let colour = if is_used { DARK } else { GREY };
-        let label = text(name, (x, y), 12.0, colour, anchor).set(
-            "transform",
-            format!(
-                "rotate(-90 {} {})",
-                round_hundredths(x),
-                round_hundredths(y)
-            ),
-        );
-        if is_used {
-            label.set("font-weight", "bold")
-        } else {
-            label
+        let label = text(name, (x, y), 12.0, colour, anchor);
+        let [x, y] = [x, y].map(round_hundredths);
+        let label = label.set("transform", format!("rotate(-90 {x} {y})"));
+        match is_used {
+            true => label.set("font-weight", "bold"),
+            false => label,
         }
     }
 
     /// Converts a position, in tenths of an inch right of and above the board's lower left corner, to a page position.
     fn to_page_point(self, right: f64, up: f64) -> (f64, f64) {
-        (
-            self.upper_left_corner.0 + right * PIN_PITCH,
-            self.upper_left_corner.1 + (BOARD_SIZE.1 - up) * PIN_PITCH,
-        )
+        let (x, y) = self.upper_left_corner;
+        (x + right * PIN_PITCH, y + (BOARD_SIZE.1 - up) * PIN_PITCH)
     }
 }
 

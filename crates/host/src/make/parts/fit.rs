@@ -1,12 +1,13 @@
 //! `lizard fit`: proves lower bounds of the distances between the robot's parts.
 
-use std::io::{self, Write};
+use std::fmt::Write as _;
 
 use lizard_parts::{Assembly, BuildError, FAR_MM, NearestPair, Proof, ProofTasks, TaskResult};
 use lizard_robot::servo::SERVO_NAMES;
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
+use crate::shared::json;
 use crate::shared::progress::create_progress_bar;
 use crate::shared::spread::{SpreadArgs, Spreadable};
 
@@ -103,11 +104,9 @@ pub(super) fn prove(assembly: &Assembly) -> Proof {
 fn complete_proof(tasks: &ProofTasks, results: Option<Vec<TaskResult>>) -> Proof {
     let bar = create_progress_bar(tasks.count(), BAR_TEMPLATE);
     let known_result = |index: usize| results.as_ref()?.get(index).cloned();
-    let proof = tasks.complete_all(known_result, |done_count, _| {
+    tasks.complete_all(known_result, |done_count, _| {
         bar.set_position(done_count as u64)
-    });
-    bar.finish_and_clear();
-    proof
+    })
 }
 
 /// Proves that the parts fit and prints the clearances.
@@ -132,90 +131,67 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     let proof = complete_proof(&tasks, args.spread.read_merged(task_count)?);
     let verdict = proof.check();
-    let mut out = io::stdout().lock();
-    if args.json {
-        let report = FitReport {
-            fits: verdict.is_ok(),
-            reason: verdict.as_ref().err().map(ToString::to_string),
-            apart: proof.separate_pairs.iter().map(PairReport::from).collect(),
-            meeting: proof.touching_pairs.iter().map(PairReport::from).collect(),
-            ranges: proof.ranges,
-            shape_pair_count: proof.shape_pair_count,
-            region_count: proof.region_count,
-        };
-        serde_json::to_writer(&mut out, &report)?;
-        writeln!(out)?;
-    } else {
-        print_proof(&proof, args.all, &mut out)?;
-    }
-    out.flush()?;
+    let report = FitReport {
+        fits: verdict.is_ok(),
+        reason: verdict.as_ref().err().map(ToString::to_string),
+        apart: proof.separate_pairs.iter().map(PairReport::from).collect(),
+        meeting: proof.touching_pairs.iter().map(PairReport::from).collect(),
+        ranges: proof.ranges,
+        shape_pair_count: proof.shape_pair_count,
+        region_count: proof.region_count,
+    };
+    json::print_json_or_text(args.json, &report, || format_proof(&proof, args.all))?;
     verdict.map_err(|clash| BuildError::from(clash).into())
 }
 
-fn print_proof(proof: &Proof, prints_all: bool, out: &mut impl Write) -> io::Result<()> {
+fn format_proof(proof: &Proof, prints_all: bool) -> String {
     /// The largest number of rows in a list without --all.
     const MAX_ROWS: usize = 10;
-    writeln!(
-        out,
-        "proved   seen   parts                                          at A1 A2 A3 A4, deg"
-    )?;
-    writeln!(out, "    mm     mm")?;
-    let print_list = |pairs: &[NearestPair], out: &mut dyn Write| -> io::Result<()> {
-        let close_pairs: Vec<_> = pairs
-            .iter()
-            .filter(|pair| pair.lower_bound < FAR_MM * 0.9)
-            .collect();
-        let row_count = if prints_all {
-            close_pairs.len()
-        } else {
-            MAX_ROWS.min(close_pairs.len())
-        };
-        for pair in &close_pairs[..row_count] {
-            print_row(pair, out)?;
-        }
-        match close_pairs.len() - row_count {
-            0 => Ok(()),
-            hidden_count => writeln!(out, "... and {hidden_count} more (--all)"),
+    let format_list = |pairs: &[NearestPair]| {
+        let close_pairs = pairs.iter().filter(|pair| pair.lower_bound < FAR_MM * 0.9);
+        let rows: Vec<String> = close_pairs.map(format_row).collect();
+        let max_rows = if prints_all { rows.len() } else { MAX_ROWS };
+        match rows.len().saturating_sub(max_rows) {
+            0 => rows.concat(),
+            hidden_count => {
+                let shown_rows = rows[..max_rows].concat();
+                format!("{shown_rows}... and {hidden_count} more (--all)\n")
+            }
         }
     };
-    print_list(&proof.separate_pairs, out)?;
-    writeln!(out, "\ndesigned to touch: gap between the parts")?;
-    print_list(&proof.touching_pairs, out)?;
-    writeln!(out, "\nranges of the servo angles that the guard accepts")?;
+    let mut text = String::new();
+    text += "proved   seen   parts                                          at A1 A2 A3 A4, deg\n";
+    text += "    mm     mm\n";
+    text += &format_list(&proof.separate_pairs);
+    text += "\ndesigned to touch: gap between the parts\n";
+    text += &format_list(&proof.touching_pairs);
+    text += "\nranges of the servo angles that the guard accepts\n";
     for (name, [min, max]) in SERVO_NAMES.iter().zip(proof.ranges) {
-        writeln!(out, "  {name} {min:7.2} to {max:7.2} deg")?;
+        _ = writeln!(text, "  {name} {min:7.2} to {max:7.2} deg");
     }
-    writeln!(
-        out,
-        "{} pairs of shapes, {} regions of poses",
-        proof.shape_pair_count, proof.region_count
-    )?;
+    let (pair_count, region_count) = (proof.shape_pair_count, proof.region_count);
+    _ = writeln!(
+        text,
+        "{pair_count} pairs of shapes, {region_count} regions of poses"
+    );
     if let (Ok(()), Some(nearest)) = (proof.check(), proof.nearest_separate_pair()) {
-        writeln!(
-            out,
+        _ = writeln!(
+            text,
             "no two parts come nearer than {:.2} mm at any pose that the guard accepts",
             nearest.lower_bound
-        )?;
+        );
     }
-    Ok(())
+    text
 }
 
-fn print_row(pair: &NearestPair, out: &mut dyn Write) -> io::Result<()> {
+fn format_row(pair: &NearestPair) -> String {
     let witness = pair.witness.as_ref();
     let parts = format!("{}, {}", pair.first, pair.second);
-    write!(
-        out,
-        "{:6.2} {:>6}   {parts:<44}",
-        pair.lower_bound,
-        witness.map_or("-".to_owned(), |clearance| format!("{:.2}", clearance.mm))
-    )?;
-    if let Some(pose) = witness
-        .map(|clearance| clearance.pose)
-        .or(pair.unproved_angles)
-    {
-        for angle in pose {
-            write!(out, " {angle:6.1}")?;
-        }
+    let seen = witness.map_or("-".to_owned(), |clearance| format!("{:.2}", clearance.mm));
+    let mut row = format!("{:6.2} {seen:>6}   {parts:<44}", pair.lower_bound);
+    let pose = witness.map(|clearance| clearance.pose);
+    for angle in pose.or(pair.unproved_angles).into_iter().flatten() {
+        _ = write!(row, " {angle:6.1}");
     }
-    writeln!(out)
+    row + "\n"
 }

@@ -6,7 +6,7 @@ use lizard_paper::design::{ChartPoint, PROPORTION_SUM, Proportions};
 use svg::node::element::Group;
 
 use crate::shared::plot::{Axis, ColourScale, Plot, VIRIDIS};
-use crate::shared::shapes::{add_outline, add_title, circle, line, render_svg, text_start};
+use crate::shared::shapes::{add_outline, add_title, render_svg, text_start};
 
 /// Width and height of the page, px.
 const PAGE_SIZE: (f64, f64) = (1530.0, 570.0);
@@ -22,20 +22,12 @@ pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
         .collect();
     let find_point = |r1: f64, r2: f64| cells.get(&to_cell(r1, r2)).copied();
     type ValueFn = fn(&ChartPoint) -> Option<f64>;
+    let get_radius: ValueFn = |p| (p.performance.r_mic > 0.0).then_some(p.performance.r_mic);
+    let get_mean_lci: ValueFn = |p| p.performance.lci.map(|lci| lci.mean);
     let panels: [(&str, ValueFn, f64, usize); 3] = [
         ("workspace area / D²", |p| Some(p.performance.area), 2.5, 2),
-        (
-            "radius of the inscribed circle / D",
-            |p| (p.performance.r_mic > 0.0).then_some(p.performance.r_mic),
-            0.5,
-            2,
-        ),
-        (
-            "mean LCI in the inscribed circle",
-            |p| p.performance.lci.map(|lci| lci.mean),
-            1.0,
-            1,
-        ),
+        ("radius of the inscribed circle / D", get_radius, 0.5, 2),
+        ("mean LCI in the inscribed circle", get_mean_lci, 1.0, 1),
     ];
     let mut group = add_title(
         Group::new(),
@@ -57,45 +49,35 @@ pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
         };
         let step_count = (PROPORTION_SUM / step).round() as usize;
         // Cells are centred on the grid points, so the map extends half a cell beyond the axes.
+        let map_size = PANEL_SIZE * (PROPORTION_SUM + step) / PROPORTION_SUM;
+        let map_range = (-step / 2.0, PROPORTION_SUM + step / 2.0);
         let map_plot = Plot {
-            corner: plot.to_page_point(-step / 2.0, PROPORTION_SUM + step / 2.0),
-            size: (
-                PANEL_SIZE * (PROPORTION_SUM + step) / PROPORTION_SUM,
-                PANEL_SIZE * (PROPORTION_SUM + step) / PROPORTION_SUM,
-            ),
-            x_range: (-step / 2.0, PROPORTION_SUM + step / 2.0),
-            y_range: (-step / 2.0, PROPORTION_SUM + step / 2.0),
+            corner: plot.to_page_point(map_range.0, map_range.1),
+            size: (map_size, map_size),
+            x_range: map_range,
+            y_range: map_range,
         };
-        let (x_axis, y_axis) = (
-            Axis::new(0.1, "r1, crank"),
-            Axis::new(0.1, if i == 0 { "r2, coupler" } else { "" }),
-        );
+        let x_axis = Axis::new(0.1, "r1, crank");
+        let y_axis = Axis::new(0.1, if i == 0 { "r2, coupler" } else { "" });
         group = plot.draw_grid(group, &x_axis, &y_axis);
         group = map_plot.draw_map(group, (step_count + 1, step_count + 1), |x, y| {
-            find_point(x, y)
-                .and_then(get_value)
-                .map(|value| scale.colour(value))
+            let value = find_point(x, y).and_then(get_value);
+            value.map(|value| scale.colour(value))
         });
         for r3 in [0.1, 0.2, 0.3, 0.4] {
-            let (start, end) = (
-                plot.to_page_point(0.0, PROPORTION_SUM - r3),
-                plot.to_page_point(PROPORTION_SUM - r3, 0.0),
-            );
-            group = group.add(line(start, end, "white", 0.8).set("stroke-dasharray", "3 4"));
+            let max = PROPORTION_SUM - r3;
+            let r3_line = plot.line((0.0, max), (max, 0.0), "white", 0.8);
+            group = group.add(r3_line.set("stroke-dasharray", "3 4"));
         }
-        let (x, y) = plot.to_page_point(Proportions::PAPER.r1, Proportions::PAPER.r2);
-        group = group
-            .add(add_outline(circle((x, y), 7.0, "none"), "white", 5.0))
-            .add(add_outline(circle((x, y), 7.0, "none"), "#d55e00", 2.5));
+        let paper_point = (Proportions::PAPER.r1, Proportions::PAPER.r2);
+        for (colour, width) in [("white", 5.0), ("#d55e00", 2.5)] {
+            let ring = plot.circle(paper_point, 7.0, "none");
+            group = group.add(add_outline(ring, colour, width));
+        }
         group = plot.draw_axes(group, &x_axis, &y_axis);
         group = group.add(text_start(name, (plot.corner.0, 128.0), 17.0));
-        group = scale.draw_key(
-            group,
-            (plot.corner.0 + PANEL_SIZE + 20.0, 150.0),
-            PANEL_SIZE,
-            "",
-            decimals,
-        );
+        let key_corner = (plot.corner.0 + PANEL_SIZE + 20.0, 150.0);
+        group = scale.draw_key(group, key_corner, PANEL_SIZE, "", decimals);
     }
     render_svg(PAGE_SIZE, group)
 }

@@ -67,36 +67,22 @@ pub fn draw_workspaces(robot: &Robot) -> String {
             (linkage_cells.contains(&cell), SLIDER_COLOURS[0]),
             (is_in_tail_workspace(robot, point), TAIL_COLOURS[0]),
         ];
-        colours
-            .into_iter()
-            .find(|(is_in, _)| *is_in)
-            .map(|(_, colour)| colour)
+        let mut colours = colours.into_iter();
+        colours.find_map(|(is_in, colour)| is_in.then_some(colour))
     });
     for servo in 0..4 {
-        let full_circle = compute_foot_positions(robot, servo, (-180..=180).map(f64::from), false);
-        let guarded_arc = compute_foot_positions(
-            robot,
-            servo,
-            (-MAX_TURN_DEG..=MAX_TURN_DEG).map(f64::from),
-            true,
-        );
+        let full_circle = compute_foot_positions(robot, servo, 180, false);
+        let guarded_arc = compute_foot_positions(robot, servo, MAX_TURN_DEG, true);
+        let full_curve = plot.curve(&full_circle, GREY, 1.2);
+        let walk_curve = plot.curve(&compute_foot_path(robot, servo), DARK, 8.0);
         group = group
-            .add(
-                plot.curve(&full_circle, GREY, 1.2)
-                    .set("stroke-dasharray", "5 4"),
-            )
+            .add(full_curve.set("stroke-dasharray", "5 4"))
             .add(plot.curve(&guarded_arc, LEG_COLOUR, 4.0))
-            .add(
-                plot.curve(&compute_foot_path(robot, servo), DARK, 8.0)
-                    .set("stroke-opacity", 0.55),
-            );
+            .add(walk_curve.set("stroke-opacity", 0.55));
     }
     for shaft in robot.lizard().shafts() {
-        group = group.add(add_outline(
-            circle(plot.to_page_point(shaft.x, shaft.y), 6.0, "white"),
-            DARK,
-            2.0,
-        ));
+        let shaft_circle = plot.circle((shaft.x, shaft.y), 6.0, "white");
+        group = group.add(add_outline(shaft_circle, DARK, 2.0));
     }
     group = plot.draw_axes(group, &AXES[0], &AXES[1]);
     group = add_title(
@@ -152,10 +138,8 @@ fn find_accepted_solutions(robot: &Robot, turns: impl Fn(f64, f64) -> [f64; 4]) 
 /// Returns the cells that the tail's point reaches in accepted poses.
 fn find_accepted_tail_cells(robot: &Robot) -> Cells {
     let solutions = find_accepted_solutions(robot, |a, b| [0.0, 0.0, a, b]);
-    solutions
-        .iter()
-        .map(|solution| to_cell(solution.tail_point()))
-        .collect()
+    let points = solutions.iter().map(Solution::tail_point);
+    points.map(to_cell).collect()
 }
 
 /// Returns the cells that the sliders' middles reach in accepted poses. Only mirror-symmetric poses are tested, because
@@ -164,10 +148,7 @@ fn find_accepted_slider_cells(robot: &Robot) -> Cells {
     let solutions = find_accepted_solutions(robot, |a, b| [a, -a, -b, b]);
     let points = solutions.iter().flat_map(|solution| {
         Side::ALL.map(|side| {
-            let slider = match side {
-                Side::Left => &solution.left,
-                Side::Right => &solution.right,
-            };
+            let slider = solution.side(side);
             compute_slider_middle(robot, side, slider.rear_tip, slider.front_tip)
         })
     });
@@ -187,16 +168,14 @@ fn find_linkage_slider_cells(robot: &Robot) -> Cells {
         let slider = robot.lizard().side(side);
         let shaft = Vector::new(slider.front_offset, slider.base);
         let directions = || (0..180).map(|step| Vector::from_angle(2.0 * f64::from(step)));
-        for (front, rear) in
-            directions().flat_map(|front| directions().map(move |rear| (front, rear)))
-        {
+        let pairs = directions().flat_map(|front| directions().map(move |rear| (front, rear)));
+        for (front, rear) in pairs {
             let rear_tip = rear * slider.rear_arm;
             let front_tip = shaft + front * slider.front_arm;
             let travel = (front_tip - rear_tip).length() - slider.nominal_length;
             if (limits.stroke_min..=limits.stroke_max).contains(&travel) {
-                cells.insert(to_cell(compute_slider_middle(
-                    robot, side, rear_tip, front_tip,
-                )));
+                let middle = compute_slider_middle(robot, side, rear_tip, front_tip);
+                cells.insert(to_cell(middle));
             }
         }
     }
@@ -213,21 +192,22 @@ fn is_in_tail_workspace(robot: &Robot, point: Vector) -> bool {
         && Workspace::for_five_bar(&robot.lizard().end(End::Tail)).contains(local_point)
 }
 
-/// Returns a foot's positions if only its servo turns from neutral. If `is_guarded` is true, positions that the guard
-/// refuses are omitted.
+/// Returns a foot's positions if only its servo turns from neutral, in steps of 1 degree up to `max_turn_deg` to either
+/// side. If `is_guarded` is true, positions that the guard refuses are omitted.
 fn compute_foot_positions(
     robot: &Robot,
     servo: usize,
-    turns: impl Iterator<Item = f64>,
+    max_turn_deg: i32,
     is_guarded: bool,
 ) -> Vec<(f64, f64)> {
-    let accepted_position = |turn: f64| {
+    let accepted_position = |turn: i32| {
         let mut turns = [0.0; 4];
-        turns[servo] = turn;
+        turns[servo] = f64::from(turn);
         let angles = angles_from_turns(robot, turns);
         let is_accepted = !is_guarded || robot.solve_if_allowed(angles).is_some();
         is_accepted.then(|| compute_foot_position(robot, servo, angles[servo]))
     };
+    let turns = -max_turn_deg..=max_turn_deg;
     turns.filter_map(accepted_position).collect()
 }
 
@@ -258,20 +238,14 @@ mod tests {
         let solutions = find_accepted_solutions(&robot, |a, b| [0.0, 0.0, a, b]);
         assert!(solutions.len() > 300, "{}", solutions.len());
         for solution in solutions {
-            assert!(
-                is_in_tail_workspace(&robot, solution.tail_point()),
-                "{solution:?}"
-            );
+            let is_within_reach = is_in_tail_workspace(&robot, solution.tail_point());
+            assert!(is_within_reach, "{solution:?}");
         }
-        let (accepted_cells, linkage_cells) = (
-            find_accepted_slider_cells(&robot),
-            find_linkage_slider_cells(&robot),
-        );
+        let accepted_cells = find_accepted_slider_cells(&robot);
+        let linkage_cells = find_linkage_slider_cells(&robot);
         let outside_count = accepted_cells.difference(&linkage_cells).count();
-        assert!(
-            accepted_cells.len() > 100 && outside_count * 20 < accepted_cells.len(),
-            "{outside_count}"
-        );
+        assert!(accepted_cells.len() > 100, "{}", accepted_cells.len());
+        assert!(outside_count * 20 < accepted_cells.len(), "{outside_count}");
     }
 
     #[test]
@@ -281,21 +255,17 @@ mod tests {
         let coordinate = |i: i32| f64::from(i) - 160.5;
         let points =
             (0..321).flat_map(|i| (0..321).map(move |j| Vector::new(coordinate(i), coordinate(j))));
-        let area = points
-            .filter(|point| is_in_tail_workspace(&robot, *point))
-            .count() as f64;
+        let points = points.filter(|point| is_in_tail_workspace(&robot, *point));
+        let area = points.count() as f64;
         assert!((area / 7446.3 - 1.0).abs() < 0.01, "{area}");
         // A slider's middle is half the sum of two arms of 30 mm, so it lies in a disc with a radius of 30 mm.
         for (x, y) in find_linkage_slider_cells(&robot) {
-            let (x, y) = (
-                CELL_WIDTH * (f64::from(x) + 0.5),
-                CELL_WIDTH * (f64::from(y) + 0.5),
-            );
+            let [x, y] = [x, y].map(|index| CELL_WIDTH * (f64::from(index) + 0.5));
             let distance = (x.abs() - 10.0).hypot(y);
             assert!(distance < 30.0 + 2.0 * CELL_WIDTH, "slider at ({x}, {y})");
         }
         // A foot keeps its distance of 45 mm from its hip, 35 mm to the side and 55 mm ahead.
-        for (x, y) in compute_foot_positions(&robot, 0, (-180..=180).map(f64::from), false) {
+        for (x, y) in compute_foot_positions(&robot, 0, 180, false) {
             let distance = (x + 35.0).hypot(y - 55.0);
             assert!((distance - 45.0).abs() < 0.01, "foot: {x} {y} {distance}");
         }

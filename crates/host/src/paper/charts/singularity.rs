@@ -1,12 +1,12 @@
 //! The chart of the head servos' angles, with margins, singular curves and the gaits' paths.
 
-use lizard_kinematics::{Check, End, FiveBar, Pose, SingularPose, Singularity, wrap};
+use lizard_kinematics::{Check, End, FiveBar, Margins, Pose, SingularPose, Singularity, wrap};
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
 use crate::shared::plot::{Axis, BLUES, ColourScale, IMPOSSIBLE_COLOUR, Plot, draw_legend_entry};
 use crate::shared::shapes::{
-    DARK, add_outline, add_title, circle, cross, line, rectangle, render_svg, text_start,
+    DARK, add_outline, add_title, circle, cross, rectangle, render_svg, text_start,
 };
 
 /// Width and height of the page, px.
@@ -39,11 +39,10 @@ pub fn draw_singularities(robot: &Robot) -> String {
         max: 1.0,
         colours: BLUES,
     };
-    let create_axes = |step| {
-        (
-            Axis::new(step, "theta1 (A1), deg"),
-            Axis::new(step, "theta4 (A2), deg"),
-        )
+    let draw_axes = |group: Group, plot: &Plot, step: f64| {
+        let [x_axis, y_axis] =
+            ["theta1 (A1), deg", "theta4 (A2), deg"].map(|name| Axis::new(step, name));
+        plot.draw_axes(group, &x_axis, &y_axis)
     };
     let left_plot = Plot {
         corner: (90.0, 110.0),
@@ -61,51 +60,34 @@ pub fn draw_singularities(robot: &Robot) -> String {
     let mut group = Group::new();
     for (plot, cell_count) in [(&left_plot, 360), (&right_plot, 200)] {
         group = plot.draw_map(group, (cell_count, cell_count), |x, y| {
-            Some(
-                compute_min_margin(robot, x, y)
-                    .map_or(IMPOSSIBLE_COLOUR, |margin| scale.colour(margin)),
-            )
+            let margin = compute_min_margin(robot, x, y);
+            Some(margin.map_or(IMPOSSIBLE_COLOUR, |margin| scale.colour(margin)))
         });
     }
     group = draw_singular_curves(group, &left_plot, robot);
     // The left panel shows the outline of the right panel.
-    let top_left = left_plot.to_page_point(path_square.x_range.0, path_square.y_range.1);
-    let bottom_right = left_plot.to_page_point(path_square.x_range.1, path_square.y_range.0);
-    group = group.add(add_outline(
-        rectangle(
-            top_left,
-            (bottom_right.0 - top_left.0, bottom_right.1 - top_left.1),
-            "none",
-        ),
-        DARK,
-        2.0,
-    ));
-    for (i, (_, path)) in paths.iter().enumerate() {
-        let (colour, dashes) = PATH_STYLES[i % PATH_STYLES.len()];
+    let (left, top) = left_plot.to_page_point(path_square.x_range.0, path_square.y_range.1);
+    let (right, bottom) = left_plot.to_page_point(path_square.x_range.1, path_square.y_range.0);
+    let outline = rectangle((left, top), (right - left, bottom - top), "none");
+    group = group.add(add_outline(outline, DARK, 2.0));
+    let styled_paths = || paths.iter().zip(PATH_STYLES.into_iter().cycle());
+    for ((_, path), (colour, dashes)) in styled_paths() {
         if path.len() > 1 {
-            group = group.add(right_plot.curve(path, "white", 4.5)).add(
-                right_plot
-                    .curve(path, colour, 2.2)
-                    .set("stroke-dasharray", dashes),
-            );
+            let curve = right_plot.curve(path, colour, 2.2);
+            group = group
+                .add(right_plot.curve(path, "white", 4.5))
+                .add(curve.set("stroke-dasharray", dashes));
         }
     }
-    for (i, (_, path)) in paths.iter().enumerate() {
-        if let [(x, y)] = path[..] {
-            let dot = circle(
-                right_plot.to_page_point(x, y),
-                6.0,
-                PATH_STYLES[i % PATH_STYLES.len()].0,
-            );
-            group = group.add(dot.set("stroke", "white").set("stroke-width", 1.5));
+    for ((_, path), (colour, _)) in styled_paths() {
+        if let [point] = path[..] {
+            let dot = right_plot.circle(point, 6.0, colour);
+            group = group.add(add_outline(dot, "white", 1.5));
         }
     }
-    let (x_axis, y_axis) = create_axes(20.0);
-    group = left_plot.draw_axes(group, &x_axis, &y_axis);
-    let (x_axis, y_axis) = create_axes(10.0);
-    group = right_plot.draw_axes(group, &x_axis, &y_axis);
-    for (i, (names, path)) in paths.iter().enumerate() {
-        let (colour, dashes) = PATH_STYLES[i % PATH_STYLES.len()];
+    group = draw_axes(group, &left_plot, 20.0);
+    group = draw_axes(group, &right_plot, 10.0);
+    for (i, ((names, path), (colour, dashes))) in styled_paths().enumerate() {
         let point = (1226.0, 124.0 + 27.0 * i as f64);
         let names = names.replace('-', " ");
         if path.len() > 1 {
@@ -117,37 +99,21 @@ pub fn draw_singularities(robot: &Robot) -> String {
         }
     }
     group = scale.draw_key(group, (800.0, 640.0 - 20.0), 160.0, "least margin", 1);
-    let entries = [
-        (A1_COLOUR, "", "arm of A1 straight or folded (type 1)"),
-        (A2_COLOUR, "", "arm of A2 straight or folded (type 1)"),
-    ];
-    for (i, (colour, dashes, label)) in entries.into_iter().enumerate() {
-        group = draw_legend_entry(
-            group,
-            (930.0, 640.0 + 28.0 * i as f64),
-            colour,
-            dashes,
-            label,
-        );
+    for (y, colour, label) in [
+        (640.0, A1_COLOUR, "arm of A1 straight or folded (type 1)"),
+        (668.0, A2_COLOUR, "arm of A2 straight or folded (type 1)"),
+    ] {
+        group = draw_legend_entry(group, (930.0, y), colour, "", label);
     }
+    let legend_text = |text: &str, x: f64, y: f64| text_start(text, (x, y), 15.0);
+    let impossible_label = "below the robot's limits, or cranks crossed";
+    let margins_note = "Margins: type 2, type 1 and front legs.";
     group = group
         .add(cross((947.0, 696.0), 7.0, DARK, 3.0))
-        .add(text_start(
-            "crank tips coincide (type 2)",
-            (974.0, 701.0),
-            15.0,
-        ))
+        .add(legend_text("crank tips coincide (type 2)", 974.0, 701.0))
         .add(rectangle((930.0, 716.0), (34.0, 18.0), IMPOSSIBLE_COLOUR))
-        .add(text_start(
-            "below the robot's limits, or cranks crossed",
-            (974.0, 730.0),
-            15.0,
-        ))
-        .add(text_start(
-            "Margins: type 2, type 1 and front legs.",
-            (930.0, 762.0),
-            15.0,
-        ));
+        .add(legend_text(impossible_label, 974.0, 730.0))
+        .add(legend_text(margins_note, 930.0, 762.0));
     group = add_title(
         group,
         90.0,
@@ -170,14 +136,8 @@ fn compute_min_margin(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
         .limits()
         .violations(&solution)
         .any(|violation| !matches!(violation.check, Check::StrokeLeft | Check::StrokeRight));
-    let all_margins = &solution.margins;
-    let margins = [
-        all_margins.type2[0],
-        all_margins.type1[0],
-        all_margins.type1[1],
-        all_margins.leg[0],
-        all_margins.leg[1],
-    ];
+    let Margins { type2, type1, leg } = solution.margins;
+    let margins = [type2[0], type1[0], type1[1], leg[0], leg[1]];
     (!violates_limit).then(|| margins.into_iter().fold(1.0, f64::min))
 }
 
@@ -191,10 +151,7 @@ fn compute_gait_paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
             .iter_mut()
             .find(|(_, known_path)| are_same_path(known_path, &path));
         match same_path {
-            Some((names, _)) => {
-                names.push_str(", ");
-                names.push_str(gait.name());
-            }
+            Some((names, _)) => *names += &format!(", {}", gait.name()),
             None => paths.push((gait.name().to_string(), path)),
         }
     }
@@ -210,10 +167,9 @@ fn compute_gait_path(gait: &CheckedGait) -> Vec<(f64, f64)> {
     let start = point_at_step(0);
     let is_moving =
         (1..500).any(|i| (point_at_step(i).0 - start.0).hypot(point_at_step(i).1 - start.1) > 1e-6);
-    if is_moving {
-        (0..=500).map(point_at_step).collect()
-    } else {
-        vec![start]
+    match is_moving {
+        true => (0..=500).map(point_at_step).collect(),
+        false => vec![start],
     }
 }
 
@@ -232,10 +188,8 @@ fn enclose_paths(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
     let all_points = || paths.iter().flat_map(|(_, path)| path);
     let middle_and_half_range = |coordinate: fn(&(f64, f64)) -> f64| {
         let values = || all_points().map(coordinate);
-        let (min, max) = (
-            values().fold(f64::INFINITY, f64::min),
-            values().fold(f64::NEG_INFINITY, f64::max),
-        );
+        let min = values().fold(f64::INFINITY, f64::min);
+        let max = values().fold(f64::NEG_INFINITY, f64::max);
         ((min + max) / 2.0, (max - min) / 2.0)
     };
     let (x, half_width) = middle_and_half_range(|point| point.0);
@@ -297,9 +251,8 @@ fn draw_sweep(
 ) -> Group {
     const STEP_DEG: f64 = 0.5;
     let is_inside = |pose: &&SingularPose| {
-        [pose.theta_left, pose.theta_right]
-            .iter()
-            .all(|theta| (0.0..=180.0).contains(theta))
+        let mut thetas = [pose.theta_left, pose.theta_right].into_iter();
+        thetas.all(|theta| (0.0..=180.0).contains(&theta))
     };
     let distance_between = |a: &SingularPose, b: &SingularPose| {
         (a.theta_left - b.theta_left).hypot(a.theta_right - b.theta_right)
@@ -321,9 +274,9 @@ fn draw_sweep(
                     Singularity::RightArm => A2_COLOUR,
                     Singularity::Couplers => DARK,
                 };
-                let start = plot.to_page_point(previous_pose.theta_left, previous_pose.theta_right);
-                let end = plot.to_page_point(pose.theta_left, pose.theta_right);
-                group = group.add(line(start, end, colour, 2.5));
+                let [start, end] =
+                    [previous_pose, pose].map(|pose| (pose.theta_left, pose.theta_right));
+                group = group.add(plot.line(start, end, colour, 2.5));
             }
         }
         previous_poses = poses;

@@ -52,28 +52,17 @@ pub fn draw_stroke(robot: &Robot) -> String {
 }
 
 fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) -> Group {
-    let (x_axis, y_axis) = (
-        Axis::new(0.25, "phase"),
-        Axis::new(
-            15.0,
-            if plot.corner.0 < PANEL_PITCH.0 {
-                "s, mm"
-            } else {
-                ""
-            },
-        ),
-    );
+    let is_first_column = plot.corner.0 < PANEL_PITCH.0;
+    let x_axis = Axis::new(0.25, "phase");
+    let y_axis = Axis::new(15.0, if is_first_column { "s, mm" } else { "" });
     group = plot.draw_grid(group, &x_axis, &y_axis);
     for (min, max) in [
         (plot.y_range.0, robot.limits().stroke_min),
         (robot.limits().stroke_max, plot.y_range.1),
     ] {
         let (top_left, bottom_left) = (plot.to_page_point(0.0, max), plot.to_page_point(0.0, min));
-        group = group.add(rectangle(
-            top_left,
-            (plot.size.0, bottom_left.1 - top_left.1),
-            IMPOSSIBLE_COLOUR,
-        ));
+        let size = (plot.size.0, bottom_left.1 - top_left.1);
+        group = group.add(rectangle(top_left, size, IMPOSSIBLE_COLOUR));
     }
     let samples: Vec<(f64, f64, f64)> = (0..=400)
         .map(|i| f64::from(i) / 400.0)
@@ -82,35 +71,23 @@ fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) 
             Some((phase, solution.left.s, solution.right.s))
         })
         .collect();
-    let list_points = |travel: fn(&(f64, f64, f64)) -> f64| -> Vec<(f64, f64)> {
-        samples
-            .iter()
-            .map(|sample| (sample.0, travel(sample)))
-            .collect()
+    let draw_curve = |travel: fn(&(f64, f64, f64)) -> f64, colour: &str| {
+        let points = samples.iter().map(|sample| (sample.0, travel(sample)));
+        plot.curve(&points.collect::<Vec<_>>(), colour, 2.5)
     };
+    let right_curve = draw_curve(|sample| sample.2, RIGHT_COLOUR);
     group = group
-        .add(plot.curve(&list_points(|sample| sample.1), LEFT_COLOUR, 2.5))
-        .add(
-            plot.curve(&list_points(|sample| sample.2), RIGHT_COLOUR, 2.5)
-                .set("stroke-dasharray", "7 4"),
-        );
+        .add(draw_curve(|sample| sample.1, LEFT_COLOUR))
+        .add(right_curve.set("stroke-dasharray", "7 4"));
     group = plot.draw_axes(group, &x_axis, &y_axis);
     let travels = || samples.iter().flat_map(|sample| [sample.1, sample.2]);
     let min_travel = travels().fold(f64::INFINITY, f64::min);
     let max_travel = travels().fold(f64::NEG_INFINITY, f64::max);
     let title_point = (plot.corner.0, plot.corner.1 - 10.0);
-    let range_text = format!(
-        "{:+.1} to {:+.1} mm",
-        round_to_decimals(min_travel, 1),
-        round_to_decimals(max_travel, 1)
-    );
+    let [min, max] = [min_travel, max_travel].map(|travel| round_to_decimals(travel, 1));
+    let range_text = format!("{min:+.1} to {max:+.1} mm");
+    let range_point = (plot.corner.0 + plot.size.0, title_point.1);
     group
         .add(text_start(&gait.command(), title_point, 17.0).set("font-weight", "bold"))
-        .add(text(
-            &range_text,
-            (plot.corner.0 + plot.size.0, title_point.1),
-            14.0,
-            GREY,
-            Anchor::End,
-        ))
+        .add(text(&range_text, range_point, 14.0, GREY, Anchor::End))
 }

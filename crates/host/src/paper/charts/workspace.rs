@@ -1,12 +1,12 @@
 //! Charts of the head's workspace and of the local conditioning index in the workspace.
 
-use lizard_kinematics::{Circle, End, Vector, Workspace};
+use lizard_kinematics::{End, Vector, Workspace};
 use lizard_paper::design::{CLAIMED_LCI, Performance, lci};
 use lizard_robot::Robot;
-use svg::node::element::{Circle as Ring, Group};
+use svg::node::element::{Circle, Group};
 
 use crate::shared::plot::{Axis, ColourScale, IMPOSSIBLE_COLOUR, Plot, VIRIDIS, draw_legend_entry};
-use crate::shared::shapes::{DARK, GREY, add_outline, add_title, circle, render_svg, text_start};
+use crate::shared::shapes::{DARK, GREY, add_outline, add_title, render_svg, text_start};
 
 /// Width and height of the page, px.
 const PAGE_SIZE: (f64, f64) = (1120.0, 900.0);
@@ -35,14 +35,14 @@ pub fn draw_workspace(robot: &Robot) -> String {
     });
     for shaft in [five_bar.left_shaft(), five_bar.right_shaft()] {
         for radius in [workspace.inner_radius, workspace.outer_radius] {
-            group = group
-                .add(draw_ring(&plot, shaft, radius, GREY, 1.2).set("stroke-dasharray", "5 4"));
+            let ring = draw_ring(&plot, shaft, radius, GREY, 1.2);
+            group = group.add(ring.set("stroke-dasharray", "5 4"));
         }
     }
     if let Some(mic) = workspace.inscribed_circle() {
         group = group.add(draw_ring(&plot, mic.centre, mic.radius, CIRCLE_COLOUR, 3.0));
     }
-    for path in compute_look_paths(robot) {
+    if let Some(path) = compute_look_path(robot) {
         group = group.add(plot.curve(&path, LOOK_COLOUR, 2.5));
     }
     group = draw_five_bar(group, &plot, robot);
@@ -103,28 +103,16 @@ pub fn draw_conditioning(robot: &Robot) -> String {
     });
     let performance = Performance::compute(&five_bar, 64);
     if let (Some(mic), Some(lci_stats)) = (workspace.inscribed_circle(), performance.lci) {
-        let lci_circle = Circle {
-            radius: lci_stats.radius_above,
-            ..mic
-        };
+        let draw_mic_ring =
+            |radius: f64, colour, width| draw_ring(&plot, mic.centre, radius, colour, width);
+        let lci_radius = lci_stats.radius_above;
+        let lci_ring = draw_mic_ring(lci_radius, DARK, 2.0);
         group = group
-            .add(draw_ring(&plot, mic.centre, mic.radius, "white", 6.0))
-            .add(draw_ring(&plot, mic.centre, mic.radius, CIRCLE_COLOUR, 3.0))
-            .add(draw_ring(
-                &plot,
-                lci_circle.centre,
-                lci_circle.radius,
-                "white",
-                5.0,
-            ))
-            .add(
-                draw_ring(&plot, lci_circle.centre, lci_circle.radius, DARK, 2.0)
-                    .set("stroke-dasharray", "7 4"),
-            );
-        let radius_text = format!(
-            "all ≥ {CLAIMED_LCI} within {:.2} mm",
-            lci_stats.radius_above
-        );
+            .add(draw_mic_ring(mic.radius, "white", 6.0))
+            .add(draw_mic_ring(mic.radius, CIRCLE_COLOUR, 3.0))
+            .add(draw_mic_ring(lci_radius, "white", 5.0))
+            .add(lci_ring.set("stroke-dasharray", "7 4"));
+        let radius_text = format!("all ≥ {CLAIMED_LCI} within {lci_radius:.2} mm");
         for (y, colour, dashes, meaning) in [
             (530.0, CIRCLE_COLOUR, "", "maximal inscribed circle"),
             (558.0, DARK, "7 4", &radius_text),
@@ -145,30 +133,18 @@ pub fn draw_conditioning(robot: &Robot) -> String {
 }
 
 /// Draws a circle whose centre and radius are in the plot's units.
-fn draw_ring(plot: &Plot, centre: Vector, radius: f64, colour: &str, width: f64) -> Ring {
-    add_outline(
-        circle(
-            plot.to_page_point(centre.x, centre.y),
-            radius * plot.scale(),
-            "none",
-        ),
-        colour,
-        width,
-    )
+fn draw_ring(plot: &Plot, centre: Vector, radius: f64, colour: &str, width: f64) -> Circle {
+    let ring = plot.circle((centre.x, centre.y), radius * plot.scale(), "none");
+    add_outline(ring, colour, width)
 }
 
-/// Returns the head's path in the gesture `look`; an empty list if the robot does not have this gesture.
-fn compute_look_paths(robot: &Robot) -> Vec<Vec<(f64, f64)>> {
-    robot
-        .gait("look")
-        .into_iter()
-        .map(|gait| {
-            (0..=200)
-                .filter_map(|i| robot.lizard().solve(&gait.pose(f64::from(i) / 200.0)).ok())
-                .map(|solution| (solution.head.end_point.x, solution.head.end_point.y))
-                .collect()
-        })
-        .collect()
+/// Returns the head's path in the gesture `look`; `None` if the robot does not have this gesture.
+fn compute_look_path(robot: &Robot) -> Option<Vec<(f64, f64)>> {
+    let gait = robot.gait("look")?;
+    let solutions =
+        (0..=200).filter_map(|i| robot.lizard().solve(&gait.pose(f64::from(i) / 200.0)).ok());
+    let end_points = solutions.map(|solution| solution.head.end_point);
+    Some(end_points.map(|point| (point.x, point.y)).collect())
 }
 
 fn draw_five_bar(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
@@ -183,13 +159,9 @@ fn draw_five_bar(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
         ]
         .map(|p| (p.x, p.y));
         group = group.add(plot.curve(&points, DARK, 4.0));
-        for (i, (x, y)) in points.into_iter().enumerate() {
+        for (i, point) in points.into_iter().enumerate() {
             let fill = if i % 4 == 0 { SHAFT_COLOUR } else { "white" };
-            group = group.add(add_outline(
-                circle(plot.to_page_point(x, y), 6.0, fill),
-                DARK,
-                2.0,
-            ));
+            group = group.add(add_outline(plot.circle(point, 6.0, fill), DARK, 2.0));
         }
     }
     group

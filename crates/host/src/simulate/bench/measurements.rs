@@ -138,19 +138,12 @@ impl Measurements {
         patrol_robot: Option<&Robot>,
         report_progress: impl Fn(&'static str),
     ) -> Result<Self, Failure> {
-        let gaits: Vec<String> = gait_choice::choose_demonstration_gaits(robot)
-            .into_iter()
-            .map(to_command)
-            .collect();
+        let gaits = list_demonstration_commands(robot);
         // A robot without a moving gait is measured while it stands.
         let gait = gaits.first().map_or("stand", String::as_str);
         let turn_gait = gaits.last().map_or("stand", String::as_str);
         let is_moving = !gaits.is_empty();
-        let boot_board = || -> Result<SimulatedBoard, BoardError> {
-            let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
-            board.run_ms(1000)?;
-            Ok(board)
-        };
+        let boot_board = || run_first_second(elf, robot);
         report_progress("the stack's depth");
         let image = firmware::read_image(elf)?;
         let stack =
@@ -172,13 +165,10 @@ impl Measurements {
             time_calls_per_command(boot_board()?, TICK_FUNCTION, &list_motion_commands(robot))?;
         let gait_calls = tick_calls.iter().take(robot.gaits().len());
         report_progress("the control tick in a routine");
-        let routine_calls = patrol_robot
-            .map(|robot| time_patrol(elf, robot))
-            .transpose()?;
+        let routine_calls = patrol_robot.map(|robot| time_patrol(elf, robot));
+        let routine_calls = routine_calls.transpose()?;
         report_progress("the guard");
-        let mean_guard_cycles = compute_mean_cycles(
-            &time_calls_per_command(boot_board()?, GUARD_FUNCTION, &[gait])?.concat(),
-        );
+        let guard_calls = time_calls_per_command(boot_board()?, GUARD_FUNCTION, &[gait])?.concat();
         report_progress("the control tick on a saturated line");
         let max_tick_latency = measure_longest_tick_latency(boot_board()?, turn_gait)?;
         report_progress("every other step");
@@ -192,49 +182,38 @@ impl Measurements {
 
         let frame_count = idle_run.cycles as f64 / FRAME_CYCLES as f64;
         let some_if_moving = |value: f64| is_moving.then_some(value);
-        let section_bytes = robot.section().len() as u32;
-        let max_width_errors = idle_exactness
-            .max_width_error()
-            .zip(saturated_exactness.max_width_error());
+        let (idle, saturated) = (&idle_exactness, &saturated_exactness);
+        let max_width_errors = idle.max_width_error().zip(saturated.max_width_error());
+        let [session_spare, saturated_spare] =
+            [&session_board, &saturated_board].map(|board| board.uno.stack_spare());
+        let image = long_run.board.uno.image();
+        let mean_gait_cycles = gait_calls.map(|calls| compute_mean_cycles(calls));
+        let asleep_percent = 100.0 - 100.0 * idle_run.awake_cycles as f64 / idle_run.cycles as f64;
+        let main_cycles = (idle_run.awake_cycles - idle_run.handler_cycles) as f64;
         Ok(Self {
-            code_bytes: firmware::count_code_bytes(long_run.board.uno.image(), robot),
-            section_bytes,
+            code_bytes: firmware::count_code_bytes(image, robot),
+            section_bytes: robot.section().len() as u32,
             has_maps: robot.has_room_for_maps(),
-            static_ram: long_run.board.uno.image().static_ram(),
-            measured_stack_margin: session_board
-                .uno
-                .stack_spare()
-                .min(saturated_board.uno.stack_spare()),
+            static_ram: image.static_ram(),
+            measured_stack_margin: session_spare.min(saturated_spare),
             predicted_stack_margin: stack.margin(),
-            mean_tick_cycles: some_if_moving(
-                gait_calls
-                    .map(|calls| compute_mean_cycles(calls))
-                    .fold(0.0, f64::max),
-            ),
+            mean_tick_cycles: some_if_moving(mean_gait_cycles.fold(0.0, f64::max)),
             max_tick_cycles: compute_max_cycles(&tick_calls.concat()),
             mean_routine_tick_cycles: routine_calls.as_deref().map(compute_mean_cycles),
             max_routine_tick_cycles: routine_calls.as_deref().map(compute_max_cycles),
             max_tick_latency,
             max_step_cycles,
-            mean_guard_cycles: some_if_moving(mean_guard_cycles),
-            mean_main_cycles: some_if_moving(
-                (idle_run.awake_cycles - idle_run.handler_cycles) as f64 / frame_count,
-            ),
+            mean_guard_cycles: some_if_moving(compute_mean_cycles(&guard_calls)),
+            mean_main_cycles: some_if_moving(main_cycles / frame_count),
             mean_servo_interrupt_cycles: idle_run.servo_handler_cycles as f64 / frame_count,
             max_serial_interrupt_cycles,
-            asleep_percent: some_if_moving(
-                100.0 - 100.0 * idle_run.awake_cycles as f64 / idle_run.cycles as f64,
-            ),
-            jitter_idle: idle_exactness.jitter(),
-            jitter_saturated: saturated_exactness.jitter(),
+            asleep_percent: some_if_moving(asleep_percent),
+            jitter_idle: idle.jitter(),
+            jitter_saturated: saturated.jitter(),
             max_width_error: max_width_errors.map(|(idle, saturated)| idle.max(saturated)),
-            max_period_error: idle_exactness
-                .max_period_error
-                .max(saturated_exactness.max_period_error),
-            max_pins_high: idle_exactness
-                .max_pins_high
-                .max(saturated_exactness.max_pins_high),
-            width_resolution: idle_exactness.width_step,
+            max_period_error: idle.max_period_error.max(saturated.max_period_error),
+            max_pins_high: idle.max_pins_high.max(saturated.max_pins_high),
+            width_resolution: idle.width_step,
             late_edges: session_board.read_counter("late")?
                 + saturated_board.read_counter("late")?,
             lost_bytes: session_board.read_counter("rx_lost")?,
@@ -249,17 +228,28 @@ impl Measurements {
 /// # Errors
 /// See [`Measurements::measure`].
 pub fn measure_longest_step(elf: &Path, robot: &Robot) -> Result<u64, BoardError> {
-    let gait = gait_choice::choose_demonstration_gaits(robot)
-        .first()
-        .map_or("stand".into(), |gait| to_command(gait));
+    let gaits = list_demonstration_commands(robot);
+    let gait = gaits.first().map_or("stand", String::as_str);
+    let lines = list_slow_lines(robot);
     let mut max_cycles = 0;
     for function in STEP_FUNCTIONS {
-        let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
-        board.run_ms(1000)?;
-        max_cycles =
-            measure_longest_call(board, function, &gait, &list_slow_lines(robot))?.max(max_cycles);
+        let board = run_first_second(elf, robot)?;
+        max_cycles = measure_longest_call(board, function, gait, &lines)?.max(max_cycles);
     }
     Ok(max_cycles)
+}
+
+/// Lists the commands of the demonstration gaits.
+fn list_demonstration_commands(robot: &Robot) -> Vec<String> {
+    let gaits = gait_choice::choose_demonstration_gaits(robot);
+    gaits.into_iter().map(to_command).collect()
+}
+
+/// Powers on a board and runs it for a second.
+fn run_first_second(elf: &Path, robot: &Robot) -> Result<SimulatedBoard, BoardError> {
+    let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
+    board.run_ms(1000)?;
+    Ok(board)
 }
 
 /// A board that has executed one command on an idle serial line for some time, and the cycles of this time.
@@ -354,10 +344,7 @@ fn run_all_commands(
     board.say("watch 1")?;
     let mut commands = list_motion_commands(robot);
     commands.extend(["help", "?", "status", "speed 55"].map(str::to_owned));
-    let gait = gait_choice::choose_demonstration_gaits(robot)
-        .first()
-        .copied()
-        .map(to_command);
+    let gait = list_demonstration_commands(robot).into_iter().next();
     commands.extend(gait.clone());
     commands.push("rest".into());
     commands.extend(gait);
@@ -392,9 +379,8 @@ fn list_slow_lines(robot: &Robot) -> Vec<String> {
     let gait_names = || robot.gaits().iter().map(CheckedGait::command);
     let total_shared_length = |line: &String| -> usize {
         let shared_length = |name: String| {
-            zip(name.bytes(), line.bytes())
-                .take_while(|(a, b)| a == b)
-                .count()
+            let pairs = zip(name.bytes(), line.bytes());
+            pairs.take_while(|(a, b)| a == b).count()
         };
         gait_names().map(shared_length).sum()
     };
@@ -430,8 +416,7 @@ fn measure_longest_call(
 
 /// Times the control ticks of a patrol while each input closes and opens five times.
 fn time_patrol(elf: &Path, robot: &Robot) -> Result<Vec<Call>, BoardError> {
-    let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
-    board.run_ms(1000)?;
+    let mut board = run_first_second(elf, robot)?;
     board.say(PATROL)?;
     let mut calls = Vec::new();
     for _ in 0..5 {

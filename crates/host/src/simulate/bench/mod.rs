@@ -11,7 +11,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use crate::shared::firmware;
-use crate::shared::progress::create_progress_bar;
+use crate::shared::progress::create_spinner;
 use crate::simulate::patrol::add_patrol;
 use crate::{Failure, RobotArgs};
 
@@ -70,12 +70,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     firmware::select_firmware(Some(&elf), &args.robot, &robot)?;
     let patrol_robot = add_patrol(&args.robot.text()?, &[]).ok();
-    let progress = create_progress_bar(0, "{spinner} {msg}, {elapsed}");
-    progress.enable_steady_tick(std::time::Duration::from_millis(100));
-    let measurements = Measurements::measure(&elf, &robot, patrol_robot.as_ref(), |measurement| {
-        progress.set_message(measurement);
-    })?;
-    progress.finish_and_clear();
+    let spinner = create_spinner("");
+    let show_measurement = |measurement: &'static str| spinner.set_message(measurement);
+    let measurements =
+        Measurements::measure(&elf, &robot, patrol_robot.as_ref(), show_measurement)?;
+    drop(spinner);
 
     let rows = list_rows(&measurements);
     let mut out = io::stdout().lock();
@@ -86,15 +85,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
     } else {
         table::print(&rows, measurements.gait.as_deref(), &mut out)?;
     }
-    let names_over_budget: Vec<&str> = rows
-        .iter()
-        .filter(|row| !row.is_within_budget())
-        .map(|row| row.name)
-        .collect();
+    let rows_over_budget = rows.iter().filter(|row| !row.is_within_budget());
+    let names_over_budget: Vec<&str> = rows_over_budget.map(|row| row.name).collect();
     if names_over_budget.is_empty() {
-        Ok(())
-    } else {
-        let names = names_over_budget.join(", ");
-        Err(Failure::Operation(format!("over budget: {names}")))
+        return Ok(());
     }
+    let names = names_over_budget.join(", ");
+    Err(Failure::Operation(format!("over budget: {names}")))
 }

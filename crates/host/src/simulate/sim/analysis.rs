@@ -114,13 +114,11 @@ impl ServoFrame {
 
 /// Computes the servo angles of each frame from its pulse widths.
 pub fn compute_servo_frames(robot: &Robot, frames: &[Frame]) -> Vec<ServoFrame> {
-    frames
-        .iter()
-        .map(|frame| {
-            let seconds = frame.start as f64 / FREQUENCY as f64;
-            ServoFrame::from_widths(robot, seconds, frame.all_widths())
-        })
-        .collect()
+    let to_servo_frame = |frame: &Frame| {
+        let seconds = frame.start as f64 / FREQUENCY as f64;
+        ServoFrame::from_widths(robot, seconds, frame.all_widths())
+    };
+    frames.iter().map(to_servo_frame).collect()
 }
 
 /// The frames of a run, and the robot that received them.
@@ -133,6 +131,11 @@ pub struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
+    /// Combines the frames of a run with the robot that received them.
+    pub fn new(robot: &'a Robot, log: &'a FrameLog) -> Self {
+        Self { robot, log }
+    }
+
     /// Returns the servo angles of the frames with indices in `range`, in order.
     pub fn servo_frames_in(
         self,
@@ -166,15 +169,13 @@ pub fn compute_servo_reports(
 ) -> Vec<ServoReport> {
     let frames = &run.log.widths;
     let mut max_turns_per_frame = [0.0f64; 4];
-    let mut previous_angles = None;
-    for angles in run.servo_frames().map(|servo_frame| servo_frame.angles) {
-        if let (Some(previous_angles), Some(angles)) = (previous_angles, angles) {
-            let previous_angles: [f64; 4] = previous_angles;
+    let angles = run.servo_frames().map(|servo_frame| servo_frame.angles);
+    for (angles, next_angles) in angles.clone().zip(angles.skip(1)) {
+        if let (Some(angles), Some(next_angles)) = (angles, next_angles) {
             max_turns_per_frame = std::array::from_fn(|i| {
-                max_turns_per_frame[i].max((angles[i] - previous_angles[i]).abs())
+                max_turns_per_frame[i].max((next_angles[i] - angles[i]).abs())
             });
         }
-        previous_angles = angles;
     }
     let compute_report = |i: usize| {
         let widths = || frames.iter().map(move |frame| frame[i]).filter(|w| *w > 0);
@@ -273,20 +274,11 @@ pub fn compute_command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
             .entry(span.command.as_str())
             .or_insert_with(|| find_determined_components(run.robot, &span.command));
         are_all_determined = std::array::from_fn(|i| are_all_determined[i] && are_determined[i]);
-        paths.push(CommandPath::new(
-            &span.command,
-            [span.start_s, span.end_s],
-            travel,
-            are_determined,
-        ));
+        paths.push(CommandPath::new(span, travel, are_determined));
     }
-    let end = spans.last().map_or(0.0, |span| span.end_s);
-    paths.push(CommandPath::new(
-        "all",
-        [0.0, end],
-        total,
-        are_all_determined,
-    ));
+    let end_s = spans.last().map_or(0.0, |span| span.end_s);
+    let complete_span = Span::new("all", 0.0, end_s);
+    paths.push(CommandPath::new(&complete_span, total, are_all_determined));
     paths
 }
 
@@ -300,12 +292,12 @@ fn find_determined_components(robot: &Robot, command: &str) -> [bool; 3] {
 }
 
 impl CommandPath {
-    fn new(command: &str, times_s: [f64; 2], travel: Travel, are_determined: [bool; 3]) -> Self {
+    fn new(span: &Span, travel: Travel, are_determined: [bool; 3]) -> Self {
         let keep_determined = |index: usize, value| are_determined[index].then_some(value);
         Self {
-            command: command.to_owned(),
-            start_s: times_s[0],
-            end_s: times_s[1],
+            command: span.command.clone(),
+            start_s: span.start_s,
+            end_s: span.end_s,
             forward: keep_determined(0, travel.forward),
             left: keep_determined(1, travel.left),
             turn: keep_determined(2, travel.turn),
@@ -343,10 +335,8 @@ impl TravelCache<'_> {
         if let Some(travel) = self.travels.get(&pair) {
             return *travel;
         }
-        let sweeps = self
-            .run
-            .servo_frames_in(index..index + 2)
-            .filter_map(|servo_frame| servo_frame.sweeps);
+        let servo_frames = self.run.servo_frames_in(index..index + 2);
+        let sweeps = servo_frames.filter_map(|servo_frame| servo_frame.sweeps);
         let travel = self.run.robot.ground().with_rigid_drive().travel(sweeps);
         if self.travels.len() < MAX_CACHED_PAIRS {
             self.travels.insert(pair, travel);

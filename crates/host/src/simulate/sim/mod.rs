@@ -29,7 +29,7 @@ use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 use simulated_uno::{Radio, RadioLink};
 
 use crate::shared::firmware::{self, Firmware};
-use crate::shared::progress::{Spinner, create_progress_bar};
+use crate::shared::progress::{create_progress_bar, create_spinner};
 use crate::shared::robot_args::unknown_gait_failure;
 use crate::shared::{files, json};
 use crate::{Failure, RobotArgs};
@@ -165,7 +165,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let mut dialogue_lines = Vec::new();
     let recording = record(&mut uno, &robot, &script, &args, &mut dialogue_lines)?;
 
-    let spinner = Spinner::new("analysing every frame");
+    let spinner = create_spinner("analysing every frame");
     let spans = spans::list_command_spans(&script, &recording.answers);
     let commanded_widths = compute_core_widths(&robot, &recording, &script.contacts);
     let (robot, log) = (&robot, &recording.frames);

@@ -15,6 +15,18 @@ pub struct Span {
     pub end_s: f64,
 }
 
+impl Span {
+    /// Creates the span of a command.
+    pub fn new(command: &str, start_s: f64, end_s: f64) -> Self {
+        let command = command.to_owned();
+        Self {
+            command,
+            start_s,
+            end_s,
+        }
+    }
+}
+
 /// True if a command starts or ends a motion or changes its speed. A word that is not a console word counts as a gait's
 /// name.
 fn changes_motion(command: &str) -> bool {
@@ -28,27 +40,16 @@ fn changes_motion(command: &str) -> bool {
 pub fn list_command_spans(script: &Script, answers: &[Option<String>]) -> Vec<Span> {
     let mut starts = vec![(0.0, "stand")];
     for (step, answer) in script.steps.iter().zip(answers) {
-        let is_refused = answer
-            .as_ref()
-            .is_some_and(|answer| answer.starts_with("err"));
+        let is_refused = matches!(answer, Some(answer) if answer.starts_with("err"));
         if !is_refused && changes_motion(&step.command) {
             starts.push((step.ms as f64 / 1000.0, step.command.as_str()));
         }
     }
     let end = script.end_ms as f64 / 1000.0;
-    let ends = starts
-        .iter()
-        .skip(1)
-        .map(|(start_s, _)| *start_s)
-        .chain([end]);
-    starts
-        .iter()
-        .zip(ends)
-        .map(|((start_s, command), end_s)| Span {
-            command: (*command).to_owned(),
-            start_s: *start_s,
-            end_s,
-        })
+    let ends = starts.iter().skip(1).map(|(start_s, _)| *start_s);
+    let spans = starts.iter().zip(ends.chain([end]));
+    spans
+        .map(|((start_s, command), end_s)| Span::new(command, *start_s, end_s))
         .collect()
 }
 
@@ -62,13 +63,8 @@ mod tests {
             .expect("the script is valid");
         let answers = ["ok walk", "err 4 beyond travel", "ok watch 5", "ok rest"];
         let spans = list_command_spans(&script, &answers.map(|answer| Some(answer.to_owned())));
-        let span_tuples: Vec<(&str, f64, f64)> = spans
-            .iter()
-            .map(|span| (span.command.as_str(), span.start_s, span.end_s))
-            .collect();
-        assert_eq!(
-            span_tuples,
-            [("stand", 0.0, 1.0), ("walk", 1.0, 4.0), ("rest", 4.0, 5.0)]
-        );
+        let expected = [("stand", 0.0, 1.0), ("walk", 1.0, 4.0), ("rest", 4.0, 5.0)];
+        let expected = expected.map(|(command, start_s, end_s)| Span::new(command, start_s, end_s));
+        assert_eq!(spans, expected);
     }
 }

@@ -4,11 +4,11 @@ use lizard_robot::servo::SERVO_NAMES;
 use svg::node::element::Group;
 
 use super::analysis::Run;
-use super::footfall::{FootSpan, Phase, list_foot_spans};
+use super::footfall::{Phase, list_foot_spans};
 use super::spans::Span;
 use crate::shared::shapes::{
-    Anchor, DARK, GREY, GRID_COLOUR, PANEL_COLOUR, SERVO_COLOURS, SERVO_POSITIONS, add_title,
-    curve, line, pin_name, rectangle, render_svg, text, text_middle, text_start,
+    Anchor, DARK, GREY, GRID_COLOUR, PANEL_COLOUR, SERVO_COLOURS, SERVO_POSITIONS, add_outline,
+    add_title, curve, line, pin_name, rectangle, render_svg, text, text_middle, text_start,
 };
 
 /// Width of the picture, px.
@@ -92,31 +92,18 @@ impl Chart<'_> {
 
     /// Adds the band with the commands in effect.
     fn draw_commands(&self, mut group: Group) -> Group {
-        for (
-            index,
-            Span {
-                start_s,
-                end_s,
-                command,
-            },
-        ) in self.spans.iter().enumerate()
-        {
-            let (x, end_x) = (self.to_x(*start_s), self.to_x(*end_s));
+        for (index, span) in self.spans.iter().enumerate() {
+            let (x, end_x) = (self.to_x(span.start_s), self.to_x(span.end_s));
             let fill = if index % 2 == 0 { "#e6e6e6" } else { "#d2d2d2" };
             group = group.add(rectangle((x, COMMANDS_Y), (end_x - x, 26.0), fill));
             // A letter takes about 7.5 px. A command that does not fit is omitted.
-            if command.len() as f64 * 7.5 < end_x - x {
+            if span.command.len() as f64 * 7.5 < end_x - x {
                 let position = ((x + end_x) / 2.0, COMMANDS_Y + 18.0);
-                group = group.add(text_middle(command, position, 15.0));
+                group = group.add(text_middle(&span.command, position, 15.0));
             }
         }
-        group.add(text(
-            "command",
-            (LEFT_MARGIN - 12.0, COMMANDS_Y + 18.0),
-            15.0,
-            GREY,
-            Anchor::End,
-        ))
+        let position = (LEFT_MARGIN - 12.0, COMMANDS_Y + 18.0);
+        group.add(text("command", position, 15.0, GREY, Anchor::End))
     }
 
     /// Adds a vertical line across the complete picture at each change of command.
@@ -131,13 +118,9 @@ impl Chart<'_> {
 
     /// Computes half a strip's angle range, deg; all strips have the same range, so that their slopes can be compared.
     fn compute_half_range_deg(&self) -> f64 {
-        let sweeps = self
-            .run
-            .servo_frames()
-            .filter_map(|servo_frame| servo_frame.sweeps)
-            .flatten();
-        (sweeps.fold(20.0, |largest: f64, sweep| largest.max(sweep.abs())) / 10.0).ceil() * 10.0
-            + 5.0
+        let sweeps = self.run.servo_frames().filter_map(|frame| frame.sweeps);
+        let max_sweep = sweeps.flatten().map(f64::abs).fold(20.0, f64::max);
+        (max_sweep / 10.0).ceil() * 10.0 + 5.0
     }
 
     /// Adds the strip with a servo's angle over time.
@@ -149,56 +132,32 @@ impl Chart<'_> {
         let (start_x, end_x) = (self.to_x(0.0), self.to_x(self.end_s));
         let name = format!("{} {}", SERVO_NAMES[servo], SERVO_POSITIONS[servo]);
         let pin = pin_name(self.run.robot.servos()[servo].pin);
+        let (middle_y, colour) = (top + STRIP_HEIGHT / 2.0, SERVO_COLOURS[servo]);
+        let size = (end_x - start_x, STRIP_HEIGHT);
+        let name_text = text(&name, (14.0, middle_y - 2.0), 17.0, colour, Anchor::Start);
+        let pin_text = text(&pin, (14.0, middle_y + 18.0), 14.0, GREY, Anchor::Start);
         group = group
-            .add(rectangle(
-                (start_x, top),
-                (end_x - start_x, STRIP_HEIGHT),
-                PANEL_COLOUR,
-            ))
-            .add(
-                text(
-                    &name,
-                    (14.0, top + STRIP_HEIGHT / 2.0 - 2.0),
-                    17.0,
-                    SERVO_COLOURS[servo],
-                    Anchor::Start,
-                )
-                .set("font-weight", "bold"),
-            )
-            .add(text(
-                &pin,
-                (14.0, top + STRIP_HEIGHT / 2.0 + 18.0),
-                14.0,
-                GREY,
-                Anchor::Start,
-            ));
+            .add(rectangle((start_x, top), size, PANEL_COLOUR))
+            .add(name_text.set("font-weight", "bold"))
+            .add(pin_text);
         let tick_interval_deg = if half_range_deg > 50.0 { 40.0 } else { 20.0 };
         let first_tick = -(half_range_deg / tick_interval_deg).floor() as i32;
         for tick in first_tick..=-first_tick {
             let angle = neutral + f64::from(tick) * tick_interval_deg;
-            let grid_line = line(
-                (start_x, to_y(angle)),
-                (end_x, to_y(angle)),
-                GRID_COLOUR,
-                1.0,
-            );
-            group = group.add(if tick == 0 {
-                grid_line
-                    .set("stroke", "#999999")
-                    .set("stroke-dasharray", "6 4")
-            } else {
-                grid_line
+            let y = to_y(angle);
+            let draw_line = |colour: &str| line((start_x, y), (end_x, y), colour, 1.0);
+            group = group.add(match tick {
+                0 => draw_line("#999999").set("stroke-dasharray", "6 4"),
+                _ => draw_line(GRID_COLOUR),
             });
             let label = format!("{angle:.0}°");
-            let position = (LEFT_MARGIN - 8.0, to_y(angle) + 4.5);
+            let position = (LEFT_MARGIN - 8.0, y + 4.5);
             group = group.add(text(&label, position, 13.0, GREY, Anchor::End));
         }
         for angle_curve in self.compute_angle_curves(servo) {
-            let points: Vec<(f64, f64)> = angle_curve
-                .iter()
-                .map(|(seconds, angle)| (self.to_x(*seconds), to_y(*angle)))
-                .collect();
-            group = group.add(curve(&points, SERVO_COLOURS[servo], 2.2));
+            let to_point = |(seconds, angle)| (self.to_x(seconds), to_y(angle));
+            let points: Vec<_> = angle_curve.into_iter().map(to_point).collect();
+            group = group.add(curve(&points, colour, 2.2));
         }
         group
     }
@@ -219,11 +178,8 @@ impl Chart<'_> {
                 _ => curves.push(Curve::default()),
             }
         }
-        curves
-            .into_iter()
-            .map(|curve| curve.points)
-            .filter(|points| !points.is_empty())
-            .collect()
+        let curves = curves.into_iter().map(|curve| curve.points);
+        curves.filter(|points| !points.is_empty()).collect()
     }
 
     /// Adds the row with the footfalls of a servo's foot; the first row also gets the heading and the legend.
@@ -235,38 +191,24 @@ impl Chart<'_> {
             group = group.add(text_start("Footfalls", position, 17.0).set("font-weight", "bold"));
             group = self.draw_legend(group);
         }
+        let size = (end_x - start_x, FOOT_HEIGHT);
+        let text_y = top + FOOT_HEIGHT / 2.0 + 5.0;
+        let (name, colour) = (SERVO_POSITIONS[servo], SERVO_COLOURS[servo]);
+        let name_point = (LEFT_MARGIN - 12.0, text_y);
+        let name_text = text(name, name_point, 15.0, colour, Anchor::End);
         group = group
-            .add(rectangle(
-                (start_x, top),
-                (end_x - start_x, FOOT_HEIGHT),
-                PANEL_COLOUR,
-            ))
-            .add(text(
-                SERVO_POSITIONS[servo],
-                (LEFT_MARGIN - 12.0, top + FOOT_HEIGHT / 2.0 + 5.0),
-                15.0,
-                SERVO_COLOURS[servo],
-                Anchor::End,
-            ));
+            .add(rectangle((start_x, top), size, PANEL_COLOUR))
+            .add(name_text);
         let foot_spans = list_foot_spans(self.run.servo_frames(), servo);
         if foot_spans.len() as f64 > (end_x - start_x) / 2.0 {
-            let position = ((start_x + end_x) / 2.0, top + FOOT_HEIGHT / 2.0 + 5.0);
+            let position = ((start_x + end_x) / 2.0, text_y);
             let note = "steps are narrower than a pixel; simulate a shorter time to see them";
             return group.add(text(note, position, 13.0, GREY, Anchor::Middle));
         }
-        for FootSpan {
-            phase,
-            start_s,
-            end_s,
-        } in foot_spans
-        {
-            let (x, width) = (self.to_x(start_s), self.to_x(end_s) - self.to_x(start_s));
-            group = group.add(foot_span_rectangle(
-                phase,
-                SERVO_COLOURS[servo],
-                (x, top),
-                (width, FOOT_HEIGHT),
-            ));
+        for span in foot_spans {
+            let (x, end_x) = (self.to_x(span.start_s), self.to_x(span.end_s));
+            let size = (end_x - x, FOOT_HEIGHT);
+            group = group.add(foot_span_rectangle(span.phase, colour, (x, top), size));
         }
         group
     }
@@ -280,20 +222,11 @@ impl Chart<'_> {
         ];
         let mut x = LEFT_MARGIN;
         for (phase, label) in entries {
+            let corner = (x, FEET_Y - 25.0);
+            let label_text = text(label, (x + 38.0, FEET_Y - 12.5), 14.0, GREY, Anchor::Start);
             group = group
-                .add(foot_span_rectangle(
-                    phase,
-                    "#444444",
-                    (x, FEET_Y - 25.0),
-                    (30.0, 15.0),
-                ))
-                .add(text(
-                    label,
-                    (x + 38.0, FEET_Y - 12.5),
-                    14.0,
-                    GREY,
-                    Anchor::Start,
-                ));
+                .add(foot_span_rectangle(phase, "#444444", corner, (30.0, 15.0)))
+                .add(label_text);
             x += 60.0 + 7.2 * label.len() as f64;
         }
         group
@@ -308,30 +241,19 @@ impl Chart<'_> {
             .into_iter()
             .find(|tick_interval_s| self.end_s / tick_interval_s <= 15.0)
             .unwrap_or(7200.0);
-        group = group.add(line(
-            (self.to_x(0.0), AXIS_Y),
-            (self.to_x(self.end_s), AXIS_Y),
-            DARK,
-            1.2,
-        ));
+        let (start_x, end_x) = (self.to_x(0.0), self.to_x(self.end_s));
+        group = group.add(line((start_x, AXIS_Y), (end_x, AXIS_Y), DARK, 1.2));
         for tick in 0..=(self.end_s / tick_interval_s + 1e-9) as u32 {
             let seconds = f64::from(tick) * tick_interval_s;
             let x = self.to_x(seconds);
-            let label = if tick_interval_s < 1.0 {
-                format!("{seconds:.1}")
-            } else {
-                format!("{seconds:.0}")
-            };
+            let decimals = if tick_interval_s < 1.0 { 1 } else { 0 };
+            let label = format!("{seconds:.decimals$}");
             group = group
                 .add(line((x, AXIS_Y), (x, AXIS_Y + 7.0), DARK, 1.2))
                 .add(text_middle(&label, (x, AXIS_Y + 25.0), 14.0));
         }
-        let middle = (self.to_x(0.0) + self.to_x(self.end_s)) / 2.0;
-        group.add(text_middle(
-            self.caption.axis_label,
-            (middle, AXIS_Y + 50.0),
-            15.0,
-        ))
+        let label_point = ((start_x + end_x) / 2.0, AXIS_Y + 50.0);
+        group.add(text_middle(self.caption.axis_label, label_point, 15.0))
     }
 }
 
@@ -348,13 +270,9 @@ fn foot_span_rectangle(
         Phase::Still => rectangle(corner, size, colour).set("fill-opacity", 0.22),
         Phase::Swing => {
             // The outline stays inside the area of the time span.
-            let inner_area = (
-                (corner.0 + 0.7, corner.1 + 0.7),
-                ((size.0 - 1.4).max(0.2), size.1 - 1.4),
-            );
-            rectangle(inner_area.0, inner_area.1, "white")
-                .set("stroke", colour.to_owned())
-                .set("stroke-width", 1.4)
+            let inner_corner = (corner.0 + 0.7, corner.1 + 0.7);
+            let inner_size = ((size.0 - 1.4).max(0.2), size.1 - 1.4);
+            add_outline(rectangle(inner_corner, inner_size, "white"), colour, 1.4)
         }
     }
 }
@@ -381,10 +299,9 @@ impl Curve {
             return;
         }
         if let [.., first, last] = self.points.as_mut_slice() {
-            let (min, max) = if first.1 <= last.1 {
-                (first, last)
-            } else {
-                (last, first)
+            let (min, max) = match first.1 <= last.1 {
+                true => (first, last),
+                false => (last, first),
             };
             if point.1 < min.1 {
                 *min = point;
@@ -406,33 +323,20 @@ mod tests {
         spans: &[Span],
     ) -> String {
         let robot = crate::shared::robot_args::built_in_robot("paper");
+        let widths = (0..frame_count).map(|index| [pulse_width(index); 4]);
         let log = FrameLog {
-            widths: (0..frame_count)
-                .map(|index| [pulse_width(index); 4])
-                .collect(),
+            widths: widths.collect(),
             ..FrameLog::default()
         };
-        let (robot, log) = (&robot, &log);
-        draw(Run { robot, log }, spans, &SIMULATED_CAPTION)
-    }
-
-    fn span(command: &str, start_s: f64, end_s: f64) -> Span {
-        let command = command.to_owned();
-        Span {
-            command,
-            start_s,
-            end_s,
-        }
+        draw(Run::new(&robot, &log), spans, &SIMULATED_CAPTION)
     }
 
     #[test]
     fn each_time_span_with_pulses_is_one_curve_per_servo() {
         let is_resting = |n| n == 100 || n >= 350;
-        let picture = draw_picture(
-            400,
-            |n| if is_resting(n) { 0 } else { 24_000 },
-            &[span("stand", 0.0, 1.0), span("walk", 1.0, 8.0)],
-        );
+        let pulse_width = |n| if is_resting(n) { 0 } else { 24_000 };
+        let spans = [Span::new("stand", 0.0, 1.0), Span::new("walk", 1.0, 8.0)];
+        let picture = draw_picture(400, pulse_width, &spans);
         assert_eq!(picture.matches("<polyline").count(), 8);
         assert!(picture.contains("walk"));
     }
@@ -444,19 +348,13 @@ mod tests {
             5000 => 24_800,
             _ => 24_000 + 10 * (n as u16 % 3),
         };
-        let picture = draw_picture(10_000, pulse_width, &[span("stand", 0.0, 200.0)]);
+        let picture = draw_picture(10_000, pulse_width, &[Span::new("stand", 0.0, 200.0)]);
         assert!(picture.len() < 300_000, "{} bytes", picture.len());
         // 50 us are 5 degrees or 10.4 pixels: half a strip has 52 pixels for 25 degrees.
-        let first_curve = picture
-            .split("points=\"")
-            .nth(1)
-            .expect("the picture has a curve");
-        let point_texts = first_curve
-            .split('"')
-            .next()
-            .expect("the curve has points")
-            .split_whitespace();
-        let ys = point_texts.filter_map(|point| point.split_once(',')?.1.parse::<f64>().ok());
+        let first_curve = picture.split("points=\"").nth(1);
+        let points = first_curve.and_then(|curve| curve.split('"').next());
+        let points = points.expect("the picture has a curve").split_whitespace();
+        let ys = points.filter_map(|point| point.split_once(',')?.1.parse::<f64>().ok());
         let [min, max] = ys.fold([f64::MAX, f64::MIN], |[min, max], y| {
             [min.min(y), max.max(y)]
         });

@@ -13,7 +13,7 @@ use lizard_twin::ServoModel;
 use simulated_uno::{Fidelity, State, Uno};
 
 use crate::shared::firmware;
-use crate::shared::progress::Spinner;
+use crate::shared::progress::create_spinner;
 use crate::shared::robot_args::find_moving_gait;
 use crate::simulate::sim::script::{Script, Step};
 use crate::simulate::sim::session::{self, Event, Recording};
@@ -95,7 +95,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         .steps
         .iter()
         .any(|step| step.command.starts_with("speed"));
-    let spinner = Spinner::new("simulating every frame");
+    let spinner = create_spinner("simulating every frame");
     let replay = Replay::simulate(&robot, &recording.frames, spans, model);
     let report = Report::compute(&robot, &replay, model, changes_speed);
     drop(spinner);

@@ -18,7 +18,7 @@ fn pin_fill<'a>(drawing: &'a Drawing, pin: &str) -> &'a str {
 }
 
 /// Returns the paper's robot file with other servo pins.
-fn with_servo_pins(pins: [&str; 4]) -> String {
+fn with_servo_pins(pins: &[String; 4]) -> String {
     let mut text = paper_toml();
     for (servo, pin) in SERVO_NAMES.into_iter().zip(pins) {
         let format_entry = |pin: &str| format!("[servo.{servo}]\npin = \"{pin}\"");
@@ -29,22 +29,18 @@ fn with_servo_pins(pins: [&str; 4]) -> String {
     text
 }
 
-/// Returns copies of the paper's robot file with many sets and orders of servo pins, each after its pins' names. Since
-/// 17 is prime, four pins at equal steps are always distinct.
+/// Returns the files in robots/, and copies of the paper's robot file with many sets and orders of servo pins, each
+/// after its path or its pins' names. Since 17 is prime, four pins at equal steps are always distinct.
 fn robot_files_with_many_pin_sets() -> impl Iterator<Item = (String, String)> {
     let pin_name = |number: usize| match number % 17 {
         index @ 0..11 => format!("D{}", index + 2),
         index => format!("A{}", index - 11),
     };
-    (1..17)
+    let changed_files = (1..17)
         .flat_map(|step| (step % 12..17).step_by(12).map(move |start| (start, step)))
         .map(move |(start, step)| [0, 1, 2, 3].map(|servo| pin_name(start + servo * step)))
-        .map(|pins| {
-            (
-                format!("{pins:?}"),
-                with_servo_pins(pins.each_ref().map(String::as_str)),
-            )
-        })
+        .map(|pins| (format!("{pins:?}"), with_servo_pins(&pins)));
+    read_robot_files().into_iter().chain(changed_files)
 }
 
 /// Largest distance between a wire's end and its terminal's centre, px. Two wires that share a terminal end beside the
@@ -128,22 +124,15 @@ impl<'a> Nets<'a> {
         for name in names {
             // Panics if the drawing does not have the name.
             self.drawing.element_by_id(name);
-            assert_eq!(
-                self.find_root(name),
-                root,
-                "{name} and {} are not joined",
-                names[0]
-            );
+            let actual = self.find_root(name);
+            assert_eq!(actual, root, "{name} and {} are not joined", names[0]);
         }
     }
 }
 
 #[test]
 fn every_component_is_joined_to_the_nets_that_it_needs() {
-    for (name, text) in read_robot_files()
-        .into_iter()
-        .chain(robot_files_with_many_pin_sets())
-    {
+    for (name, text) in robot_files_with_many_pin_sets() {
         let drawing = draw_robot_wiring(&text);
         let nets = Nets::from_drawing(&drawing);
         let servo_grounds = SERVO_NAMES.map(|servo| format!("end-{servo}-ground"));
@@ -162,11 +151,8 @@ fn every_component_is_joined_to_the_nets_that_it_needs() {
         nets.assert_joined(&[&supplies[..], &servo_supplies].concat());
         nets.assert_joined(&["end-battery-plus", "end-fuse-2"]);
         nets.assert_joined(&["end-fuse-1", "end-switch-2"]);
-        nets.assert_joined(&[
-            "end-switch-1",
-            "end-converter-in-plus",
-            "end-round-plug-plus",
-        ]);
+        nets.assert_joined(&["end-switch-1", "end-converter-in-plus"]);
+        nets.assert_joined(&["end-switch-1", "end-round-plug-plus"]);
         for number in 1..=3 {
             let [battery, alarm] =
                 ["battery-balance", "alarm"].map(|component| format!("end-{component}-{number}"));
@@ -194,11 +180,10 @@ fn every_component_is_joined_to_the_nets_that_it_needs() {
             let expected_nets = [nets.find_root(&signal), nets.find_root("pin-GND")];
             assert_eq!(ends, expected_nets, "{name} {servo}");
         }
-        let net_count = net_roots.len();
-        let distinct_roots: BTreeSet<String> = net_roots.into_iter().collect();
+        let distinct_roots = BTreeSet::from_iter(&net_roots);
         assert_eq!(
             distinct_roots.len(),
-            net_count,
+            net_roots.len(),
             "{name}: two nets are joined"
         );
         // Spare positions are not joined to ground.
@@ -229,10 +214,7 @@ fn the_removal_of_any_link_splits_its_strip() {
 
 #[test]
 fn wires_may_cross_but_never_touch_or_overlap() {
-    for (_, text) in read_robot_files()
-        .into_iter()
-        .chain(robot_files_with_many_pin_sets())
-    {
+    for (_, text) in robot_files_with_many_pin_sets() {
         let drawing = draw_robot_wiring(&text);
         // The wires in the radio's panel may touch each other, so they are ignored.
         let mut wires = drawing.wires();
@@ -240,45 +222,42 @@ fn wires_may_cross_but_never_touch_or_overlap() {
         let is_vertical = |segment: &[Point]| segment[0].0 == segment[1].0;
         for (wire, path) in &wires {
             let is_straight =
-                |segment: &[Point]| segment[0].0 == segment[1].0 || segment[0].1 == segment[1].1;
+                |segment: &[Point]| is_vertical(segment) || segment[0].1 == segment[1].1;
             assert!(path.windows(2).all(is_straight), "{wire}");
         }
         for (index, (wire, path)) in wires.iter().enumerate() {
             for (other_wire, other_path) in &wires[index + 1..] {
-                let pairs = path.windows(2).flat_map(|segment| {
-                    other_path
-                        .windows(2)
-                        .map(move |other_segment| (segment, other_segment))
-                });
-                for (segment, other_segment) in pairs {
-                    let compute_gap = |axis: fn(&Point) -> f64| {
-                        let sorted_ends = |segment: &[Point]| {
-                            let (start, end) = (axis(&segment[0]), axis(&segment[1]));
-                            (start.min(end), start.max(end))
+                for segment in path.windows(2) {
+                    for other_segment in other_path.windows(2) {
+                        let compute_gap = |axis: fn(&Point) -> f64| {
+                            let sorted_ends = |segment: &[Point]| {
+                                let (start, end) = (axis(&segment[0]), axis(&segment[1]));
+                                (start.min(end), start.max(end))
+                            };
+                            let (min, max) = sorted_ends(segment);
+                            let (other_min, other_max) = sorted_ends(other_segment);
+                            (min - other_max).max(other_min - max)
                         };
-                        let (min, max) = sorted_ends(segment);
-                        let (other_min, other_max) = sorted_ends(other_segment);
-                        (min - other_max).max(other_min - max)
-                    };
-                    let x_gap = compute_gap(|point| point.0);
-                    let y_gap = compute_gap(|point| point.1);
-                    let has_shared_end = segment.iter().any(|end| other_segment.contains(end));
-                    if is_vertical(segment) == is_vertical(other_segment) {
-                        // Parallel wires keep their distance, unless they share an end or are both links.
-                        let are_links =
-                            wire.starts_with("link-") && other_wire.starts_with("link-");
-                        let are_near = x_gap < 3.0 && y_gap < 3.0;
-                        assert!(
-                            !are_near || are_links || has_shared_end,
-                            "{wire} is too near to {other_wire}: {segment:?}, {other_segment:?}"
-                        );
-                    } else if x_gap <= 0.0 && y_gap <= 0.0 {
-                        // Crossing wires cross away from their ends, unless they share an end.
-                        let depth = (-x_gap).min(-y_gap);
-                        assert!(
-                            depth > 2.0 || has_shared_end,
-                            "{wire} touches {other_wire}: {segment:?}, {other_segment:?}"
-                        );
+                        let x_gap = compute_gap(|point| point.0);
+                        let y_gap = compute_gap(|point| point.1);
+                        let has_shared_end = segment.iter().any(|end| other_segment.contains(end));
+                        if is_vertical(segment) == is_vertical(other_segment) {
+                            // Parallel wires keep their distance, unless they share an end or are both links.
+                            let are_links =
+                                wire.starts_with("link-") && other_wire.starts_with("link-");
+                            let are_near = x_gap < 3.0 && y_gap < 3.0;
+                            assert!(
+                                !are_near || are_links || has_shared_end,
+                                "{wire} is too near to {other_wire}: {segment:?}, {other_segment:?}"
+                            );
+                        } else if x_gap <= 0.0 && y_gap <= 0.0 {
+                            // Crossing wires cross away from their ends, unless they share an end.
+                            let depth = (-x_gap).min(-y_gap);
+                            assert!(
+                                depth > 2.0 || has_shared_end,
+                                "{wire} touches {other_wire}: {segment:?}, {other_segment:?}"
+                            );
+                        }
                     }
                 }
             }
@@ -326,14 +305,10 @@ fn inputs_are_drawn_as_options_between_their_pins_and_ground() {
         let [wire, terminal] = [name, &terminal].map(|id| both_inputs.points_by_id(id));
         assert_eq!(wire[0], terminal[0]);
     }
-    assert_eq!(
-        pin_fill(&both_inputs, "pin-A1"),
-        pin_fill(&both_inputs, "pin-D9")
-    );
-    assert_ne!(
-        pin_fill(&no_inputs, "pin-A1"),
-        pin_fill(&no_inputs, "pin-D9")
-    );
+    for (drawing, is_used) in [(&both_inputs, true), (&no_inputs, false)] {
+        let [a1, d9] = ["pin-A1", "pin-D9"].map(|pin| pin_fill(drawing, pin));
+        assert_eq!(a1 == d9, is_used, "{a1} {d9}");
+    }
 }
 
 #[test]

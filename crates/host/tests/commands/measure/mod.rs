@@ -6,6 +6,7 @@ mod sheet;
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use fastrand::Rng;
 use lizard_studio::encode_jpeg;
@@ -14,8 +15,8 @@ use lizard_studio::walk::{Variation, Walk, WalkSeries, paper_gait, true_displace
 use serde_json::Value;
 
 use crate::program::{
-    Outcome, assert_contains, new_folder, read_file, robot_path, run, run_in, run_line,
-    scratch_folder,
+    Outcome, assert_contains, new_folder, read_cases, read_file, robot_path, run, run_command,
+    run_line, run_line_in, scratch_folder,
 };
 
 /// Frame rate of the videos.
@@ -25,12 +26,9 @@ const FRAMES_PER_SECOND: f64 = 8.0;
 fn studio() -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(4));
     (studio.size, studio.focal_length) = ([640, 360], 1.0);
-    (
-        studio.camera_height,
-        studio.camera_tilt,
-        studio.camera_direction,
-    ) = (800.0, 15.0, 90.0);
-    (studio.camera_roll, studio.aim) = (0.0, [0.0; 2]);
+    (studio.camera_height, studio.camera_tilt) = (800.0, 15.0);
+    (studio.camera_direction, studio.camera_roll) = (90.0, 0.0);
+    studio.aim = [0.0; 2];
     studio.deck_tag_height = 95.0;
     studio
 }
@@ -91,17 +89,12 @@ fn find_stable_words(table: &str) -> Vec<&str> {
         .lines()
         .flat_map(|line| {
             // The component with the largest deviation depends on the video, so its name is skipped, too.
-            let skipped_words = match line.starts_with("path") {
-                true => &component_words[..],
-                false => &[],
-            };
-            let words = line
-                .split_whitespace()
-                .map(|word| word.trim_end_matches(','));
-            words.filter(move |word| {
-                word.chars().all(char::is_alphabetic) && !skipped_words.contains(word)
-            })
+            let is_path = line.starts_with("path");
+            let words = line.split_whitespace();
+            let words = words.map(|word| word.trim_end_matches(','));
+            words.filter(move |word| !(is_path && component_words.contains(word)))
         })
+        .filter(|word| word.chars().all(char::is_alphabetic))
         .filter(|word| !verdict_words.contains(word))
         .collect()
 }
@@ -128,20 +121,15 @@ fn a_video_of_a_walk_agrees_with_the_prediction_and_is_refused_as_another_gait()
         ("left", truth.left, 0.2),
         ("turn", truth.turn, 0.5),
     ] {
-        assert!(
-            (find_number(&[name, "mean"]) - truth).abs() < max_error,
-            "{name}: {object}"
-        );
-        assert!(
-            (find_number(&[name, "predicted"]) - truth).abs() < 1e-2,
-            "{name}: {object}"
-        );
+        for (key, max_error) in [("mean", max_error), ("predicted", 1e-2)] {
+            let error = find_number(&[name, key]) - truth;
+            assert!(error.abs() < max_error, "{name} {key}: {object}");
+        }
     }
-    assert!(find_number(&["cycles"]) >= 3.0 && (find_number(&["period"]) - 1.0).abs() < 0.01);
-    assert_eq!(
-        object["each"].as_array().map(Vec::len),
-        Some(find_number(&["cycles"]) as usize)
-    );
+    let (cycles, period) = (find_number(&["cycles"]), find_number(&["period"]));
+    assert!(cycles >= 3.0 && (period - 1.0).abs() < 0.01);
+    let each_cycle = object["each"].as_array().expect("the value is an array");
+    assert_eq!(each_cycle.len(), cycles as usize);
     let engine_results = read_file("tools/physics/figures.json");
     let engine_results: Value = serde_json::from_str(&engine_results).expect("the file is JSON");
     let mujoco = &engine_results["paper"]["walk"]["rigid, level"]["mujoco"];
@@ -170,21 +158,15 @@ fn a_video_of_a_walk_agrees_with_the_prediction_and_is_refused_as_another_gait()
     assert!(table.contains("agrees"), "{table}");
     // The example in docs/measure.md is the output for such a video.
     let page = read_file("docs/measure.md");
-    let (_, example) = page
-        .split_once("--gait walk --height 95\n")
-        .expect("the page has the example");
+    let example = page.split_once("--gait walk --height 95\n");
+    let (_, example) = example.expect("the page has the example");
     let (example, _) = example.split_once("```").expect("the example ends");
     let table = table.replace(&folder.display().to_string(), "video.mp4");
     assert_eq!(find_stable_words(example), find_stable_words(&table));
     let csv = measure(&folder, &["--csv"]).expect_success();
-    assert!(
-        csv.starts_with("seconds,forward,left,heading\n0.0000,"),
-        "{csv}"
-    );
-    assert_eq!(
-        Some(csv.lines().count() as u64 - 1),
-        video["frames"].as_u64()
-    );
+    let csv_start = "seconds,forward,left,heading\n0.0000,";
+    assert!(csv.starts_with(csv_start), "{csv}");
+    assert_eq!(video["frames"], csv.lines().count() - 1);
     // A path that does not match the named gait is refused; the message names the gait that matches.
     let message = measure(&folder, &["--gait", "left"]).expect_refusal();
     assert!(message.contains("was it another gait"), "{message}");
@@ -220,13 +202,10 @@ fn measure_identifies_gaits_by_given_names_or_by_their_paths() {
     let svg_name = svg_path.display().to_string();
     let picture_options = ["--json", "--picture", &svg_name];
     let unnamed_result = measure_gaits(&picture_options).expect_json();
-    assert_eq!(
-        count_walks(&unnamed_result),
-        [("walk", 2), ("left", 1)],
-        "{unnamed_result}"
-    );
+    let walks = count_walks(&unnamed_result);
+    assert_eq!(walks, [("walk", 2), ("left", 1)], "{unnamed_result}");
     let named_result = measure_gaits(&["--json", "--gait", "walk,left,walk"]).expect_json();
-    assert_eq!(count_walks(&named_result), count_walks(&unnamed_result));
+    assert_eq!(count_walks(&named_result), walks);
     for (index, gait) in [walk, left].iter().enumerate() {
         let result = &unnamed_result["gaits"][index];
         let truth = true_displacement(gait);
@@ -237,10 +216,8 @@ fn measure_identifies_gaits_by_given_names_or_by_their_paths() {
             assert!((mean - truth).abs() < max_error, "{component}: {result}");
         }
         assert_eq!(result["farthest"]["agrees"], true, "{result}");
-        assert!(
-            result["within"].as_array().map_or(0, Vec::len) >= 6,
-            "{result}"
-        );
+        let within = result["within"].as_array();
+        assert!(within.map_or(0, Vec::len) >= 6, "{result}");
     }
     let svg = fs::read_to_string(svg_path).expect("the file is readable");
     for label in ["walk, ", "left, ", "measured", "predicted", "turn, deg"] {
@@ -256,11 +233,8 @@ fn measure_identifies_gaits_by_given_names_or_by_their_paths() {
         "{refusal}"
     );
     let refusal = measure_gaits(&["--gait", "left,walk,walk"]).expect_refusal();
-    assert!(
-        refusal.contains(" s, left: the path does not match this gait")
-            && refusal.ends_with("; it resembles walk"),
-        "{refusal}"
-    );
+    assert_contains(&refusal, " s, left: the path does not match this gait");
+    assert!(refusal.ends_with("; it resembles walk"), "{refusal}");
 }
 
 #[test]
@@ -272,46 +246,22 @@ fn impossible_measurements_are_refused_with_a_message() {
     for (name, text) in [("text/a.png", "no picture"), ("untimed/frame-001.png", "")] {
         fs::write(folder.join(name), text).expect("the file is written");
     }
-    for (line, message) in [
-        (
-            "measure none --gait walk",
-            "lizard: none is neither a video file nor a folder",
-        ),
-        (
-            "measure empty --gait walk",
-            "lizard: empty has no frames: .png, .jpg or .jpeg files",
-        ),
-        (
-            "measure untimed --gait walk",
-            "lizard: the time of untimed/frame-001.png is unknown: give the frames per second",
-        ),
-        (
-            "measure text --gait walk --fps 30",
-            "lizard: text/a.png is not a valid PNG or JPEG file: ",
-        ),
-        (
-            "measure text --gait wlak --fps 30",
-            "lizard: robot.toml has no gait `wlak`; allowed values:",
-        ),
-        (
-            "measure text --gait stand --fps 30",
-            "lizard: the gait `stand` moves no servo",
-        ),
-        (
-            "measure text --gait walk --ruler 20",
-            "error: invalid value '20' for '--ruler <MM>': must be between 85 and 115 mm",
-        ),
-        (
-            "measure --gait walk",
-            "error: the following required arguments were not provided",
-        ),
-        (
-            "measure text --csv --gait walk",
-            "error: the argument '--csv' cannot be used with '--gait <NAMES>'",
-        ),
-    ] {
-        let arguments: Vec<&str> = line.split(' ').collect();
-        let refusal = run_in(&folder, &arguments, "").expect_refusal();
+    let cases = "
+        measure none --gait walk => lizard: none is neither a video file nor a folder
+        measure empty --gait walk => lizard: empty has no frames: .png, .jpg or .jpeg files
+        measure untimed --gait walk => lizard: the time of untimed/frame-001.png is unknown: give the frames per second
+        measure text --gait wlak --fps 30 => lizard: robot.toml has no gait `wlak`; allowed values:
+        measure text --gait stand --fps 30 => lizard: the gait `stand` moves no servo
+        measure text --gait walk --ruler 20 => error: invalid value '20' for '--ruler <MM>': must be between 85 and 115 mm
+        measure --gait walk => error: the following required arguments were not provided
+        measure text --csv --gait walk => error: the argument '--csv' cannot be used with '--gait <NAMES>'
+    ";
+    let no_picture = (
+        "measure text --gait walk --fps 30",
+        "lizard: text/a.png is not a valid PNG or JPEG file: ",
+    );
+    for (line, message) in read_cases(cases).chain([no_picture]) {
+        let refusal = run_line_in(&folder, line).expect_refusal();
         assert!(refusal.starts_with(message), "{line}: {refusal}");
     }
 }
@@ -320,18 +270,14 @@ fn impossible_measurements_are_refused_with_a_message() {
 fn the_error_for_a_video_without_ffmpeg_names_the_program_to_install() {
     let video = scratch_folder().join("video.mp4");
     fs::write(&video, "a video").expect("the file is written");
-    let program = env!("CARGO_BIN_EXE_lizard");
-    let mut command = std::process::Command::new(program);
-    command
-        .args(["measure", "--gait", "walk"])
-        .arg(&video)
-        .env("PATH", "");
-    let output = lizard_time_limit::TIME_LIMIT
-        .run_command(&mut command, b"")
-        .expect("the program exits");
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert_contains(&message, "install ffmpeg, or give a folder of frames");
-    assert_eq!(output.status.code(), Some(1));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
+    command.args(["measure", "--gait", "walk"]).arg(&video);
+    let outcome = run_command(command.env("PATH", ""), "");
+    assert_contains(
+        &outcome.stderr,
+        "install ffmpeg, or give a folder of frames",
+    );
+    assert_eq!(outcome.code, Some(1));
 }
 
 /// Replaces ffmpeg and ffprobe by scripts: ffmpeg prints decoded frames, ffprobe the uneven times of a phone's video.
@@ -360,24 +306,19 @@ fn measure_reads_frames_from_ffmpeg_and_times_from_ffprobe() {
         let path = folder.join(program);
         let script = format!("#!/bin/sh\nexec cat '{}'\n", folder.join(file).display());
         fs::write(&path, script).expect("the file is written");
-        fs::set_permissions(&path, fs::Permissions::from_mode(0o755))
-            .expect("the script is made executable");
+        let permissions = fs::Permissions::from_mode(0o755);
+        fs::set_permissions(&path, permissions).expect("the script is made executable");
     }
-    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_lizard"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
     let path = format!("{}:/usr/bin:/bin", folder.display());
     command.args(["measure", "--gait", "walk", "--height", "95", "--json"]);
     command.args(["--robot", &robot_path("paper")]);
     command.arg(folder.join("video")).env("PATH", path);
-    let output = lizard_time_limit::TIME_LIMIT
-        .run_command(&mut command, b"")
-        .expect("the program exits");
-    let object: Value = serde_json::from_slice(&output.stdout).expect("the output is JSON");
+    let object = run_command(&mut command, "").expect_json();
     let forward_mm = object["gaits"][0]["forward"]["mean"].as_f64();
     let forward_mm = forward_mm.expect("the value is a number");
-    assert!(
-        (forward_mm - true_displacement(&paper_gait("walk")).forward).abs() < 0.2,
-        "{object}"
-    );
+    let error_mm = forward_mm - true_displacement(&paper_gait("walk")).forward;
+    assert!(error_mm.abs() < 0.2, "{object}");
 }
 
 #[test]

@@ -35,9 +35,8 @@ fn write_sheet(paper: &str) -> (String, [f64; 2]) {
     let (_, media_box) = media_box.expect("the PDF has a page size");
     let (media_box, _) = media_box.split_once(']').expect("the page size ends");
     let numbers = media_box.split(' ').map(|word| word.parse::<f64>());
-    let numbers: Vec<f64> = numbers
-        .collect::<Result<_, _>>()
-        .expect("the values are numbers");
+    let numbers: Result<Vec<f64>, _> = numbers.collect();
+    let numbers = numbers.expect("the values are numbers");
     let size = [2, 3].map(|i| numbers[i] * MM_PER_POINT);
     (text, size)
 }
@@ -87,8 +86,9 @@ fn a_printed_sheet_shows_all_tags_at_actual_size() {
         let (frame, ink_extent) = rasterize(&text, page_mm);
         for (axis, [min, max]) in ink_extent.into_iter().enumerate() {
             assert!((page_mm[axis] - paper_mm[axis]).abs() < 0.1, "{page_mm:?}");
+            let is_printable = min > 5.0 && max < page_mm[axis] - 5.0;
             assert!(
-                min > 5.0 && max < page_mm[axis] - 5.0,
+                is_printable,
                 "ink outside the printable area: {ink_extent:?}"
             );
         }
@@ -101,14 +101,10 @@ fn a_printed_sheet_shows_all_tags_at_actual_size() {
         for tag in &tags {
             let [left, right, ..] = tag.corners;
             let edge_mm = distance_mm(left, right);
-            let error_mm = edge_mm - sheet::tag_edge(tag.id);
-            assert!(
-                error_mm.abs() < 0.4,
-                "{paper}, tag {}: {edge_mm} mm",
-                tag.id
-            );
+            let (id, error_mm) = (tag.id, edge_mm - sheet::tag_edge(tag.id));
+            assert!(error_mm.abs() < 0.4, "{paper}, tag {id}: {edge_mm} mm");
             let is_upright = left[0] < right[0] && (left[1] - right[1]).abs() < 1.0;
-            assert!(is_upright, "{paper}, tag {}", tag.id);
+            assert!(is_upright, "{paper}, tag {id}");
         }
         for strip in [0, 2] {
             let spacing_mm = distance_mm(tags[strip].corners[0], tags[strip + 1].corners[0]);
@@ -123,10 +119,11 @@ fn the_ruler_line_of_a_strip_is_100_mm_long() {
     let (text, _) = write_sheet("a4");
     let rectangles = parse_operands(&text, " re")
         .map(|rectangle| [0, 1, 2, 3].map(|i| rectangle[i] * MM_PER_POINT));
-    let rulers = rectangles
-        .clone()
-        .filter(|rectangle| (rectangle[2] - sheet::RULER_LENGTH).abs() < 0.01);
-    assert_eq!(rulers.count(), sheet::STRIP_COUNT);
+    let is_ruler = |rectangle: &[f64; 4]| (rectangle[2] - sheet::RULER_LENGTH).abs() < 0.01;
+    assert_eq!(
+        rectangles.clone().filter(is_ruler).count(),
+        sheet::STRIP_COUNT
+    );
     // The outer edges of the two 8 mm end ticks are at the ends of the line.
     let ticks = rectangles.filter(|rectangle| (rectangle[3] - 8.0).abs() < 0.01);
     let ticks: Vec<[f64; 2]> = ticks.map(|[x, _, width, _]| [x, x + width]).collect();

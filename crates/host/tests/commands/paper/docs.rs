@@ -50,10 +50,9 @@ fn draw_charts_writes_the_svg_files_in_docs() {
     let (folder_path, robot_path) = (folder.display(), robot_file.display());
     let line = format!("draw charts --json {folder_path} --robot {robot_path}");
     run_line(&line, "").expect_success();
-    let mut names: Vec<String> = std::fs::read_dir(&folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
+    let entries = std::fs::read_dir(&folder).unwrap();
+    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = names.collect();
     names.sort();
     assert_eq!(
         names.join(" "),
@@ -85,22 +84,18 @@ const TABLE_1: [(&str, f64); 7] = [
 #[test]
 fn table_1_matches_the_papers_robot_except_for_the_link_listed_twice() {
     let robot = read_file("robots/paper.toml");
-    let rows = TABLE_1
-        .iter()
-        .flat_map(|(names, mm)| names.split(' ').map(move |name| (name, *mm)));
-    let differing_rows = rows
-        .clone()
-        .filter(|(name, mm)| read_length(&robot, name) != *mm);
-    assert_eq!(differing_rows.collect::<Vec<_>>(), [("l16", 45.0)]);
+    let split_row = |(names, mm): (&'static str, f64)| names.split(' ').map(move |name| (name, mm));
+    let rows = TABLE_1.into_iter().flat_map(split_row);
+    let differs = |(name, mm): &(&str, f64)| read_length(&robot, name) != *mm;
+    let differing_rows: Vec<_> = rows.clone().filter(differs).collect();
+    assert_eq!(differing_rows, [("l16", 45.0)]);
     let names = rows.map(|(name, _)| name);
     let links: BTreeSet<&str> = names.filter(|name| name.starts_with('l')).collect();
     assert_eq!(links.len(), 19);
     assert!(!links.contains("l17") && read_length(&robot, "l17") == 45.0);
     let page = read_file("docs/paper.md");
-    assert_contains(
-        &page,
-        "19 of 20 links; l17 is missing and l16 is listed twice",
-    );
+    let remark = "19 of 20 links; l17 is missing and l16 is listed twice";
+    assert_contains(&page, remark);
 }
 
 #[test]
@@ -157,7 +152,7 @@ fn docs_paper_states_the_computed_movements_of_the_papers_gaits() {
         let row = rows.iter().find(|row| row["gait"] == gait).expect(gait);
         row["predicted"][key].as_f64().expect(key)
     };
-    let walk_mm = find_prediction("walk", "forward");
+    let [walk_mm, trot_mm] = ["walk", "trot"].map(|gait| find_prediction(gait, "forward"));
     let left_deg = find_prediction("left", "turn");
     let foot_travel_mm = 80.0_f64.hypot(55.0) * left_deg.to_radians();
     let table = run_line(&with_paper("gaits --sensitivity"), "").expect_success();
@@ -170,28 +165,20 @@ fn docs_paper_states_the_computed_movements_of_the_papers_gaits() {
     };
     // The third mount column is for 41.4 deg, and the fourth friction column is for a ratio of 1.25. The row of a turn
     // has two numbers in each column.
-    let [mounted_walk_mm, mounted_turn_deg] = [
-        find_numbers("mount, deg", "walk")[2],
-        find_numbers("mount, deg", "left")[5],
-    ];
+    let mounted_walk_mm = find_numbers("mount, deg", "walk")[2];
+    let mounted_turn_deg = find_numbers("mount, deg", "left")[5];
     assert!(table.contains("41.4") && table.contains("1.25"));
     let uneven_walk_mm = find_numbers("friction", "walk")[3];
     for phrase in [
         format!("25 cycles of `walk` are {:.0} mm", 25.0 * walk_mm),
         format!("`left` turns {left_deg:.1} deg per cycle"),
-        format!(
-            "`trot`, {:.1} mm per cycle",
-            find_prediction("trot", "forward")
-        ),
+        format!("`trot`, {trot_mm:.1} mm per cycle"),
         format!("`walk` moves {walk_mm:.1} mm per cycle"),
         format!("the feet, 97 mm from the middle, move by {foot_travel_mm:.1} mm"),
         format!("`walk` moves {mounted_walk_mm:.1} mm per cycle instead of {walk_mm:.1}"),
         format!("`left` turns {mounted_turn_deg:.1} deg instead of {left_deg:.1}"),
         format!("1.25 times as strong backward as forward, `walk` moves {uneven_walk_mm:.1} mm"),
     ] {
-        assert!(
-            page.contains(&phrase),
-            "docs/paper.md does not contain: {phrase}"
-        );
+        assert_contains(&page, &phrase);
     }
 }

@@ -77,10 +77,8 @@ fn every_printed_solution_closes_all_loops() {
         ] {
             let span = 90.0 + solution[side]["s"].as_f64().unwrap();
             let slider = vector(span, solution[side]["phi"].as_f64().unwrap());
-            assert_closed(
-                [vector(30.0, hind), slider, vector(30.0, front), [0.0, 0.0]],
-                [0.0, 135.0],
-            );
+            let [hind_arm, front_arm] = [hind, front].map(|angle| vector(30.0, angle));
+            assert_closed([hind_arm, slider, front_arm, [0.0; 2]], [0.0, 135.0]);
         }
         let head = vector(30.0, t1);
         let coupler = vector(50.0, find_angle("theta2"));
@@ -98,10 +96,8 @@ fn every_printed_solution_closes_all_loops() {
             let margin = solution["margins"][format!("leg_{leg}")].as_f64().unwrap();
             assert!((margin - sign * theta.to_radians().sin()).abs() < 1e-12);
         }
-        assert_eq!(
-            solution["safe"].as_bool().unwrap(),
-            solution["why"].as_array().unwrap().is_empty()
-        );
+        let reasons = solution["why"].as_array().unwrap();
+        assert_eq!(solution["safe"], reasons.is_empty());
     }
 }
 
@@ -114,19 +110,16 @@ fn the_rows_after_a_singular_row_are_solved() {
     assert_eq!(solutions[0]["safe"], false);
     assert_contains(solutions[0]["why"][0].as_str().unwrap(), "singular");
     assert!(solutions[0]["theta2"].is_null());
-    assert_eq!(
-        solutions[1]["why"][0],
-        "margin type1_a1 -0.317 is below 0.300"
-    );
+    let reason = &solutions[1]["why"][0];
+    assert_eq!(reason, "margin type1_a1 -0.317 is below 0.300");
     assert_eq!(solutions[2]["safe"], true);
 }
 
 #[test]
 fn column_order_line_endings_and_quotes_do_not_matter() {
     let plain_solutions = solve_rows(&format!("{HEADER}138,42,318,221\n"));
-    let reordered_solutions =
-        solve_rows("\u{feff}theta8, theta1,theta4,\"theta5\"\r\n\r\n318,138,42,\"221\"");
-    assert_eq!(plain_solutions, reordered_solutions);
+    let reordered_input = "\u{feff}theta8, theta1,theta4,\"theta5\"\r\n\r\n318,138,42,\"221\"";
+    assert_eq!(plain_solutions, solve_rows(reordered_input));
 }
 
 #[test]
@@ -168,12 +161,12 @@ fn the_table_is_aligned_and_marks_safe_poses() {
 #[test]
 fn without_a_header_the_columns_are_the_servos_in_order() {
     let named_solutions = solve_rows(&format!("{HEADER}138,42,318,221\n100,40,-50,220\n"));
-    for input in [
-        "138,42,318,221\n100,40,-50,220\n",
-        "\u{feff}138,42,318,221\n\"100\",40,-50,220",
-    ] {
-        assert_eq!(solve_rows(input), named_solutions);
-    }
+    assert_eq!(
+        solve_rows("138,42,318,221\n100,40,-50,220\n"),
+        named_solutions
+    );
+    let quoted_input = "\u{feff}138,42,318,221\n\"100\",40,-50,220";
+    assert_eq!(solve_rows(quoted_input), named_solutions);
 }
 
 #[test]
@@ -220,10 +213,10 @@ fn an_angle_beyond_a_servos_travel_is_not_safe() {
             "pin = \"D11\"\nneutral = 318.590378\nneutral_us = 2050.0\nus_per_degree = 20.0\nmin_us = 1000.0\nmax_us = 2450.0",
         )],
     );
+    let pose = "pose --theta1 138.59 --theta4 41.41 --theta5 221.41 --theta8";
     let solve_with_theta8 = |theta8: f64| {
-        let pose =
-            format!("pose --json --theta1 138.59 --theta4 41.41 --theta8 {theta8} --theta5 221.41");
-        run_line(&robot.add_option(&pose), "").expect_json()
+        let line = format!("{pose} {theta8} --json");
+        run_line(&robot.add_option(&line), "").expect_json()
     };
     let end_of_travel = solve_with_theta8(318.590378 + 20.0);
     assert_eq!(end_of_travel["safe"], true);
@@ -233,8 +226,7 @@ fn an_angle_beyond_a_servos_travel_is_not_safe() {
         beyond_travel["why"][0],
         "servo A3 would turn +20.1 deg from neutral to 338.7 deg; its travel is 266.1 to 338.6 deg"
     );
-    let command = "pose --theta1 138.59 --theta4 41.41 --theta8 338.8 --theta5 221.41";
-    let text = run_line(&robot.add_option(command), "").stdout;
+    let text = run_line(&robot.add_option(&format!("{pose} 338.8")), "").stdout;
     assert_contains(&text, "safe     no, servo A3 would turn +20.2");
     let table = run_line(&robot.add_option("pose"), "138.59,41.41,338.8,221.41\n").stdout;
     assert_contains(&table, "| servo A3 would turn");
@@ -260,10 +252,8 @@ fn zero_is_printed_without_a_sign() {
     ] {
         let text = run_line(&with_paper(args), "").stdout;
         let mut words = text.split(|c: char| c.is_whitespace() || "(),|".contains(c));
-        let is_negative_zero = |word: &str| {
-            word.strip_prefix("-0.")
-                .is_some_and(|digits| digits.bytes().all(|digit| digit == b'0'))
-        };
+        let is_zero = |digits: &str| digits.bytes().all(|digit| digit == b'0');
+        let is_negative_zero = |word: &str| word.strip_prefix("-0.").is_some_and(is_zero);
         assert!(!words.any(is_negative_zero), "{args}\n{text}");
     }
 }

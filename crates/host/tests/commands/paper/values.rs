@@ -103,9 +103,8 @@ fn the_body_has_four_degrees_of_freedom_and_each_leg_has_one() {
     }
     assert_eq!(mechanisms[0]["rank"], 32);
     // A flat leg gains a degree of freedom that the Gruebler count does not show.
-    let flat_leg_mechanisms = run_paper_json(
-        "pose --show freedoms --json --theta1 138 --theta4 0 --theta5 221 --theta8 318",
-    );
+    let flat_leg = "--theta1 138 --theta4 0 --theta5 221 --theta8 318";
+    let flat_leg_mechanisms = run_paper_json(&format!("pose --show freedoms --json {flat_leg}"));
     assert_eq!(flat_leg_mechanisms[2]["gruebler"], 1);
     assert_eq!(flat_leg_mechanisms[2]["freedoms"], 2);
 }
@@ -131,11 +130,8 @@ fn the_determinant_matches_its_factors_and_the_nearest_poses_are_singular() {
             let margins = margins.values().map(to_number);
             margins.map(f64::abs).fold(1.0, f64::min)
         });
-        assert!(
-            min_margin < 1e-4,
-            "{}: margin {min_margin}",
-            singular_pose["what"]
-        );
+        let name = &singular_pose["what"];
+        assert!(min_margin < 1e-4, "{name}: margin {min_margin}");
     }
 }
 
@@ -145,9 +141,8 @@ fn rates_match_difference_quotients_of_positions() {
     let rows = run_paper_json(&format!("pose --show rates --json {options}"));
     for row in elements(&rows) {
         for (key, offset) in [("rate", 1.0), ("acceleration", 100.0)] {
-            let deviation = &row[format!("{key}_deviation")];
             let tolerance = 1e-6 * (offset + to_number(&row[key]).abs());
-            assert_near(deviation, 0.0, tolerance);
+            assert_near(&row[format!("{key}_deviation")], 0.0, tolerance);
         }
     }
 }
@@ -160,11 +155,9 @@ fn rates_of_any_size_match_difference_quotients() {
         "--omega1 1e-3 --alpha5 1e-3",
     ] {
         let rows = run_line(&with_paper(&format!("pose --show rates {options}")), "").stdout;
-        let verdicts = rows
-            .lines()
-            .skip(1)
-            .filter(|row| row.ends_with("agree to 1e-6"));
-        assert_eq!(verdicts.count(), 12, "{options}\n{rows}");
+        let agrees = |row: &&str| row.ends_with("agree to 1e-6");
+        let verdict_count = rows.lines().skip(1).filter(agrees).count();
+        assert_eq!(verdict_count, 12, "{options}\n{rows}");
     }
 }
 
@@ -214,16 +207,11 @@ fn the_end_point_is_loose_in_a_type_2_singularity() {
     let head_body = &find_freedoms(head_pose)[0];
     assert_eq!(head_body["freedoms"], 4);
     assert_eq!(head_body["locked_freedoms"], 1);
-    assert_eq!(
-        head_body["loose"][0],
-        "the head's end point is loose (type 2)"
-    );
-    let tail_mechanisms =
-        find_freedoms("--theta1 138.59 --theta4 41.41 --theta8 -109.471221 --theta5 -70.528779");
-    assert_eq!(
-        tail_mechanisms[0]["loose"][0],
-        "the tail's end point is loose (type 2)"
-    );
+    let tail_pose = "--theta1 138.59 --theta4 41.41 --theta8 -109.471221 --theta5 -70.528779";
+    for (end, body) in [("head", head_body), ("tail", &find_freedoms(tail_pose)[0])] {
+        let expected = format!("the {end}'s end point is loose (type 2)");
+        assert_eq!(body["loose"][0], expected);
+    }
     let line = with_paper(&format!("pose --show freedoms {head_pose}"));
     let text = run_line(&line, "").stdout;
     assert!(!text.contains("four servos hold the body"), "{text}");
@@ -247,10 +235,8 @@ fn a_design_with_a_wide_base_has_an_inscribed_circle() {
 #[test]
 fn matrices_name_their_rows_and_columns_in_servo_order() {
     let report = run_line("pose --show singularities --json", "").expect_json();
-    assert_eq!(
-        report["k"]["columns"],
-        serde_json::json!(["theta1", "theta4", "theta8", "theta5"])
-    );
+    let servo_order = serde_json::json!(["theta1", "theta4", "theta8", "theta5"]);
+    assert_eq!(report["k"]["columns"], servo_order);
     for (matrix, columns) in [("k", 4), ("k_star", 8)] {
         let matrix = &report[matrix];
         assert_eq!(elements(&matrix["rows"]).len(), 8);
@@ -263,12 +249,9 @@ fn matrices_name_their_rows_and_columns_in_servo_order() {
     for (row, is_front) in [(0, true), (1, true), (2, false), (3, false)] {
         for column in 0..4 {
             let entry = to_number(&report["k"]["values"][row][column]);
+            let depends = entry != 0.0;
             let may_depend = (column < 2) == is_front;
-            assert_eq!(
-                entry != 0.0,
-                may_depend,
-                "row {row}, column {column}: {entry}"
-            );
+            assert_eq!(depends, may_depend, "row {row}, column {column}: {entry}");
         }
     }
 }

@@ -12,27 +12,24 @@ impl Writer<'_> {
     /// Writes sensors for the servos' angles, rates and torques, the force on each pad, and the chassis's position,
     /// orientation and velocities.
     pub(super) fn write_sensors(&mut self) {
-        self.xml.open("sensor");
+        let xml = &mut self.xml;
+        xml.open("sensor");
         for name in SERVO_NAMES {
             for (quantity, kind) in [("angle", "pos"), ("rate", "vel"), ("torque", "frc")] {
-                self.xml.write_empty(format!(
+                xml.write_empty(format!(
                     r#"actuator{kind} name="{name} {quantity}" actuator="{name}""#
                 ));
             }
         }
         for leg in LEG_NAMES {
-            self.xml
-                .write_empty(format!(r#"touch name="load {leg}" site="pad {leg}""#));
+            xml.write_empty(format!(r#"touch name="load {leg}" site="pad {leg}""#));
         }
         let chassis = r#"objtype="xbody" objname="chassis""#;
-        self.xml
-            .write_empty(format!(r#"framepos name="place" {chassis}"#));
-        self.xml
-            .write_empty(format!(r#"framequat name="direction" {chassis}"#));
-        self.xml
-            .write_empty(r#"velocimeter name="velocity" site="chassis""#);
-        self.xml.write_empty(r#"gyro name="gyro" site="chassis""#);
-        self.xml.close();
+        xml.write_empty(format!(r#"framepos name="place" {chassis}"#));
+        xml.write_empty(format!(r#"framequat name="direction" {chassis}"#));
+        xml.write_empty(r#"velocimeter name="velocity" site="chassis""#);
+        xml.write_empty(r#"gyro name="gyro" site="chassis""#);
+        xml.close();
     }
 
     /// Writes the site that measures the load of a servo's pad.

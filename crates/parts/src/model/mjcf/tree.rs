@@ -6,7 +6,6 @@ use super::document::format_stiff_limits;
 use crate::layers::body::Mount;
 use crate::model::material::Material;
 use crate::model::node::{Freedom, Node};
-use crate::model::scene::StrutSpring;
 use crate::model::text::{MILLI, format_metres, join_numbers, round};
 use crate::model::writer::Writer;
 
@@ -85,7 +84,7 @@ impl Writer<'_> {
         if matches!(node.freedom(), Freedom::SlidesAlongX) && !matches!(node, Node::SlotPin(_)) {
             joint += &format_friction(joint_friction.slider_force);
         }
-        match (node, self.scene.strut_spring) {
+        match (node, self.spring_values(node)) {
             (Node::OnMount(Mount::Link(_)), _) if self.has_play() => {
                 let (play, limits) = (round(self.scene.play.to_radians()), format_stiff_limits());
                 // Grease damps a link that moves freely within its play.
@@ -95,10 +94,8 @@ impl Writer<'_> {
                 let (stiffness, damping) = (self.leaf_stiffness(), self.leaf_damping());
                 joint += &format!(r#" stiffness="{stiffness}" damping="{damping}""#);
             }
-            (Node::SlotPin(_), Some(StrutSpring { preload, rate })) => {
+            (Node::SlotPin(_), Some([rest_position, stiffness])) => {
                 let (slot_end, limits) = (round(SLOT_LENGTH * MILLI), format_stiff_limits());
-                let (stiffness, rest_position) =
-                    (round(rate / MILLI), round(-preload / rate * MILLI));
                 joint += &format!(
                     r#" range="0 {slot_end}" {limits} stiffness="{stiffness}" springref="{rest_position}" damping="0.1""#
                 );

@@ -1,7 +1,10 @@
 //! Tests of the audit with gaits at their limits and just beyond their limits.
 
 use crate::robot::STAND;
-use crate::testing::{all_robots, robot, robot_with, text_before_gaits};
+use crate::testing::{
+    assert_contains, assert_starts_with, error_with, for_each_gait, robot, robot_with,
+    text_before_gaits, valid_robot_with,
+};
 use crate::{CheckedGait, Robot};
 use lizard_core::guard::hazard::{Hazard, Margin};
 use lizard_core::numbers::part::{End, Servo, Side as CoreSide};
@@ -49,18 +52,11 @@ fn the_stroke_range_covers_both_sliders() {
         let gait = robot.gait("lean").expect("the robot has the gait lean");
         let (expected_min, expected_max) = compute_stroke_ranges(&robot, gait)[side as usize];
         let (min_stroke, max_stroke) = gait.audit().stroke_range;
-        assert!(
-            expected_min < -5.0 && expected_max > 3.0,
-            "strokes of {expected_min} to {expected_max} mm"
-        );
-        assert!(
-            (expected_min - min_stroke).abs() < 0.05,
-            "smallest stroke {min_stroke} mm"
-        );
-        assert!(
-            (max_stroke - expected_max).abs() < 0.05,
-            "largest stroke {max_stroke} mm"
-        );
+        let strokes = format!("strokes of {expected_min} to {expected_max} mm");
+        assert!(expected_min < -5.0 && expected_max > 3.0, "{strokes}");
+        for (stroke, expected) in [(min_stroke, expected_min), (max_stroke, expected_max)] {
+            assert!((stroke - expected).abs() < 0.05, "{stroke} mm, {strokes}");
+        }
     }
 }
 
@@ -70,38 +66,23 @@ fn the_message_names_the_slider_that_hits_its_end_stop() {
         let robot = parse_leaning_robot(side, &[]).expect("the leaning robot is valid");
         let gait = robot.gait("lean").expect("the robot has the gait lean");
         let (min_stroke, max_stroke) = compute_stroke_ranges(&robot, gait)[side as usize];
-        for (old, new, word) in [
-            (
-                "stroke_min = -19.0",
-                format!("stroke_min = {:.2}", min_stroke + 0.5),
-                "below",
-            ),
-            (
-                "stroke_max = 41.0",
-                format!("stroke_max = {:.2}", max_stroke - 0.5),
-                "above",
-            ),
+        let min_limit = |mm: f64| ("stroke_min = -19.0", format!("stroke_min = {mm:.2}"));
+        let max_limit = |mm: f64| ("stroke_max = 41.0", format!("stroke_max = {mm:.2}"));
+        for (limit, word) in [
+            (min_limit(min_stroke + 0.5), "below"),
+            (max_limit(max_stroke - 0.5), "above"),
         ] {
-            let message = parse_leaning_robot(side, &[(old, new)])
+            let message = parse_leaning_robot(side, &[limit])
                 .expect_err("the stroke is too small for the gait")
                 .to_string();
             let expected_start = format!(
                 "in \"lean\" the {side} slider would hit its end stop: {side} slider travel "
             );
-            assert!(message.starts_with(&expected_start), "{message}");
+            assert_starts_with(&message, &expected_start);
             assert!(message.ends_with(": gait.lean)"), "{message}");
-            assert!(message.contains(word), "{message}");
+            assert_contains(&message, word);
         }
-        let wide_limits = [
-            (
-                "stroke_min = -19.0",
-                format!("stroke_min = {:.2}", min_stroke - 0.2),
-            ),
-            (
-                "stroke_max = 41.0",
-                format!("stroke_max = {:.2}", max_stroke + 0.2),
-            ),
-        ];
+        let wide_limits = [min_limit(min_stroke - 0.2), max_limit(max_stroke + 0.2)];
         assert!(parse_leaning_robot(side, &wide_limits).is_ok());
     }
 }
@@ -129,28 +110,22 @@ fn each_hazard_corresponds_to_the_check_of_the_same_condition() {
 
 #[test]
 fn every_sample_of_every_servo_is_checked() {
-    for (name, robot) in all_robots() {
-        for gait in robot.gaits() {
-            let phases = super::list_phases(gait.table_gait());
-            for channel in gait.table_gait().channels {
-                for sample in (0..=u16::MAX).step_by(1024) {
-                    let phase = sample.wrapping_sub(channel.offset);
-                    assert!(
-                        phases.contains(&phase),
-                        "{name} {}: phase {phase} is missing",
-                        gait.name()
-                    );
-                }
+    for_each_gait(|label, _, gait| {
+        let phases = super::list_phases(gait.table_gait());
+        for channel in gait.table_gait().channels {
+            for sample in (0..=u16::MAX).step_by(1024) {
+                let phase = sample.wrapping_sub(channel.offset);
+                assert!(phases.contains(&phase), "{label}: phase {phase} is missing");
             }
         }
-    }
+    });
 }
 
 #[test]
 fn a_backward_swing_has_the_same_peak_speed_as_a_forward_swing() {
     // All legs have a negative gain, so they swing backward.
     let table = "[gait.backward]\nlike = \"walk\"\ngain = { LF = -1.0, RF = -1.0, RH = -1.0, LH = -1.0 }\n[gait.trot]";
-    let robot = robot_with("unequal", &[("[gait.trot]", table)]).expect("the gait is valid");
+    let robot = valid_robot_with("unequal", &[("[gait.trot]", table)]);
     let peak_speed = |name: &str| robot.gait(name).expect(name).audit().peak_speed.speed;
     assert!((peak_speed("backward") - peak_speed("walk")).abs() < 1e-9);
 }
@@ -160,14 +135,13 @@ fn a_gait_may_be_as_fast_as_the_limit_but_no_faster() {
     let unequal = robot("unequal");
     let peak_speed = |gait: &CheckedGait| gait.audit().peak_speed.speed;
     let max_speed = unequal.gaits().iter().map(peak_speed).fold(0.0, f64::max);
-    let limit_line = |speed: f64| format!("gait_slew = {speed:?}");
-    assert!(robot_with("unequal", &[("gait_slew = 330.0", &limit_line(max_speed))]).is_ok());
-    let result = robot_with(
-        "unequal",
-        &[("gait_slew = 330.0", &limit_line(max_speed - 1e-6))],
-    );
-    let message = result.expect_err("the gait is too fast").to_string();
-    assert!(message.contains("limits.gait_slew is"), "{message}");
+    let robot_with_limit = |speed: f64| {
+        let limit_line = format!("gait_slew = {speed:?}");
+        robot_with("unequal", &[("gait_slew = 330.0", &limit_line)])
+    };
+    assert!(robot_with_limit(max_speed).is_ok());
+    let error = robot_with_limit(max_speed - 1e-6).expect_err("the gait is too fast");
+    assert_contains(&error.to_string(), "limits.gait_slew is");
 }
 
 #[test]
@@ -175,27 +149,18 @@ fn a_gait_may_use_the_whole_travel_but_no_more() {
     // A held leg swings exactly its amplitude to either side of neutral.
     let robot_with_travel = |degrees: f64| {
         let servo_keys = format!("us_per_degree = 8.5\nmin_us = {:?}", 1500.0 - degrees * 8.5);
-        let body = text_before_gaits("unequal").replacen(
-            "us_per_degree = 8.5\nmin_us = 700.0",
-            &servo_keys,
-            1,
-        );
+        let old_keys = "us_per_degree = 8.5\nmin_us = 700.0";
+        let body = text_before_gaits("unequal").replacen(old_keys, &servo_keys, 1);
         Robot::parse(&format!(
             "{body}{STAND}[gait.sway]\nperiod = 2.0\nwaveform = \"held\"\namplitude = 17.0\norder = [\"LH\", \"LF\", \"RH\", \"RF\"]\n"
         ))
     };
-    assert_eq!(
-        robot_with_travel(17.0).map(|robot| robot.gaits().len()),
-        Ok(2)
-    );
-    let message = robot_with_travel(16.9)
-        .expect_err("the travel is a tenth of a degree too small")
-        .to_string();
-    assert!(
-        message.starts_with("in \"sway\" servo A3 would have to turn farther than it can: ")
-            && message.contains(" is outside its travel of 299.10 to"),
-        "{message}"
-    );
+    let gait_count = robot_with_travel(17.0).map(|robot| robot.gaits().len());
+    assert_eq!(gait_count, Ok(2));
+    let error = robot_with_travel(16.9).expect_err("the travel is a tenth of a degree too small");
+    let consequence = "in \"sway\" servo A3 would have to turn farther than it can: ";
+    assert_starts_with(&error.to_string(), consequence);
+    assert_contains(&error.to_string(), " is outside its travel of 299.10 to");
 }
 
 #[test]
@@ -211,15 +176,9 @@ fn both_ends_of_every_servos_travel_are_checked() {
             (min_line, format!("min_us = {}", neutral - 9.0)),
             (max_line, format!("max_us = {}", neutral + 9.0)),
         ] {
-            let message = robot_with("unequal", &[(old, &new)])
-                .expect_err(&new)
-                .to_string();
-            assert!(
-                message.starts_with(&format!(
-                    "in \"walk\" servo {servo} would have to turn farther"
-                )),
-                "{message}"
-            );
+            let message = error_with("unequal", &[(old, &new)]);
+            let expected = format!("in \"walk\" servo {servo} would have to turn farther");
+            assert_starts_with(&message, &expected);
         }
     }
 }
@@ -235,29 +194,21 @@ fn each_kind_of_margin_is_checked_against_its_own_limit() {
         let name = line.split(' ').next().expect("the text begins with a key");
         let min_margin_of = |gait: &CheckedGait| {
             let audit = gait.audit();
-            let [min_margin] = [audit.type2, audit.type1, audit.leg]
-                .into_iter()
-                .filter(|margin| checks.contains(&margin.check))
-                .collect::<Vec<_>>()[..]
-            else {
+            let margins = [audit.type2, audit.type1, audit.leg].into_iter();
+            let margins = margins.filter(|margin| checks.contains(&margin.check));
+            let [min_margin] = margins.collect::<Vec<_>>()[..] else {
                 panic!("{audit:?}")
             };
             min_margin.value
         };
-        let min_margin = unequal
-            .gaits()
-            .iter()
-            .map(min_margin_of)
-            .fold(1.0, f64::min);
-        let limit_line = |value: f64| format!("{name} = {value:?} ");
+        let min_margins = unequal.gaits().iter().map(min_margin_of);
+        let min_margin = min_margins.fold(1.0, f64::min);
+        let robot_with_limit =
+            |value: f64| robot_with("unequal", &[(line, &format!("{name} = {value:?} "))]);
         // The firmware's guard is accurate to one or two thousandths.
-        assert!(
-            robot_with("unequal", &[(line, &limit_line(min_margin - 0.003))]).is_ok(),
-            "{name}"
-        );
-        let result = robot_with("unequal", &[(line, &limit_line(min_margin + 1e-6))]);
-        let message = result.expect_err(name).to_string();
-        assert!(message.contains(&format!("margin {name}_")), "{message}");
+        assert!(robot_with_limit(min_margin - 0.003).is_ok(), "{name}");
+        let error = robot_with_limit(min_margin + 1e-6).expect_err(name);
+        assert_contains(&error.to_string(), &format!("margin {name}_"));
     }
 }
 
@@ -273,12 +224,9 @@ fn a_gait_is_rejected_even_if_only_the_firmwares_guard_rejects_it() {
         ("unequal", "type1 = 0.27 "),
     ] {
         let robot = robot(name);
-        let min_margin_of = |gait: &CheckedGait| {
-            if line.starts_with("leg") {
-                gait.audit().leg.value
-            } else {
-                gait.audit().type1.value
-            }
+        let min_margin_of = |gait: &CheckedGait| match line.starts_with("leg") {
+            true => gait.audit().leg.value,
+            false => gait.audit().type1.value,
         };
         let min_margin = robot.gaits().iter().map(min_margin_of).fold(1.0, f64::min);
         let limit_name = line.split(' ').next().expect("the text begins with a key");
@@ -288,37 +236,26 @@ fn a_gait_is_rejected_even_if_only_the_firmwares_guard_rejects_it() {
             messages.extend(error.map(|error| error.to_string()));
         }
     }
-    assert!(
-        !messages.is_empty(),
-        "no limit was rejected by the guard alone"
-    );
+    let has_messages = !messages.is_empty();
+    assert!(has_messages, "no limit was rejected by the guard alone");
     for message in messages {
-        assert!(
-            message.contains(": margin or travel ")
-                && message.contains("place it beyond the limit; leave more room ("),
-            "{message}"
-        );
+        assert_contains(&message, ": margin or travel ");
+        assert_contains(&message, "place it beyond the limit; leave more room (");
     }
 }
 
 #[test]
 fn each_smallest_margin_occurs_at_its_reported_phase() {
-    for (name, robot) in all_robots() {
-        for gait in robot.gaits() {
-            let audit = gait.audit();
-            for min_margin in [audit.type2, audit.type1, audit.leg] {
-                let phase = (min_margin.phase * 65536.0) as u16;
-                let pose = gait.table_angles(phase).into();
-                let solution = robot
-                    .lizard()
-                    .solve(&pose)
-                    .expect("a checked gait closes its loops");
-                let (_, value) = solution
-                    .conditions()
-                    .find(|(check, _)| *check == min_margin.check)
-                    .expect("the solution has this condition");
-                assert_eq!(value, min_margin.value, "{name} {}", gait.name());
-            }
+    for_each_gait(|label, robot, gait| {
+        let audit = gait.audit();
+        for min_margin in [audit.type2, audit.type1, audit.leg] {
+            let phase = (min_margin.phase * 65536.0) as u16;
+            let solution = robot.lizard().solve(&gait.table_angles(phase).into());
+            let solution = solution.expect("a checked gait closes its loops");
+            let mut conditions = solution.conditions();
+            let condition = conditions.find(|(check, _)| *check == min_margin.check);
+            let (_, value) = condition.expect("the solution has this condition");
+            assert_eq!(value, min_margin.value, "{label}");
         }
-    }
+    });
 }

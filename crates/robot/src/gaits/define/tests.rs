@@ -1,14 +1,20 @@
 //! Tests of valid and invalid gait definitions in robot.toml.
 
 use crate::robot::STAND;
-use crate::testing::{robot, text_before_gaits};
+use crate::testing::{assert_contains, assert_starts_with, robot, text_before_gaits};
 use crate::{Error, Robot};
 use lizard_core::console::word::Word;
+use lizard_core::numbers::section::REGION_BYTES;
 use lizard_kinematics::{End, Vector};
 
 /// Parses the paper's robot with these gaits instead of its own.
 fn paper_with_gaits(gaits: &str) -> Result<Robot, Error> {
-    Robot::parse(&format!("{}{gaits}", text_before_gaits("paper")))
+    Robot::parse(&(text_before_gaits("paper") + gaits))
+}
+
+/// Returns the error message for the paper's robot with these gaits.
+fn error_with_gaits(gaits: &str) -> String {
+    paper_with_gaits(gaits).expect_err(gaits).to_string()
 }
 
 /// A gait with its own waveform.
@@ -18,18 +24,12 @@ const WALK: &str = "[gait.walk]\nperiod = 1.0\nwaveform = \"wave\"\nduty = 0.75\
 fn a_gait_reversed_twice_runs_forward() {
     let robot = robot("own-gaits");
     let is_reversed = |name| robot.gait(name).expect(name).is_reversed();
-    assert_eq!(
-        [
-            "stroll",
-            "stroll-back",
-            "stroll-on",
-            "veer-right",
-            "veer-right-back",
-            "veer-left-back"
-        ]
-        .map(is_reversed),
-        [false, true, false, false, true, true]
-    );
+    for name in ["stroll", "stroll-on", "veer-right"] {
+        assert!(!is_reversed(name), "{name}");
+    }
+    for name in ["stroll-back", "veer-right-back", "veer-left-back"] {
+        assert!(is_reversed(name), "{name}");
+    }
     for (name, seconds, phase, period) in [
         ("stroll-on", 0.32, 0.25, 1.28),
         ("stroll-back", 0.3, 0.75, 1.2),
@@ -42,32 +42,17 @@ fn a_gait_reversed_twice_runs_forward() {
 #[test]
 fn a_mirrored_gait_swaps_left_and_right_before_the_gains_apply() {
     let robot = robot("own-gaits");
-    let amplitudes_and_starts = |name| {
-        let strides = robot.gait(name).expect(name).strides();
-        strides
-            .each_ref()
-            .map(|stride| (stride.amplitude, stride.start))
-    };
-    for (name, expected) in [
-        (
-            "stroll",
-            [(16.0, 0.0), (16.0, 0.5), (16.0, 0.25), (16.0, 0.75)],
-        ),
-        (
-            "veer-left",
-            [(8.0, 0.0), (16.0, 0.5), (16.0, 0.25), (8.0, 0.75)],
-        ),
-        (
-            "veer-right",
-            [(16.0, 0.5), (8.0, 0.0), (8.0, 0.75), (16.0, 0.25)],
-        ),
+    let (starts, mirrored_starts) = ([0.0, 0.5, 0.25, 0.75], [0.5, 0.0, 0.75, 0.25]);
+    for (name, amplitudes, starts) in [
+        ("stroll", [16.0; 4], starts),
+        ("veer-left", [8.0, 16.0, 16.0, 8.0], starts),
+        ("veer-right", [16.0, 8.0, 8.0, 16.0], mirrored_starts),
+        ("veer-left-back", [8.0, 19.2, 16.0, 8.0], starts),
     ] {
-        assert_eq!(amplitudes_and_starts(name), expected, "{name}");
+        let strides = robot.gait(name).expect(name).strides().each_ref();
+        assert_eq!(strides.map(|stride| stride.amplitude), amplitudes, "{name}");
+        assert_eq!(strides.map(|stride| stride.start), starts, "{name}");
     }
-    assert_eq!(
-        amplitudes_and_starts("veer-left-back"),
-        [(8.0, 0.0), (19.2, 0.5), (16.0, 0.25), (8.0, 0.75)]
-    );
 }
 
 #[test]
@@ -115,22 +100,15 @@ fn a_path_moves_only_the_end_that_it_names() {
 
 #[test]
 fn a_path_out_of_reach_is_rejected_at_either_end_and_on_either_side() {
-    let path_error = |end: &str, centre: &str| {
-        let gaits =
-            format!("{STAND}[gait.point]\nperiod = 4.0\n[gait.point.{end}]\ncentre = {centre}\n");
-        paper_with_gaits(&gaits).expect_err(&gaits).to_string()
-    };
     for end in ["head", "tail"] {
-        for (centre, point) in [
-            ("[45.0, 60.0]", "(45.00, 60.00)"),
-            ("[-45.0, 60.0]", "(-45.00, 60.00)"),
-            ("[0.0, 82.0]", "(0.00, 82.00)"),
-        ] {
-            let message = path_error(end, centre);
+        for [x, y] in [[45.0, 60.0], [-45.0, 60.0], [0.0, 82.0]] {
+            let gait =
+                format!("[gait.point]\nperiod = 4.0\n[gait.point.{end}]\ncentre = [{x:?}, {y:?}]");
+            let message = error_with_gaits(&format!("{STAND}{gait}\n"));
             let expected = format!(
-                "in \"point\" the {end} would not reach its path: the point {point} mm at phase 0.0000 is out of reach of the {end} ("
+                "in \"point\" the {end} would not reach its path: the point ({x:.2}, {y:.2}) mm at phase 0.0000 is out of reach of the {end} ("
             );
-            assert!(message.starts_with(&expected), "{message}");
+            assert_starts_with(&message, &expected);
         }
     }
 }
@@ -152,13 +130,8 @@ fn a_name_may_have_48_characters_but_not_49() {
         |length: usize| format!("{STAND}{}", WALK.replace("walk", &"w".repeat(length)));
     let robot = paper_with_gaits(&gaits_with_name_length(48)).expect("48 characters are allowed");
     assert_eq!(robot.gaits()[1].name().len(), 48);
-    let message = paper_with_gaits(&gaits_with_name_length(49))
-        .expect_err("49 characters are too many")
-        .to_string();
-    assert!(
-        message.contains("it has 49 characters; at most 48 are allowed"),
-        "{message}"
-    );
+    let message = error_with_gaits(&gaits_with_name_length(49));
+    assert_contains(&message, "it has 49 characters; at most 48 are allowed");
 }
 
 /// The end of the message about a robot whose gaits do not fit into the flash section.
@@ -179,12 +152,7 @@ fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
     // More gaits leave no room for the maps of certified cells but are accepted until the section is full.
     for count in 80..255 {
         match paper_with_gaits(&gaits_toml(count)) {
-            Ok(robot) => {
-                assert!(
-                    robot.section().len()
-                        <= usize::from(lizard_core::numbers::section::REGION_BYTES)
-                )
-            }
+            Ok(robot) => assert!(robot.section().len() <= usize::from(REGION_BYTES)),
             Err(error) => {
                 assert!(count > 85, "only {count} gaits fit");
                 assert!(error.to_string().ends_with(NO_ROOM_ADVICE), "{error}");
@@ -192,17 +160,11 @@ fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
             }
         }
     }
-    let message_at_255 = paper_with_gaits(&gaits_toml(255))
-        .expect_err("255 gaits do not fit")
-        .to_string();
-    assert!(message_at_255.ends_with(NO_ROOM_ADVICE), "{message_at_255}");
-    let message_at_256 = paper_with_gaits(&gaits_toml(256))
-        .expect_err("256 gaits are too many")
-        .to_string();
-    assert!(
-        message_at_256.ends_with("gait has 256 gaits; the firmware supports at most 255"),
-        "{message_at_256}"
-    );
+    let too_many = "gait has 256 gaits; the firmware supports at most 255";
+    for (count, problem) in [(255, NO_ROOM_ADVICE), (256, too_many)] {
+        let message = error_with_gaits(&gaits_toml(count));
+        assert!(message.ends_with(problem), "{message}");
+    }
 }
 
 #[test]
@@ -221,39 +183,25 @@ fn more_waveforms_than_the_section_has_room_for_are_rejected() {
     let robot = paper_with_gaits(&gaits_toml(6)).expect("13 waveforms fit");
     assert_eq!(robot.firmware().waves().len(), 13);
     for count in [14, 127] {
-        let message = paper_with_gaits(&gaits_toml(count))
-            .expect_err("the waveforms are too many")
-            .to_string();
+        let message = error_with_gaits(&gaits_toml(count));
         assert!(message.ends_with(NO_ROOM_ADVICE), "{message}");
     }
-    let message = paper_with_gaits(&gaits_toml(128))
-        .expect_err("257 waveforms are too many")
-        .to_string();
-    assert!(
-        message.contains(
-            "gait.nod127 needs more than the 255 waveforms that the firmware supports; gaits"
-        ),
-        "{message}"
-    );
+    let expected =
+        "gait.nod127 needs more than the 255 waveforms that the firmware supports; gaits";
+    assert_contains(&error_with_gaits(&gaits_toml(128)), expected);
 }
 
 #[test]
 fn an_error_in_an_added_gait_is_reported_with_its_line_in_the_added_text() {
     let paper = paper_with_gaits(STAND).expect("the robot with stand alone is valid");
+    let misspelled = "[gait.a]\nperiod = 1.0\nwaveform = \"wav\"\n";
+    let duplicate = "\n[gait.a]\nperiod = 1.0\nperiod = 2.0\n";
     for (table, line, phrase) in [
-        (
-            "[gait.a]\nperiod = 1.0\nwaveform = \"wav\"\n",
-            3,
-            "gait.a.waveform",
-        ),
-        (
-            "\n[gait.a]\nperiod = 1.0\nperiod = 2.0\n",
-            4,
-            "first on line 3",
-        ),
+        (misspelled, 3, "gait.a.waveform"),
+        (duplicate, 4, "first on line 3"),
     ] {
         let error = paper.with_gait(table).expect_err(table);
         assert_eq!(error.line, Some(line), "{error}");
-        assert!(error.to_string().contains(phrase), "{error}");
+        assert_contains(&error.to_string(), phrase);
     }
 }

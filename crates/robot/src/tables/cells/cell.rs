@@ -45,6 +45,15 @@ pub(super) trait Condition {
 }
 
 impl Span {
+    /// A span of a single angle.
+    #[cfg(test)]
+    pub fn single_angle(angle: f64) -> Self {
+        Self {
+            min: angle,
+            max: angle,
+        }
+    }
+
     /// The middle of the span, degrees.
     pub fn centre_deg(&self) -> f64 {
         (self.min + self.max) / 2.0 * 360.0 / f64::from(STEPS_PER_TURN)

@@ -141,14 +141,6 @@ mod tests {
     use super::*;
     use crate::testing::robot;
 
-    /// Creates a span of a single angle.
-    fn single_angle(angle: f64) -> Span {
-        Span {
-            min: angle,
-            max: angle,
-        }
-    }
-
     /// Creates conditions whose limits every pose meets, for the head of an asymmetrical robot, and a cell of the
     /// neutral pose alone.
     fn create_neutral_cell() -> (EndConditions, Cell) {
@@ -160,7 +152,7 @@ mod tests {
             leg_limit: 0.0,
             ..EndConditions::new(robot.lizard(), numbers, End::Head)
         };
-        let spans = [0, 1].map(|servo| single_angle(numbers.neutral_angles[servo].0.into()));
+        let spans = [0, 1].map(|servo| Span::single_angle(numbers.neutral_angles[servo].0.into()));
         (conditions, Cell(spans))
     }
 
@@ -177,30 +169,20 @@ mod tests {
         let pose = conditions.five_bar.close(AssemblyMode::Ahead, left, right);
         let pose = pose.expect("the neutral pose closes");
         let tip_distance = pose.gap.length();
-        let errors = bounds::EndErrors::over_range(
-            &conditions.five_bar,
-            conditions.rounded_lengths,
-            [tip_distance; 2],
-        );
-        let (lower, bound) = if pose.type1_left() < pose.type1_right() {
-            (pose.type1_left(), errors.type1_left)
-        } else {
-            (pose.type1_right(), errors.type1_right)
+        let (five_bar, lengths) = (&conditions.five_bar, conditions.rounded_lengths);
+        let errors = bounds::EndErrors::over_range(five_bar, lengths, [tip_distance; 2]);
+        let type1 = match pose.type1_left() < pose.type1_right() {
+            true => (pose.type1_left(), errors.type1_left),
+            false => (pose.type1_right(), errors.type1_right),
         };
-        let limits: [(LimitSelector, f64, f64); 3] = [
-            (
-                |conditions| &mut conditions.type2_limit,
-                pose.type2,
-                errors.type2,
-            ),
-            (|conditions| &mut conditions.type1_limit, lower, bound),
-            (
-                |conditions| &mut conditions.leg_limit,
-                left.y.min(right.y),
-                MAX_DIRECTION_ERROR,
-            ),
+        let type2 = (pose.type2, errors.type2);
+        let leg = (left.y.min(right.y), MAX_DIRECTION_ERROR);
+        let limits: [(LimitSelector, (f64, f64)); 3] = [
+            (|conditions| &mut conditions.type2_limit, type2),
+            (|conditions| &mut conditions.type1_limit, type1),
+            (|conditions| &mut conditions.leg_limit, leg),
         ];
-        for (select_limit, value, bound) in limits {
+        for (select_limit, (value, bound)) in limits {
             assert!(bound > 1e-5 && bound < 0.01, "the bound is {bound}");
             let unlimited = *select_limit(&mut conditions);
             for (clearance, verdict) in [
@@ -210,11 +192,8 @@ mod tests {
                 (-0.01 * bound, Verdict::Violated),
             ] {
                 *select_limit(&mut conditions) = value - clearance;
-                assert_eq!(
-                    conditions.evaluate(&cell),
-                    verdict,
-                    "value {value}, clearance {clearance}"
-                );
+                let actual = conditions.evaluate(&cell);
+                assert_eq!(actual, verdict, "value {value}, clearance {clearance}");
             }
             *select_limit(&mut conditions) = unlimited;
         }
@@ -223,29 +202,25 @@ mod tests {
     #[test]
     fn crank_tips_that_may_be_crossed_leave_a_cell_undetermined() {
         let (conditions, _) = create_neutral_cell();
-        let mm_per_step = f64::from(conditions.rounded_lengths.scale.bits)
-            .exp2()
-            .recip();
-        let span_at = |degrees: f64| single_angle(degrees * 65536.0 / 360.0);
+        let scale_bits = f64::from(conditions.rounded_lengths.scale.bits);
+        let mm_per_step = scale_bits.exp2().recip();
+        let span_at = |degrees: f64| Span::single_angle(degrees * 65536.0 / 360.0);
         // The right crank leans far to the left, so that one tip passes well above the other and the linkage closes.
         let right = span_at(165.0);
         let gap_at = |left: Span| {
-            let left = left.direction();
-            conditions
-                .five_bar
-                .pose_unchecked(AssemblyMode::Ahead, left, right.direction())
-                .gap
-                .x
+            let (left, right) = (left.direction(), right.direction());
+            let five_bar = &conditions.five_bar;
+            let pose = five_bar.pose_unchecked(AssemblyMode::Ahead, left, right);
+            pose.gap.x
         };
         // Bisects for the left crank's angle at which one tip is directly above the other.
         let (mut apart_deg, mut crossed_deg) = (150.0, 10.0);
         assert!(gap_at(span_at(apart_deg)) > 0.0 && gap_at(span_at(crossed_deg)) < 0.0);
         for _ in 0..60 {
             let middle = (apart_deg + crossed_deg) / 2.0;
-            if gap_at(span_at(middle)) > 0.0 {
-                apart_deg = middle;
-            } else {
-                crossed_deg = middle;
+            match gap_at(span_at(middle)) > 0.0 {
+                true => apart_deg = middle,
+                false => crossed_deg = middle,
             }
         }
         let evaluate_at = |mm: f64| {

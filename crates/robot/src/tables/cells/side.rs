@@ -80,14 +80,9 @@ mod tests {
         let numbers = robot.content();
         for side in Side::ALL {
             let mut condition = StrokeCondition::new(robot.lizard(), numbers, side);
-            let spans = side.servos().map(|servo| {
-                let angle = f64::from(numbers.neutral_angles[servo].0);
-                Span {
-                    min: angle,
-                    max: angle,
-                }
-            });
-            let cell = Cell(spans);
+            let neutral_span =
+                |servo: usize| Span::single_angle(numbers.neutral_angles[servo].0.into());
+            let cell = Cell(side.servos().map(neutral_span));
             assert_eq!(condition.evaluate(&cell), Verdict::Proven);
             let length = condition.length(&cell);
             for (clearance, verdict) in [
@@ -97,20 +92,19 @@ mod tests {
                 (-0.01, Verdict::Violated),
             ] {
                 let (min, max) = (condition.min_length, condition.max_length);
-                condition.min_length = length - clearance * condition.error_bound;
-                assert_eq!(
-                    condition.evaluate(&cell),
-                    verdict,
-                    "{side} side, {clearance} error bounds from the shortest length"
-                );
-                condition.min_length = min;
-                condition.max_length = length + clearance * condition.error_bound;
-                assert_eq!(
-                    condition.evaluate(&cell),
-                    verdict,
-                    "{side} side, {clearance} error bounds from the longest length"
-                );
-                condition.max_length = max;
+                let distance = clearance * condition.error_bound;
+                for (end, range) in [
+                    ("shortest", (length - distance, max)),
+                    ("longest", (min, length + distance)),
+                ] {
+                    (condition.min_length, condition.max_length) = range;
+                    assert_eq!(
+                        condition.evaluate(&cell),
+                        verdict,
+                        "{side} side, {clearance} error bounds from the {end} length"
+                    );
+                }
+                (condition.min_length, condition.max_length) = (min, max);
             }
         }
     }

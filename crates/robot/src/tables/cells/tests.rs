@@ -24,27 +24,16 @@ fn random_configs() -> impl Strategy<Value = RobotConfig> {
     let side_lengths = || (20.0..42.0, 35.0..55.0, 35.0..55.0, 20.0..42.0);
     let limits = (0.12..0.4, 0.0..0.35, 0.0..0.35, -40.0..-5.0, 5.0..60.0);
     let servo_values = || (-15.0..15.0f64, 6.0..22.0f64, any::<bool>());
-    let servos = [
-        servo_values(),
-        servo_values(),
-        servo_values(),
-        servo_values(),
-    ];
-    let all_values = (
-        end_lengths(),
-        end_lengths(),
-        90.0..200.0,
-        side_lengths(),
-        side_lengths(),
-        limits,
-        servos,
-    );
-    all_values.prop_map(move |(head, tail, base, left, right, limits, servos)| {
+    let ends = [end_lengths(), end_lengths()];
+    let sides = [side_lengths(), side_lengths()];
+    let servos = [(); 4].map(|()| servo_values());
+    let all_values = (ends, 90.0..200.0, sides, limits, servos);
+    all_values.prop_map(move |(ends, base, sides, limits, servos)| {
         let mut links = [0.0; 20];
-        for (index, (l0, l1, l2, l3, l4)) in [head, tail].into_iter().enumerate() {
+        for (index, (l0, l1, l2, l3, l4)) in ends.into_iter().enumerate() {
             links[5 * index..][..5].copy_from_slice(&[l0, l1, l2, l3, l4]);
         }
-        for (index, (l11, l12, l13, l14)) in [left, right].into_iter().enumerate() {
+        for (index, (l11, l12, l13, l14)) in sides.into_iter().enumerate() {
             links[10 + 5 * index..][..5].copy_from_slice(&[base, l11, l12, l13, l14]);
         }
         let (type2, type1, leg, stroke_min, stroke_max) = limits;
@@ -72,6 +61,12 @@ fn random_configs() -> impl Strategy<Value = RobotConfig> {
             ..paper.config.clone()
         }
     })
+}
+
+/// Draws a value from a strategy.
+fn sample<S: Strategy>(strategy: &S, runner: &mut TestRunner) -> S::Value {
+    let tree = strategy.new_tree(runner);
+    tree.expect("the strategy yields a value").current()
 }
 
 /// A map, and the conditions of the guard that hold in its cells.
@@ -104,12 +99,8 @@ impl RobotWithMaps {
 
     /// Creates a robot without gaits from its configuration.
     fn from_config(name: &str, config: &RobotConfig) -> Self {
-        let content = numbers::build_content(
-            name,
-            config,
-            &Tables::new(&[]).expect("tables without gaits can be built"),
-            &[],
-        );
+        let tables = Tables::new(&[]).expect("tables without gaits can be built");
+        let content = numbers::build_content(name, config, &tables, &[]);
         Self {
             name: name.to_string(),
             maps: CellMaps::new(&config.lizard, &content),
@@ -126,17 +117,12 @@ impl RobotWithMaps {
             margins,
             slider,
         };
-        let CellMaps {
-            head,
-            tail,
-            left,
-            right,
-        } = &self.maps;
+        let maps = &self.maps;
         [
-            certified_map(head, [0, 1], &[0, 2, 3, 6, 7], None),
-            certified_map(tail, [2, 3], &[1, 4, 5, 8, 9], None),
-            certified_map(left, [0, 3], &[], Some(0)),
-            certified_map(right, [1, 2], &[], Some(1)),
+            certified_map(&maps.head, [0, 1], &[0, 2, 3, 6, 7], None),
+            certified_map(&maps.tail, [2, 3], &[1, 4, 5, 8, 9], None),
+            certified_map(&maps.left, [0, 3], &[], Some(0)),
+            certified_map(&maps.right, [1, 2], &[], Some(1)),
         ]
     }
 
@@ -146,42 +132,26 @@ impl RobotWithMaps {
     fn check(&self, runner: &mut TestRunner) -> Result<usize, String> {
         let Limits { type2, type1, leg } = self.robot.limits();
         let min_margins = [type2, type2, type1, type1, type1, type1, leg, leg, leg, leg];
-        let sides = [0, 1].map(|side| {
-            self.robot
-                .slider(lizard_core::numbers::part::Side::ALL[side])
-        });
+        let sides = lizard_core::numbers::part::Side::ALL.map(|side| self.robot.slider(side));
         let mut cell_count = 0;
         for certified_map in self.certified_maps() {
-            let CertifiedMap {
-                map,
-                servos: [row_servo, column_servo],
-                margins,
-                slider,
-            } = certified_map;
+            let (map, [row_servo, column_servo]) = (certified_map.map, certified_map.servos);
+            let (margins, slider) = (certified_map.margins, certified_map.slider);
             assert!(map.rows.len() <= MAX_ROWS);
             for (row, [first, last]) in (i32::from(map.first_row)..).zip(&map.rows) {
                 for column in i32::from(*first)..=i32::from(*last) {
                     cell_count += 1;
                     let offsets = (0..256i32, 0..128i32);
-                    let [first_pair, second_pair] = [0; 2].map(|_| {
-                        let tree = offsets
-                            .new_tree(runner)
-                            .expect("the strategy yields a pair");
-                        tree.current()
-                    });
+                    let [first_pair, second_pair] = [(); 2].map(|()| sample(&offsets, runner));
                     let corners = [(0, 0), (0, 127), (255, 0), (255, 127)];
-                    for (row_offset, column_offset) in
-                        corners
-                            .into_iter()
-                            .chain([(128, 64), first_pair, second_pair])
-                    {
+                    let inner_pairs = [(128, 64), first_pair, second_pair];
+                    for (row_offset, column_offset) in corners.into_iter().chain(inner_pairs) {
+                        let row_sweep = Sweep((row * 256 + row_offset) as i16);
+                        let column_sweep = Sweep((column * 128 + column_offset) as i16);
                         let mut pose = Pose::NEUTRAL;
-                        pose.0[row_servo] = Sweep((row * 256 + row_offset) as i16);
-                        pose.0[column_servo] = Sweep((column * 128 + column_offset) as i16);
-                        assert!(
-                            map.cells()
-                                .contains(pose.0[row_servo], pose.0[column_servo])
-                        );
+                        pose.0[row_servo] = row_sweep;
+                        pose.0[column_servo] = column_sweep;
+                        assert!(map.cells().contains(row_sweep, column_sweep));
                         let clearance = Clearance::measure(&self.robot, &pose);
                         let is_accepted = margins
                             .iter()
@@ -215,10 +185,7 @@ fn the_guard_accepts_every_cell_of_random_robots() {
     let mut runner = TestRunner::deterministic();
     let (strategy, mut cell_count) = (random_configs(), 0);
     for number in 0..100 {
-        let config = strategy
-            .new_tree(&mut runner)
-            .expect("the strategy yields a robot")
-            .current();
+        let config = sample(&strategy, &mut runner);
         let robot = RobotWithMaps::from_config(&format!("robot {number}"), &config);
         let checked_cells = robot.check(&mut runner);
         cell_count += checked_cells.unwrap_or_else(|message| panic!("{message}"));
@@ -236,24 +203,15 @@ fn the_guard_accepts_every_pose_that_all_four_maps_contain() {
             .map(|servo| (servo.travel_min.0..=servo.travel_max.0).prop_map(Sweep));
         let mut certified_count = 0;
         for _ in 0..200_000 {
-            let pose = travels
-                .new_tree(&mut runner)
-                .expect("the strategy yields a pose")
-                .current();
-            let pose = Pose(pose);
+            let pose = Pose(sample(&travels, &mut runner));
             if maps.contains(&pose) {
                 certified_count += 1;
-                assert_eq!(
-                    Clearance::measure(&robot, &pose).first_hazard(&robot),
-                    None,
-                    "{name}: {pose:?}"
-                );
+                let hazard = Clearance::measure(&robot, &pose).first_hazard(&robot);
+                assert_eq!(hazard, None, "{name}: {pose:?}");
             }
         }
-        assert!(
-            certified_count > 200,
-            "{name}: {certified_count} of 200 000 poses"
-        );
+        let has_enough = certified_count > 200;
+        assert!(has_enough, "{name}: {certified_count} of 200 000 poses");
     }
 }
 

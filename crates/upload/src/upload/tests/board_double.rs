@@ -8,6 +8,7 @@ use crate::board::{Board, BoardError};
 use crate::loader::LoaderKind;
 
 /// A simulated board: its flash, and the faults to inject.
+#[derive(Default)]
 pub struct BoardDouble {
     /// The 32 KiB of flash; of the boot loader, only the first four bytes.
     pub flash: Vec<u8>,
@@ -39,7 +40,7 @@ pub struct BoardDouble {
     pub received_count: usize,
     /// The number of bytes sent by the board so far, lost ones included.
     pub sent_count: usize,
-    /// The number of invalid bytes that ATmegaBOOT has received since the reset.
+    /// The number of invalid bytes that the boot loader has received since the reset.
     error_count: usize,
     /// True while the boot loader runs and receives bytes.
     is_listening: bool,
@@ -71,25 +72,8 @@ impl BoardDouble {
         Self {
             flash,
             kind,
-            error_count: 0,
             signature: [0x1e, 0x95, 0x0f],
-            old_program_output: Vec::new(),
-            ignored_syncs_per_reset: 0,
-            is_mute: false,
-            lost_byte_to_board: None,
-            lost_byte_from_board: None,
-            stuck_bits: None,
-            unplugged_after_pages: None,
-            written_addresses: Vec::new(),
-            reset_count: 0,
-            has_started_program: false,
-            received_count: 0,
-            sent_count: 0,
-            is_listening: false,
-            syncs_to_ignore: 0,
-            address: 0,
-            command: Vec::new(),
-            output: VecDeque::new(),
+            ..Self::default()
         }
     }
 
@@ -112,26 +96,21 @@ impl BoardDouble {
     fn respond_to_command(&mut self) {
         let command = std::mem::take(&mut self.command);
         let length = match command[0] {
-            b'0' | b'Q' | b'u' => 2,
             b'U' => 4,
             b't' => 5,
             b'd' => 5 + command.get(2).map_or(0, |&count| usize::from(count)),
-            // Unknown commands have no parameters.
+            // All other commands, known and unknown, have no parameters.
             _ => 2,
         };
         if command.len() < length {
             self.command = command;
             return;
         }
-        if command[length - 1] != b' ' && self.kind == LoaderKind::AtmegaBoot {
-            self.error_count += 1;
-            // After MAX_ERROR_COUNT errors, the program starts.
-            self.is_listening = self.error_count < 5;
-            return;
-        }
         if command[length - 1] != b' ' {
-            // In verifySpace(), the watchdog resets the chip, and the program starts.
-            self.is_listening = false;
+            self.error_count += 1;
+            // ATmegaBOOT starts the program after MAX_ERROR_COUNT errors. Optiboot starts the program at once: in
+            // verifySpace(), the watchdog resets the chip.
+            self.is_listening = self.kind == LoaderKind::AtmegaBoot && self.error_count < 5;
             return;
         }
         let mut response = vec![0x14];

@@ -8,15 +8,10 @@ fn an_upload_to_an_old_nano_finds_its_baud_rate_and_keeps_its_boot_loader() {
     board.flash[..500].fill(9);
     let run = run_with_image(board, &firmware_image("paper"));
     assert!(run.result.is_ok(), "{}", run.error_message());
-    assert_eq!(
-        (run.board.reset_count, run.retry_count),
-        (2, 1),
-        "tried at both baud rates"
-    );
-    assert_eq!(
-        run.reported_contents,
-        ["the board has another program, of 500 bytes"]
-    );
+    let counts = (run.board.reset_count, run.retry_count);
+    assert_eq!(counts, (2, 1), "tried at both baud rates");
+    let contents = ["the board has another program, of 500 bytes"];
+    assert_eq!(run.reported_contents, contents);
     let image = firmware_image("paper");
     assert!(run.board.flash[..image.end_address()] == *image.bytes());
     assert!(run.board.flash[0x7800..] == BoardDouble::old_nano().flash[0x7800..]);
@@ -67,29 +62,24 @@ fn an_image_that_reaches_into_a_nanos_boot_section_is_rejected_for_a_possible_na
         format!("{end_address} bytes of flash are needed, but a Nano has only 30720");
     assert!(message.starts_with(&expected_start), "{message}");
     assert!(message.ends_with("Nothing was written"), "{message}");
-    assert_eq!(
-        message,
-        reject(BoardDouble::blank(), target_for_model(Model::Nano))
-    );
+    let nano_message = reject(BoardDouble::blank(), target_for_model(Model::Nano));
+    assert_eq!(message, nano_message);
     // A newer Nano answers like a UNO, and UNO clones have the same USB chip as a Nano.
     let possible_nano = Target {
         may_be_nano: true,
         ..unknown_model
     };
     let message = reject(BoardDouble::blank(), possible_nano);
-    assert!(
-        message.contains("; according to its USB chip, this board may be a Nano. Nothing"),
-        "{message}"
-    );
-    for target in [unknown_model, target_for_model(Model::Uno)] {
-        let run = run_with_target(BoardDouble::blank(), &image, target);
-        assert!(run.result.is_ok(), "{}", run.error_message());
+    let reason = "; according to its USB chip, this board may be a Nano. Nothing";
+    assert!(message.contains(reason), "{message}");
+    let small_image = firmware_image("paper");
+    for (image, target) in [
+        (&image, unknown_model),
+        (&image, target_for_model(Model::Uno)),
+        // An image that also fits into a Nano is written although the model is unknown.
+        (&small_image, possible_nano),
+    ] {
+        let run = run_with_target(BoardDouble::blank(), image, target);
+        assert!(run.result.is_ok(), "{target:?}: {}", run.error_message());
     }
-    // An image that also fits into a Nano is written although the model is unknown.
-    let run = run_with_target(
-        BoardDouble::blank(),
-        &firmware_image("paper"),
-        possible_nano,
-    );
-    assert!(run.result.is_ok(), "{}", run.error_message());
 }

@@ -19,11 +19,8 @@ pub static GAIT_NAMES: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
             .expect("a robot file is readable text");
         let tables = text.lines().filter_map(|line| line.strip_prefix("[gait."));
         let gaits = tables.filter_map(|table| table.strip_suffix(']'));
-        names.extend(
-            gaits
-                .filter(|name| !name.contains('.'))
-                .map(|name| name.replace('-', " ")),
-        );
+        let gaits = gaits.filter(|name| !name.contains('.'));
+        names.extend(gaits.map(|name| name.replace('-', " ")));
     }
     assert!(names.len() > 25, "{names:?}");
     names
@@ -152,25 +149,20 @@ impl LineAutomaton {
     /// any length.
     pub fn for_accepted_lines() -> Self {
         let mut automaton = Self::new();
-        for word in GAIT_NAMES
-            .iter()
-            .map(String::as_str)
-            .chain(Word::ALL.iter().map(|word| word.text()))
-        {
+        let words = Word::ALL.iter().map(|word| word.text());
+        for word in GAIT_NAMES.iter().map(String::as_str).chain(words) {
             let word_end = automaton.add_word(word);
             let separator_state = automaton.add_successor(&[word_end], *b" \t\x0c");
             let argument_bytes: Vec<u8> = match word {
                 "boot" => (b' '..=b'~').collect(),
                 _ => b"0123456789.+- \t\x0c".to_vec(),
             };
+            let transitions = &mut automaton.transitions[separator_state];
             for byte in argument_bytes {
-                automaton.transitions[separator_state]
-                    .entry(byte)
-                    .or_insert(separator_state);
+                transitions.entry(byte).or_insert(separator_state);
             }
-            automaton
-                .accepting_states
-                .extend([word_end, separator_state]);
+            let end_states = [word_end, separator_state];
+            automaton.accepting_states.extend(end_states);
         }
         for separator in *b" \t\x0c" {
             automaton.transitions[Self::START].insert(separator, Self::START);

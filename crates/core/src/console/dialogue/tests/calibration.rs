@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::memory::copies::COPY_ADDRESSES;
-use crate::memory::record::Progress;
 use crate::numbers::part::Servo;
 use crate::numbers::units::Sweep;
 
@@ -17,32 +16,19 @@ fn cal_prints_all_settings_independent_of_the_motion() {
     let initial_lines = read_cal(&mut dialogue);
     assert_eq!(initial_lines.len(), 7);
     assert!(initial_lines[0].starts_with("# A1 trim 0.00 limit 61.37 215.36 dir "));
-    assert_eq!(
-        initial_lines[4..],
-        ["# boot stand", "# deadman 0", "ok cal"]
-    );
-    for line in [
-        "trim 1 -3.25",
-        "limit 2 350 130.5",
-        "dir 3 -",
-        "scale 4 9.87",
-        "boot sway left",
-        "deadman 1500",
-    ] {
-        dialogue.expect_accepted(line);
-    }
+    let last_lines = ["# boot stand", "# deadman 0", "ok cal"];
+    assert_eq!(initial_lines[4..], last_lines);
+    dialogue.expect_all_accepted(&["trim 1 -3.25", "limit 2 350 130.5", "dir 3 -"]);
+    dialogue.expect_all_accepted(&["scale 4 9.87", "boot sway left", "deadman 1500"]);
     let printed_lines = read_cal(&mut dialogue);
     let has_settings = printed_lines[0].starts_with("# A1 trim -3.25 limit 61.37 215.36 dir ")
         && printed_lines[1].starts_with("# A2 trim 0.00 limit 350.00 130.50 dir ")
         && printed_lines[2].contains(" dir - scale ")
         && printed_lines[3].ends_with(" scale 9.87");
     assert!(has_settings, "{printed_lines:?}");
-    assert_eq!(
-        printed_lines[4..],
-        ["# boot sway left", "# deadman 1500", "ok cal"]
-    );
-    dialogue.send_line("sway");
-    dialogue.run_frames(77);
+    let last_lines = ["# boot sway left", "# deadman 1500", "ok cal"];
+    assert_eq!(printed_lines[4..], last_lines);
+    dialogue.send_and_run("sway", 77);
     assert_eq!(read_cal(&mut dialogue), printed_lines);
     dialogue.expect_accepted("factory");
     assert_eq!(read_cal(&mut dialogue), initial_lines);
@@ -51,17 +37,13 @@ fn cal_prints_all_settings_independent_of_the_motion() {
 #[test]
 fn only_saved_settings_survive_a_loss_of_power() {
     let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_line("trim 2 4");
-    dialogue.expect_accepted("save");
+    dialogue.expect_all_accepted(&["trim 2 4", "save"]);
     let saved_lines = read_cal(&mut dialogue);
     dialogue.send_line("trim 2 5");
     assert_ne!(read_cal(&mut dialogue), saved_lines);
-    let mut restarted_dialogue = start_asymmetric_robot(&dialogue.board.memory, Restart::NONE);
-    assert_eq!(
-        restarted_dialogue.read_lines().len(),
-        1,
-        "only the banner is printed"
-    );
+    let mut restarted_dialogue = dialogue.power_on_copy();
+    let printed_lines = restarted_dialogue.read_lines();
+    assert_eq!(printed_lines.len(), 1, "only the banner is printed");
     assert_eq!(read_cal(&mut restarted_dialogue), saved_lines);
     // `load` restores the saved settings without a power cycle.
     dialogue.expect_accepted("load");
@@ -89,17 +71,13 @@ fn a_calibration_moves_only_its_servo_and_at_most_at_the_slew_limit() {
         "factory",
     ] {
         let mut dialogue = wake_asymmetric_robot();
-        if change == "factory" {
-            dialogue.send_line("trim 1 15");
-        }
-        if change == "load" {
-            dialogue.send_line("trim 1 -15");
-            dialogue.send_line("save");
-            dialogue.send_line("factory");
+        match change {
+            "factory" => dialogue.expect_accepted("trim 1 15"),
+            "load" => dialogue.expect_all_accepted(&["trim 1 -15", "save", "factory"]),
+            _ => {}
         }
         dialogue.run_frames(100);
-        dialogue.send_line("pose 145 50 311 224.5");
-        dialogue.run_frames(150);
+        dialogue.send_and_run("pose 145 50 311 224.5", 150);
         let widths_before = run_frame_and_read_widths(&mut dialogue);
         dialogue.expect_accepted(change);
         let motion = dialogue.motion();
@@ -110,10 +88,8 @@ fn a_calibration_moves_only_its_servo_and_at_most_at_the_slew_limit() {
         let mut last_widths = widths_before;
         for _ in 0..200 {
             let new_widths = run_frame_and_read_widths(&mut dialogue);
-            assert!(
-                f64::from(new_widths[0].abs_diff(last_widths[0])) <= max_change.max(1.0),
-                "{change}"
-            );
+            let width_change = f64::from(new_widths[0].abs_diff(last_widths[0]));
+            assert!(width_change <= max_change.max(1.0), "{change}");
             assert_eq!(new_widths[1..], widths_before[1..], "{change}");
             last_widths = new_widths;
         }
@@ -125,11 +101,9 @@ fn a_calibration_moves_only_its_servo_and_at_most_at_the_slew_limit() {
 #[test]
 fn a_calibration_interrupts_a_gait_until_the_pulses_have_settled() {
     let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_line("sway");
-    dialogue.run_frames(120);
+    dialogue.send_and_run("sway", 120);
     let phase_before = dialogue.motion().phase();
-    dialogue.send_line("trim 2 15");
-    dialogue.run_frames(1);
+    dialogue.send_and_run("trim 2 15", 1);
     assert_eq!(dialogue.motion().phase(), phase_before);
     dialogue.run_frames(200);
     assert_eq!(dialogue.status_value("gait"), "sway");
@@ -154,15 +128,12 @@ fn limits_too_narrow_for_the_gaits_or_the_pose_are_refused() {
         assert!(message.contains("'s travel must cover the gaits' range, "));
         assert_eq!(read_cal(&mut dialogue), lines_before);
     }
-    dialogue.send_line("pose 150 47.91 309.64 226.18");
-    dialogue.run_frames(2);
+    dialogue.send_and_run("pose 150 47.91 309.64 226.18", 2);
     let message = dialogue.send_line("limit 1 61.37 149");
-    assert!(
-        message.ends_with("'s travel must cover its current and target angles; send stand first")
-    );
+    let reason = "A1's travel must cover its current and target angles; send stand first";
+    assert_eq!(message, format!("err 3 {reason}"));
     assert_eq!(read_cal(&mut dialogue), lines_before);
-    dialogue.send_line("stand");
-    dialogue.run_frames(150);
+    dialogue.send_and_run("stand", 150);
     dialogue.expect_accepted("limit 1 61.37 149");
     dialogue.expect_refused("pose 150 47.91 309.64 226.18", "3 A1 must be 61.37..149.00");
 }
@@ -170,16 +141,9 @@ fn limits_too_narrow_for_the_gaits_or_the_pose_are_refused() {
 #[test]
 fn a_refused_factory_or_load_command_changes_nothing() {
     let mut dialogue = wake_asymmetric_robot();
-    for line in [
-        "trim 1 10",
-        "limit 1 61.37 149",
-        "save",
-        "limit 1 61.37 215.36",
-    ] {
-        dialogue.expect_accepted(line);
-    }
-    dialogue.send_line("pose 155 47.91 309.64 226.18");
-    dialogue.run_frames(150);
+    dialogue.expect_all_accepted(&["trim 1 10", "limit 1 61.37 149", "save"]);
+    dialogue.expect_accepted("limit 1 61.37 215.36");
+    dialogue.send_and_run("pose 155 47.91 309.64 226.18", 150);
     let lines_before = read_cal(&mut dialogue);
     dialogue.expect_refused("load", "3 A1's travel must cover its current");
     assert_eq!(read_cal(&mut dialogue), lines_before);
@@ -202,11 +166,8 @@ fn a_refused_factory_or_load_command_changes_nothing() {
         Sample::asymmetric().with_changes(|content| content.calibration[0].travel_max = narrow_max);
     let mut narrow_dialogue = wake_robot(robot);
     narrow_dialogue.expect_accepted("trim 1 -5");
-    narrow_dialogue.expect_accepted("limit 1 67 149");
-    narrow_dialogue.run_frames(100);
-    let pose = "pose 146 47.91 309.64 226.18";
-    narrow_dialogue.expect_accepted(pose);
-    narrow_dialogue.run_frames(150);
+    narrow_dialogue.send_and_run("limit 1 67 149", 100);
+    narrow_dialogue.send_and_run("pose 146 47.91 309.64 226.18", 150);
     let lines_before = read_cal(&mut narrow_dialogue);
     narrow_dialogue.expect_refused("factory", "3 A1's travel must cover its current");
     assert_eq!(read_cal(&mut narrow_dialogue), lines_before);
@@ -222,10 +183,8 @@ fn saved_settings_are_loaded_only_if_their_travel_covers_the_gaits() {
             let mut adjustment = settings.adjustment(servo);
             adjustment.travel_min = Sweep(robot.needed_travel(servo).min.0 - excess_steps);
             settings.set_adjustment(servo, adjustment);
-            let mut write_job = COPY_ADDRESSES[0].start_write();
-            while write_job.advance(settings.bytes(), &mut dialogue.board.memory)
-                == Progress::InProgress
-            {}
+            let write_job = COPY_ADDRESSES[0].start_write();
+            write_job.complete(settings.bytes(), &mut dialogue.board.memory);
             let lines_before = read_cal(&mut dialogue);
             let answer = dialogue.send_line("load");
             let is_refused = answer == "err 9 no saved calibration to load";
@@ -239,20 +198,16 @@ fn saved_settings_are_loaded_only_if_their_travel_covers_the_gaits() {
 #[test]
 fn center_leads_to_the_neutral_pulses_of_robot_toml_despite_trims() {
     let mut dialogue = wake_asymmetric_robot();
-    for line in ["trim 1 3", "trim 2 -4.5", "trim 3 2", "trim 4 -1"] {
-        dialogue.send_line(line);
-    }
+    dialogue.expect_all_accepted(&["trim 1 3", "trim 2 -4.5", "trim 3 2", "trim 4 -1"]);
     dialogue.run_frames(100);
     dialogue.expect_refused("center 1", "2 ");
-    dialogue.expect_accepted("center");
-    dialogue.run_frames(200);
+    dialogue.send_and_run("center", 200);
     let widths = run_frame_and_read_widths(&mut dialogue);
     for (width, servo) in widths.into_iter().zip(Sample::asymmetric().calibration()) {
         let neutral = servo.neutral_width.0;
         assert!(width.abs_diff(neutral) <= 1, "{width} for {neutral}");
     }
-    dialogue.send_line("stand");
-    dialogue.run_frames(200);
+    dialogue.send_and_run("stand", 200);
     let motion = dialogue.motion();
     let neutral_pulses = Pose::NEUTRAL.pulses(motion.calibration());
     assert_eq!(motion.sent_pulses(), &neutral_pulses);
@@ -261,23 +216,17 @@ fn center_leads_to_the_neutral_pulses_of_robot_toml_despite_trims() {
 #[test]
 fn boot_starts_the_named_gait_even_if_other_names_are_similar() {
     let names = ["walk 1", "walk 2", "walk 3", "walk 4"];
-    let build_robot = || {
-        names
-            .iter()
-            .fold(Sample::asymmetric(), |robot, name| robot.with_gait(name))
-    };
+    let robot = names
+        .into_iter()
+        .fold(Sample::asymmetric(), Sample::with_gait);
     for name in names {
-        let mut dialogue = Dialogue::power_on(*build_robot());
+        let mut dialogue = Dialogue::power_on(*robot);
         dialogue.run_frames(30);
-        dialogue.expect_accepted(&format!("boot {name}"));
-        dialogue.expect_accepted("save");
-        let memory = dialogue.board.memory.clone();
-        let mut restarted_dialogue = Dialogue::with_memory(*build_robot(), memory, Restart::NONE);
+        dialogue.expect_all_accepted(&[&format!("boot {name}"), "save"]);
+        let mut restarted_dialogue = dialogue.power_on_copy();
         restarted_dialogue.run_frames(151);
-        assert_status(
-            &mut restarted_dialogue,
-            &[("gait", &name.replace(' ', "-"))],
-        );
+        let gait = restarted_dialogue.status_value("gait");
+        assert_eq!(gait, name.replace(' ', "-"));
     }
 }
 
@@ -296,40 +245,27 @@ fn first_unfit_servo_finds_the_servo_with_too_narrow_a_travel() {
 #[test]
 fn limits_that_exclude_the_target_pose_are_refused() {
     let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_line("sway left");
-    dialogue.run_frames(150);
+    dialogue.send_and_run("sway left", 150);
     // This pose is outside the range of all gaits. The gait brakes first, so the move to the pose has not begun yet.
-    dialogue.expect_accepted("pose 152 50 311 224.5");
-    dialogue.run_frames(2);
-    let message = dialogue.send_line("limit 1 115 150");
-    assert!(
-        message.starts_with("err 3 A1's travel must cover its current"),
-        "{message}"
-    );
+    dialogue.send_and_run("pose 152 50 311 224.5", 2);
+    dialogue.expect_refused("limit 1 115 150", "3 A1's travel must cover its current");
     dialogue.run_frames(300);
     assert_eq!(dialogue.status_value("pose"), "152.00,50.00,311.00,224.50");
-    dialogue.send_line("stand");
-    dialogue.run_frames(200);
+    dialogue.send_and_run("stand", 200);
     dialogue.expect_accepted("limit 1 115 150");
 }
 
 #[test]
 fn after_a_calibration_a_gait_accelerates_gradually_to_full_pace() {
     let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_line("sway left");
-    dialogue.run_frames(150);
+    dialogue.send_and_run("sway left", 150);
     let full_advance = measure_phase_advance(&mut dialogue, 1);
     dialogue.send_line("trim 2 3");
-    let advances: Vec<u32> = (0..100)
-        .map(|_| measure_phase_advance(&mut dialogue, 1))
-        .collect();
-    let first_moving_frame = advances
-        .iter()
-        .position(|advance| *advance > 0)
-        .expect("the gait continues");
-    assert!(
-        first_moving_frame > 0 && advances[first_moving_frame] < full_advance / 4,
-        "{advances:?}"
-    );
+    let advances = [(); 100].map(|()| measure_phase_advance(&mut dialogue, 1));
+    let first_moving_frame = advances.iter().position(|advance| *advance > 0);
+    let first_moving_frame = first_moving_frame.expect("the gait continues");
+    assert!(first_moving_frame > 0, "{advances:?}");
+    let first_advance = advances[first_moving_frame];
+    assert!(first_advance < full_advance / 4, "{advances:?}");
     assert_eq!(advances.last(), Some(&full_advance));
 }

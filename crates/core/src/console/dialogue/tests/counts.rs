@@ -18,11 +18,8 @@ fn a_counted_gait_prints_done_at_its_end_and_holds_its_last_pose() {
         assert_eq!(dialogue.run_frame(), held_pulses);
     }
     let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_line("sway");
-    assert!(
-        dialogue.run_frames(5 * LONG_FRAMES).is_empty(),
-        "a gait without a count does not end"
-    );
+    let is_endless = dialogue.send_and_run("sway", 5 * LONG_FRAMES).is_empty();
+    assert!(is_endless, "a gait without a count does not end");
 }
 
 #[test]
@@ -41,34 +38,24 @@ fn a_wrong_count_is_refused_and_changes_nothing() {
 fn another_motion_or_a_fault_ends_a_counted_gait_without_printing_done() {
     let start_counted_gait = || {
         let mut dialogue = wake_asymmetric_robot();
-        dialogue.send_line("sway 2");
-        dialogue.run_frames(30);
+        dialogue.send_and_run("sway 2", 30);
         dialogue
     };
     for line in ["stop", "rest", "stand", NEUTRAL_COMMAND, "sway"] {
         let mut dialogue = start_counted_gait();
-        dialogue.send_line(line);
-        assert!(dialogue.run_frames(LONG_FRAMES).is_empty(), "{line}");
+        let printed_lines = dialogue.send_and_run(line, LONG_FRAMES);
+        assert!(printed_lines.is_empty(), "{line}");
     }
     let mut silent_dialogue = start_counted_gait();
-    silent_dialogue.send_line("deadman 100");
-    let printed_lines = silent_dialogue.run_frames(LONG_FRAMES);
-    assert_eq!(printed_lines.len(), 1, "{printed_lines:?}");
-    assert!(
-        printed_lines[0].starts_with("# fault: no command"),
-        "{printed_lines:?}"
-    );
+    let printed_lines = silent_dialogue.send_and_run("deadman 100", LONG_FRAMES);
+    assert_line_starts(&printed_lines, &["# fault: no command"]);
     let mut low_supply_dialogue = start_counted_gait();
-    set_supply(&mut low_supply_dialogue, 4_200);
-    let printed_lines = low_supply_dialogue.run_frames(LONG_FRAMES);
+    let printed_lines = low_supply_dialogue.run_at_supply(4_200, LONG_FRAMES);
     let is_done = printed_lines.iter().any(|line| line == "# done");
     assert!(!is_done, "{printed_lines:?}");
     assert_eq!(low_supply_dialogue.status_value("fault"), "supply");
-    let mut unsafe_dialogue = wake_asymmetric_robot();
-    unsafe_dialogue.send_line("stray 9");
-    let printed_lines = unsafe_dialogue.run_frames(5 * LONG_FRAMES);
-    assert_eq!(printed_lines.len(), 1, "{printed_lines:?}");
-    assert!(printed_lines[0].starts_with("# held"), "{printed_lines:?}");
+    let printed_lines = wake_asymmetric_robot().send_and_run("stray 9", 5 * LONG_FRAMES);
+    assert_line_starts(&printed_lines, &["# held"]);
 }
 
 #[test]
@@ -76,8 +63,7 @@ fn a_low_supply_slows_a_counted_gait_without_ending_it() {
     let count_frames_until_done = |supply_mv: Option<u16>| {
         let mut dialogue = wake_asymmetric_robot();
         if let Some(supply_mv) = supply_mv {
-            set_supply(&mut dialogue, supply_mv.into());
-            dialogue.run_frames(40);
+            dialogue.run_at_supply(supply_mv.into(), 40);
         }
         dialogue.send_line("sway 2");
         (1..2_000_u32)
@@ -97,8 +83,7 @@ fn a_low_supply_slows_a_counted_gait_without_ending_it() {
 fn a_reset_ends_a_counted_gait() {
     for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
         let mut dialogue = wake_asymmetric_robot();
-        dialogue.send_line("sway 2");
-        dialogue.run_frames(60);
+        dialogue.send_and_run("sway 2", 60);
         dialogue.reset(cause);
         let printed_lines = dialogue.run_frames(LONG_FRAMES);
         let is_done = printed_lines.iter().any(|line| line == "# done");

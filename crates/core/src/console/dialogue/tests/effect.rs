@@ -7,10 +7,8 @@ use crate::console::word::Effect;
 const FRAME_COUNT: usize = 40;
 
 /// Runs [`FRAME_COUNT`] frames. Returns the pulse widths of each frame.
-fn run_frames_and_read_widths(dialogue: &mut Dialogue) -> Vec<[u16; 4]> {
-    (0..FRAME_COUNT)
-        .map(|_| run_frame_and_read_widths(dialogue))
-        .collect()
+fn run_frames_and_read_widths(dialogue: &mut Dialogue) -> [[u16; 4]; FRAME_COUNT] {
+    [(); FRAME_COUNT].map(|()| run_frame_and_read_widths(dialogue))
 }
 
 /// Determines the effect of a line from the pulses and the calibration of robots that execute it.
@@ -18,18 +16,14 @@ fn observe_effect(line: &str) -> Effect {
     let mut walking_dialogue = wake_robot(Sample::paper());
     // These settings make `load` and `factory` change something.
     for setting in ["trim 2 3", "save", "trim 1 5", "sway"] {
-        walking_dialogue.expect_accepted(setting);
-        walking_dialogue.run_frames(60);
+        walking_dialogue.send_and_run(setting, 60);
     }
     let mut undisturbed_dialogue = walking_dialogue.clone();
     let mut standing_dialogue = walking_dialogue.clone();
-    standing_dialogue.send_line("stop");
-    standing_dialogue.run_frames(60);
+    standing_dialogue.send_and_run("stop", 60);
     standing_dialogue.send_line(line);
-    assert!(
-        walking_dialogue.send_line(line).starts_with("ok "),
-        "{line}"
-    );
+    let answer = walking_dialogue.send_line(line);
+    assert!(answer.starts_with("ok "), "{line}");
     let [walking_widths, undisturbed_widths, standing_widths] = [
         &mut walking_dialogue,
         &mut undisturbed_dialogue,

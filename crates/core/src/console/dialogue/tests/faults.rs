@@ -10,19 +10,16 @@ fn boot_is_executed_three_seconds_after_power_on_unless_a_byte_arrives() {
     for boot in ["sway left", "rest"] {
         dialogue.send_line(&format!("boot {boot}"));
         dialogue.expect_accepted("save");
-        let restart_robot = || start_asymmetric_robot(&dialogue.board.memory, Restart::NONE);
-        let mut unattended_dialogue = restart_robot();
+        let mut unattended_dialogue = dialogue.power_on_copy();
         let printed_lines = unattended_dialogue.run_frames(149);
         assert_eq!(printed_lines.len(), 1, "{printed_lines:?}");
         let activity = unattended_dialogue.motion().activity();
         assert_eq!(activity, Activity::Gait(GaitId::STAND));
         let printed_lines = unattended_dialogue.run_frames(1);
         assert_eq!(printed_lines, [format!("# boot: {boot}")]);
-        assert_status(
-            &mut unattended_dialogue,
-            &[("gait", &boot.replace(' ', "-"))],
-        );
-        let mut interrupted_dialogue = restart_robot();
+        let gait = unattended_dialogue.status_value("gait");
+        assert_eq!(gait, boot.replace(' ', "-"));
+        let mut interrupted_dialogue = dialogue.power_on_copy();
         interrupted_dialogue.run_frames(100);
         interrupted_dialogue.board.send(b" ");
         interrupted_dialogue.run_frames(400);
@@ -42,8 +39,7 @@ fn without_a_robot_commands_that_need_one_are_refused_with_code_10() {
 #[test]
 fn a_lost_link_ends_a_gait_and_is_reported() {
     let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_line("deadman 400");
-    dialogue.send_line("sway");
+    dialogue.expect_all_accepted(&["deadman 400", "sway"]);
     for _ in 0..30 {
         assert!(dialogue.run_frames(15).is_empty());
         dialogue.send_line("status");
@@ -65,8 +61,7 @@ fn lines_that_are_not_commands_do_not_keep_a_gait_going() {
     ];
     for line in lines {
         let mut dialogue = wake_asymmetric_robot();
-        dialogue.send_line("deadman 400");
-        dialogue.send_line("sway");
+        dialogue.expect_all_accepted(&["deadman 400", "sway"]);
         for _ in 0..4 {
             dialogue.board.send(line);
             dialogue.board.send(b"\n");
@@ -79,8 +74,8 @@ fn lines_that_are_not_commands_do_not_keep_a_gait_going() {
 
 #[test]
 fn an_unfinished_line_is_dropped_after_the_deadman_time_without_a_byte() {
-    for (deadman_ms, wait_frames, is_executed) in
-        [(400, 19, true), (400, 20, false), (0, 2000, true)]
+    for (deadman_ms, wait_frames, gait) in
+        [(400, 19, "sway"), (400, 20, "stand"), (0, 2000, "sway")]
     {
         let mut dialogue = wake_asymmetric_robot();
         dialogue.send_line(&format!("deadman {deadman_ms}"));
@@ -89,7 +84,6 @@ fn an_unfinished_line_is_dropped_after_the_deadman_time_without_a_byte() {
         // The link has broken within `sway 12`, and noise ends the line.
         dialogue.board.send(b"\n");
         let printed_lines = dialogue.run_frames(2);
-        let gait = if is_executed { "sway" } else { "stand" };
         let case = format!("{deadman_ms} ms, {wait_frames} frames: {printed_lines:?}");
         assert_eq!(dialogue.status_value("gait"), gait, "{case}");
         // The next line is valid.
@@ -113,11 +107,9 @@ fn each_byte_restarts_the_time_after_which_a_partial_line_is_dropped() {
 #[test]
 fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_line("sway");
-    dialogue.run_frames(150);
+    dialogue.send_and_run("sway", 150);
     let full_advance = measure_phase_advance(&mut dialogue, 10);
-    set_supply(&mut dialogue, 4_400);
-    let printed_lines = dialogue.run_frames(40);
+    let printed_lines = dialogue.run_at_supply(4_400, 40);
     assert!(
         printed_lines[0].starts_with("# supply: 4.")
             && printed_lines[0].ends_with(&format!("V, low: no saving, speed at most {SLOW_PACE}")),
@@ -128,18 +120,14 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     let expected_ratio = f64::from(SLOW_PACE) / 100.0;
     assert!((slow_ratio - expected_ratio).abs() < 0.02, "{slow_ratio}");
     dialogue.expect_refused("save", "8 the supply is too low");
-    set_supply(&mut dialogue, 4_200);
-    let printed_lines = dialogue.run_frames(40);
-    assert_eq!(printed_lines.len(), 2);
+    assert_eq!(dialogue.run_at_supply(4_200, 40).len(), 2);
     assert_status(&mut dialogue, &[("gait", "stop"), ("fault", "supply")]);
     dialogue.expect_refused("sway", "8 ");
     dialogue.expect_refused(NEUTRAL_COMMAND, "8 ");
-    set_supply(&mut dialogue, 4_000);
-    dialogue.run_frames(40);
+    dialogue.run_at_supply(4_000, 40);
     assert_eq!(dialogue.status_value("gait"), "rest");
     assert_eq!(dialogue.run_frame(), Pulses::default());
-    set_supply(&mut dialogue, 5_000);
-    let printed_lines = dialogue.run_frames(100);
+    let printed_lines = dialogue.run_at_supply(5_000, 100);
     let last_line = printed_lines.last().expect("the new level is reported");
     assert!(last_line.ends_with(" V, good"), "{printed_lines:?}");
     assert_eq!(dialogue.status_value("gait"), "rest");
@@ -157,6 +145,11 @@ fn held_servo_state(sweeps: [i16; 4]) -> ServoState {
     }
 }
 
+/// Restarts the asymmetric sample robot with a copy of this memory.
+fn restart_asymmetric_robot(memory: &Eeprom, restart: Restart) -> Dialogue {
+    Dialogue::with_memory(*Sample::asymmetric(), memory.clone(), restart)
+}
+
 /// Returns the restart after `count` consecutive hangs; `servo_state` is the state before the last hang.
 fn restart_after_hang(count: u8, servo_state: ServoState) -> Restart {
     Restart {
@@ -171,29 +164,18 @@ fn restart_after_hang(count: u8, servo_state: ServoState) -> Restart {
 fn a_robot_that_has_hung_holds_its_pose_and_reports_the_hang() {
     let servo_state = held_servo_state([400, -300, 200, -100]);
     let restart = restart_after_hang(3, servo_state);
-    let mut dialogue = start_asymmetric_robot(&Eeprom::blank(), restart);
+    let mut dialogue = restart_asymmetric_robot(&Eeprom::blank(), restart);
     let printed_lines = dialogue.run_frames(1);
-    assert!(
-        printed_lines.contains(&"# fault: the program hung and was restarted".to_string()),
-        "{printed_lines:?}"
-    );
+    let notice = "# fault: the program hung and was restarted".to_string();
+    assert!(printed_lines.contains(&notice), "{printed_lines:?}");
     for _ in 0..400 {
-        assert_eq!(
-            dialogue.run_frame(),
-            servo_state.sent_pulses,
-            "the robot holds its pose from the first frame on"
-        );
+        let pulses = dialogue.run_frame();
+        let claim = "the robot holds its pose from the first frame on";
+        assert_eq!(pulses, servo_state.sent_pulses, "{claim}");
     }
-    assert_status(
-        &mut dialogue,
-        &[
-            ("reset", "watchdog"),
-            ("resets", "3"),
-            ("fault", "watchdog"),
-        ],
-    );
-    dialogue.send_line("stand");
-    dialogue.run_frames(100);
+    assert_status(&mut dialogue, &[("reset", "watchdog"), ("resets", "3")]);
+    assert_eq!(dialogue.status_value("fault"), "watchdog");
+    dialogue.send_and_run("stand", 100);
     assert_eq!(dialogue.status_value("fault"), "none");
     assert_eq!(dialogue.status_value("pose"), format_neutral_pose());
 }
@@ -206,13 +188,12 @@ fn after_a_reset_in_an_unsafe_or_unreachable_pose_the_robot_rests() {
                 cause,
                 ..restart_after_hang(1, held_servo_state(sweeps))
             };
-            let mut dialogue = start_asymmetric_robot(&Eeprom::blank(), restart);
+            let mut dialogue = restart_asymmetric_robot(&Eeprom::blank(), restart);
             for _ in 0..140 {
                 assert_eq!(dialogue.run_frame(), Pulses::default());
             }
             assert_eq!(dialogue.status_value("gait"), "rest");
-            dialogue.send_line("stand");
-            dialogue.run_frames(50);
+            dialogue.send_and_run("stand", 50);
             assert_eq!(dialogue.status_value("pose"), format_neutral_pose());
         }
     }
@@ -221,12 +202,11 @@ fn after_a_reset_in_an_unsafe_or_unreachable_pose_the_robot_rests() {
 #[test]
 fn after_a_reset_in_a_pose_outside_the_saved_limits_the_robot_rests() {
     let mut dialogue = wake_asymmetric_robot();
-    dialogue.expect_accepted("limit 1 115 160");
-    dialogue.expect_accepted("save");
+    dialogue.expect_all_accepted(&["limit 1 115 160", "save"]);
     // A1 at its neutral 132.37 deg plus 30 deg is safe, but beyond the saved limit of 160 deg.
     let restart = restart_after_hang(1, held_servo_state([5461, 0, 0, 0]));
     for (memory, activity) in [(&Eeprom::blank(), "stop"), (&dialogue.board.memory, "rest")] {
-        let mut restarted_dialogue = start_asymmetric_robot(memory, restart);
+        let mut restarted_dialogue = restart_asymmetric_robot(memory, restart);
         restarted_dialogue.run_frames(10);
         assert_eq!(restarted_dialogue.status_value("gait"), activity);
     }
@@ -241,10 +221,8 @@ fn unsaved_settings_are_undone_at_the_slew_limit_after_a_reset() {
         ("dir 3 -", 2, Cause::BrownOut),
     ] {
         let mut dialogue = wake_asymmetric_robot();
-        dialogue.send_line("pose 140 50 311 224.5");
-        dialogue.run_frames(100);
-        dialogue.expect_accepted(setting);
-        dialogue.run_frames(100);
+        dialogue.send_and_run("pose 140 50 311 224.5", 100);
+        dialogue.send_and_run(setting, 100);
         let mut last_pulses = dialogue.run_frame();
         dialogue.reset(cause);
         let calibration = *dialogue.motion().calibration();
@@ -252,8 +230,8 @@ fn unsaved_settings_are_undone_at_the_slew_limit_after_a_reset() {
         let mut moving_frame_count = 0;
         for _ in 0..200 {
             let pulses = dialogue.run_frame();
-            for (index, (pulse, last_pulse)) in pulses.0.iter().zip(&mut last_pulses.0).enumerate()
-            {
+            let pulse_pairs = pulses.0.iter().zip(&mut last_pulses.0);
+            for (index, (pulse, last_pulse)) in pulse_pairs.enumerate() {
                 if pulse.0 == 0 {
                     continue;
                 }
@@ -278,24 +256,16 @@ fn servos_still_wake_one_at_a_time_after_a_reset_during_waking() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
         for frames in 1..25 {
             let mut dialogue = wake_asymmetric_robot();
-            dialogue.send_line("rest");
-            dialogue.run_frames(10);
-            dialogue.send_line("stand");
-            dialogue.run_frames(frames);
+            dialogue.send_and_run("rest", 10);
+            dialogue.send_and_run("stand", frames);
             let mut had_pulses = dialogue.run_frame().0.map(|width| width.0 > 0);
             dialogue.reset(cause);
-            let had_pulses_at_reset = had_pulses;
             if cause != Cause::Watchdog {
                 had_pulses = [false; 4];
             }
             for _ in 0..60 {
                 let has_pulses = dialogue.run_frame().0.map(|width| width.0 > 0);
                 let woken_servos = (0..4).filter(|servo| has_pulses[*servo] && !had_pulses[*servo]);
-                let newly_woken_count = woken_servos
-                    .clone()
-                    .filter(|servo| !had_pulses_at_reset[*servo])
-                    .count();
-                assert!(newly_woken_count <= 1, "{cause:?} after {frames} frames");
                 let woken_count = woken_servos.count();
                 assert!(woken_count <= 1, "{cause:?} after {frames} frames");
                 had_pulses = has_pulses;
@@ -309,10 +279,8 @@ fn servos_still_wake_one_at_a_time_after_a_reset_during_waking() {
 fn a_resting_robot_rests_after_a_reset_until_boot_which_a_hang_cancels() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
         let mut dialogue = wake_asymmetric_robot();
-        dialogue.send_line("pose 140 50 311 224.5");
-        dialogue.run_frames(150);
-        dialogue.send_line("rest");
-        dialogue.run_frames(5);
+        dialogue.send_and_run("pose 140 50 311 224.5", 150);
+        dialogue.send_and_run("rest", 5);
         let memory_bytes = *dialogue.board.memory.bytes();
         dialogue.reset(cause);
         dialogue.board.memory.log.clear();
@@ -320,10 +288,8 @@ fn a_resting_robot_rests_after_a_reset_until_boot_which_a_hang_cancels() {
             assert_eq!(dialogue.run_frame(), Pulses::default(), "{cause:?}");
         }
         assert_eq!(*dialogue.board.memory.bytes(), memory_bytes, "{cause:?}");
-        assert!(
-            dialogue.board.memory.log.is_empty(),
-            "the rest pose is already saved"
-        );
+        let is_unwritten = dialogue.board.memory.log.is_empty();
+        assert!(is_unwritten, "the rest pose is already saved");
         // `boot` is set to `stand`; a hang cancels it.
         let printed_lines = dialogue.run_frames(1);
         let has_booted = printed_lines.iter().any(|line| line == "# boot: stand");
@@ -336,8 +302,7 @@ fn a_resting_robot_rests_after_a_reset_until_boot_which_a_hang_cancels() {
 fn a_rest_pose_whose_write_a_reset_interrupts_is_written_after_the_reset() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
         let mut dialogue = wake_asymmetric_robot();
-        dialogue.send_line("pose 140 50 311 224.5");
-        dialogue.run_frames(150);
+        dialogue.send_and_run("pose 140 50 311 224.5", 150);
         dialogue.board.memory.write_delay = 4;
         dialogue.board.memory.is_timed = true;
         dialogue.board.send(b"rest\r");
@@ -345,11 +310,8 @@ fn a_rest_pose_whose_write_a_reset_interrupts_is_written_after_the_reset() {
         dialogue.reset(cause);
         assert_eq!(dialogue.board.memory.bytes()[128], 0xff, "{cause:?}");
         dialogue.run_frames(100);
-        let mut restarted_dialogue = start_asymmetric_robot(&dialogue.board.memory, Restart::NONE);
-        assert_status(
-            &mut restarted_dialogue,
-            &[("pose", "140.00,50.00,311.00,224.50")],
-        );
+        let pose = dialogue.power_on_copy().status_value("pose");
+        assert_eq!(pose, "140.00,50.00,311.00,224.50");
     }
 }
 
@@ -378,15 +340,11 @@ fn after_three_consecutive_brown_outs_or_button_resets_the_robot_rests_until_sta
         assert_eq!(dialogue.run_frame(), Pulses::default(), "boot is cancelled");
         assert_eq!(dialogue.status_value("fault"), "brownout");
         dialogue.expect_refused("sway", "7 ");
-        dialogue.expect_accepted("stand");
-        dialogue.run_frames(30);
+        dialogue.send_and_run("stand", 30);
         dialogue.reset(Cause::BrownOut);
         dialogue.run_frames(30);
-        assert_ne!(
-            dialogue.run_frame(),
-            Pulses::default(),
-            "`stand` clears the count of resets"
-        );
+        let has_pulses = dialogue.run_frame() != Pulses::default();
+        assert!(has_pulses, "`stand` clears the count of resets");
     }
 }
 

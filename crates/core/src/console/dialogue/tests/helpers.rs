@@ -3,19 +3,49 @@
 use std::collections::HashMap;
 use std::format;
 use std::string::{String, ToString};
+use std::vec::Vec;
 
 use super::NEUTRAL_COMMAND;
 use crate::memory::restart::Restart;
 use crate::motion::Activity;
 use crate::numbers::units::CYCLE;
 use crate::sample::Sample;
-use crate::virtual_board::{Eeprom, RunningRobot, compute_reading};
+use crate::virtual_board::{RunningRobot, compute_reading};
 
 /// The number of frames until the robot stands and may begin to move.
 pub(super) const WAKING_FRAMES: u32 = 21;
 
 /// A running robot that is commanded over its console.
 pub(super) type Dialogue = RunningRobot;
+
+impl Dialogue {
+    /// Sends a line that must be accepted, and runs frames. Returns the lines printed after the answer.
+    #[track_caller]
+    pub(crate) fn send_and_run(&mut self, line: &str, frames: u32) -> Vec<String> {
+        self.expect_accepted(line);
+        self.run_frames(frames)
+    }
+
+    /// Sends lines that must be accepted.
+    #[track_caller]
+    pub(super) fn expect_all_accepted(&mut self, lines: &[&str]) {
+        for line in lines {
+            self.expect_accepted(line);
+        }
+    }
+
+    /// Sets the supply voltage of the board, and runs frames. Returns the printed lines.
+    pub(super) fn run_at_supply(&mut self, board_mv: u32, frames: u32) -> Vec<String> {
+        set_supply(self, board_mv);
+        self.run_frames(frames)
+    }
+
+    /// Powers on another robot of this kind with a copy of this robot's memory.
+    pub(super) fn power_on_copy(&self) -> Self {
+        let memory = self.board.memory.clone();
+        Self::with_memory(*self.motion().robot(), memory, Restart::NONE)
+    }
+}
 
 /// Powers on the asymmetric sample robot, reads its banner, and runs it until it is awake.
 pub(super) fn wake_asymmetric_robot() -> Dialogue {
@@ -35,9 +65,13 @@ pub(super) fn wake_robot(robot: Sample) -> Dialogue {
     dialogue
 }
 
-/// Starts the asymmetric sample robot with a copy of this memory.
-pub(super) fn start_asymmetric_robot(memory: &Eeprom, restart: Restart) -> Dialogue {
-    Dialogue::with_memory(*Sample::asymmetric(), memory.clone(), restart)
+/// Checks that these lines have been printed and no others, given the start of each.
+#[track_caller]
+pub(super) fn assert_line_starts(lines: &[String], starts: &[&str]) {
+    assert_eq!(lines.len(), starts.len(), "{lines:?}");
+    for (line, start) in lines.iter().zip(starts) {
+        assert!(line.starts_with(start), "{line}");
+    }
 }
 
 /// Checks several values of the status.

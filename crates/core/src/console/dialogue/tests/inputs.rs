@@ -62,22 +62,31 @@ fn run_until_change(dialogue: &mut Dialogue) -> (u32, String) {
     (LONG_FRAMES, activity_before)
 }
 
+/// Closes a contact and runs until the robot's activity changes; see [`run_until_change`].
+fn close_until_change(dialogue: &mut Dialogue, input: Input) -> (u32, String) {
+    set_contact(dialogue, input, true);
+    run_until_change(dialogue)
+}
+
+/// The last steps of some routines: wait for the button, walk back.
+const WAIT_FOR_BUTTON_AND_GO_BACK: [(u8, &str, u16); 3] = [
+    (UNTIL, "button", 0),
+    (WAIT, "stand", ENDLESS),
+    (CYCLES, "back", 1),
+];
+
 #[test]
 fn in_each_round_the_robot_waits_for_the_button_walks_to_the_wall_and_turns() {
     let mut dialogue = start_patrol(2, &PATROL_STEPS);
     for _ in 0..2 {
         assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# waiting for button"]);
-        assert_eq!(
-            (activity_name(&dialogue), dialogue.status_value("gait")),
-            ("Stop".into(), "patrol".into())
-        );
+        assert_eq!(activity_name(&dialogue), "Stop");
+        assert_eq!(dialogue.status_value("gait"), "patrol");
         let printed_lines = press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
         assert_eq!(printed_lines, ["# waiting for nose"]);
         assert_eq!(activity_name(&dialogue), "sway");
-        assert!(
-            dialogue.run_frames(3 * LONG_FRAMES).is_empty(),
-            "the walk ends only at a wall"
-        );
+        let printed_lines = dialogue.run_frames(3 * LONG_FRAMES);
+        assert!(printed_lines.is_empty(), "the walk ends only at a wall");
         assert_eq!(activity_name(&dialogue), "sway");
         assert!(press(&mut dialogue, NOSE, DEBOUNCE_FRAMES).is_empty());
         assert_eq!(activity_name(&dialogue), "back");
@@ -96,29 +105,22 @@ fn a_bouncing_contact_counts_as_closed_once_it_stays_closed_for_three_frames() {
         dialogue.run_frames(1);
     }
     assert_eq!(activity_name(&dialogue), "Stop");
-    set_contact(&mut dialogue, BUTTON, true);
-    let frames = run_until_change(&mut dialogue);
-    assert_eq!(frames, (DEBOUNCE_FRAMES, "sway".to_string()));
+    let change = close_until_change(&mut dialogue, BUTTON);
+    assert_eq!(change, (DEBOUNCE_FRAMES, "sway".to_string()));
 }
 
 #[test]
 fn a_stuck_button_does_not_start_the_robot_until_it_is_released_and_pressed_again() {
     let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", 1, &PATROL_STEPS));
     set_contact(&mut dialogue, BUTTON, true);
-    dialogue.expect_accepted("patrol");
-    assert_eq!(
-        dialogue.run_frames(5 * LONG_FRAMES),
-        ["# waiting for button"]
-    );
+    let printed_lines = dialogue.send_and_run("patrol", 5 * LONG_FRAMES);
+    assert_eq!(printed_lines, ["# waiting for button"]);
     assert_eq!(activity_name(&dialogue), "Stop");
     set_contact(&mut dialogue, BUTTON, false);
     dialogue.run_frames(DEBOUNCE_FRAMES - 1);
     press(&mut dialogue, BUTTON, LONG_FRAMES);
-    assert_eq!(
-        activity_name(&dialogue),
-        "Stop",
-        "the button was open for too short a time"
-    );
+    let activity = activity_name(&dialogue);
+    assert_eq!(activity, "Stop", "the button was open for too short a time");
     dialogue.run_frames(DEBOUNCE_FRAMES);
     press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
     assert_eq!(activity_name(&dialogue), "sway");
@@ -153,12 +155,8 @@ fn a_step_of_every_kind_ends_by_its_contact_or_else_by_its_count_or_time() {
         };
         let mut interrupted_dialogue = run_to_step();
         interrupted_dialogue.run_frames(10);
-        set_contact(&mut interrupted_dialogue, NOSE, true);
-        assert_eq!(
-            run_until_change(&mut interrupted_dialogue),
-            (DEBOUNCE_FRAMES, "stand".to_string()),
-            "{step:?}"
-        );
+        let change = close_until_change(&mut interrupted_dialogue, NOSE);
+        assert_eq!(change, (DEBOUNCE_FRAMES, "stand".to_string()), "{step:?}");
         let (frames, next_activity) = run_until_change(&mut run_to_step());
         assert_eq!(next_activity, "stand");
         assert!(expected_frames.contains(&frames), "{step:?}: {frames}");
@@ -173,20 +171,12 @@ fn a_press_before_the_wait_for_it_has_no_effect() {
         (FRAMES, "stand", 150),
         (REST, "stand", 150),
     ] {
-        let steps = [
-            step,
-            (UNTIL, "button", 0),
-            (WAIT, "stand", ENDLESS),
-            (CYCLES, "back", 1),
-        ];
+        let steps = [&[step][..], &WAIT_FOR_BUTTON_AND_GO_BACK].concat();
         let mut dialogue = start_patrol(1, &steps);
         dialogue.run_frames(20);
         assert!(press(&mut dialogue, BUTTON, 50).is_empty());
-        assert_eq!(
-            dialogue.run_frames(LONG_FRAMES),
-            ["# waiting for button"],
-            "{step:?}"
-        );
+        let printed_lines = dialogue.run_frames(LONG_FRAMES);
+        assert_eq!(printed_lines, ["# waiting for button"], "{step:?}");
         assert!(["Stop", "Rest"].contains(&activity_name(&dialogue).as_str()));
         press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
         assert_eq!(activity_name(&dialogue), "back");
@@ -195,12 +185,7 @@ fn a_press_before_the_wait_for_it_has_no_effect() {
 
 #[test]
 fn a_wait_after_a_rest_sends_no_pulse_until_a_press_wakes_the_servos() {
-    let steps = [
-        (REST, "stand", 10),
-        (UNTIL, "button", 0),
-        (WAIT, "stand", ENDLESS),
-        (CYCLES, "back", 1),
-    ];
+    let steps = [&[(REST, "stand", 10)][..], &WAIT_FOR_BUTTON_AND_GO_BACK].concat();
     let mut dialogue = start_patrol(1, &steps);
     dialogue.run_frames(20);
     for _ in 0..LONG_FRAMES {
@@ -228,20 +213,14 @@ fn a_wait_brakes_the_previous_gait_without_moving_a_servo_faster() {
         changes.push(change.expect("there are four widths"));
         last_widths = new_widths;
     }
-    let braking_frames = changes[90..].iter().position(|change| *change == 0);
-    assert!(
-        (4..12).contains(&braking_frames.expect("the servos stop")),
-        "{changes:?}"
-    );
+    let is_still = |change: &u16| *change == 0;
+    let braking_frames = changes[90..].iter().position(is_still);
+    let braking_frames = braking_frames.expect("the servos stop");
+    assert!((4..12).contains(&braking_frames), "{changes:?}");
     let max_walking_change = changes[80..90].iter().max();
-    assert!(
-        changes[90..].iter().max() <= max_walking_change,
-        "{changes:?}"
-    );
-    assert!(
-        changes[110..].iter().all(|change| *change == 0),
-        "{changes:?}"
-    );
+    let max_waiting_change = changes[90..].iter().max();
+    assert!(max_waiting_change <= max_walking_change, "{changes:?}");
+    assert!(changes[110..].iter().all(is_still), "{changes:?}");
 }
 
 /// Starts two robots on patrol: the first waits for the button, the second walks until the nose switch closes.
@@ -267,14 +246,12 @@ fn whatever_ends_a_routine_ends_its_wait_and_then_no_contact_moves_the_robot() {
     for waiting_dialogue in start_waiting_robots() {
         for line in ["stop", "rest", "stand", NEUTRAL_COMMAND] {
             let mut dialogue = waiting_dialogue.clone();
-            dialogue.expect_accepted(line);
-            dialogue.run_frames(300);
+            dialogue.send_and_run(line, 300);
             assert_ignores_contacts(dialogue, line);
         }
         for board_mv in [4_200, 3_900] {
             let mut low_supply_dialogue = waiting_dialogue.clone();
-            set_supply(&mut low_supply_dialogue, board_mv);
-            low_supply_dialogue.run_frames(60);
+            low_supply_dialogue.run_at_supply(board_mv, 60);
             assert_eq!(low_supply_dialogue.status_value("fault"), "supply");
             set_supply(&mut low_supply_dialogue, 5_000);
             assert_ignores_contacts(low_supply_dialogue, "a weak supply");
@@ -283,8 +260,7 @@ fn whatever_ends_a_routine_ends_its_wait_and_then_no_contact_moves_the_robot() {
         late_dialogue.board.late_edges = 1;
         assert_ignores_contacts(late_dialogue, "a late edge");
         let mut silent_dialogue = waiting_dialogue.clone();
-        silent_dialogue.expect_accepted("deadman 200");
-        silent_dialogue.run_frames(20);
+        silent_dialogue.send_and_run("deadman 200", 20);
         assert_eq!(silent_dialogue.status_value("fault"), "link");
         assert_ignores_contacts(silent_dialogue, "silence");
         for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
@@ -303,27 +279,20 @@ fn whatever_ends_a_routine_ends_its_wait_and_then_no_contact_moves_the_robot() {
 #[test]
 fn a_contact_ends_a_walk_even_on_a_low_supply() {
     let [_, mut dialogue] = start_waiting_robots();
-    set_supply(&mut dialogue, 4_400);
-    dialogue.run_frames(60);
+    dialogue.run_at_supply(4_400, 60);
     assert_eq!(activity_name(&dialogue), "sway");
-    set_contact(&mut dialogue, NOSE, true);
-    let change = run_until_change(&mut dialogue);
+    let change = close_until_change(&mut dialogue, NOSE);
     assert_eq!(change, (DEBOUNCE_FRAMES, "back".to_string()));
 }
 
 #[test]
 fn deadman_does_not_limit_the_waits_of_a_routine_started_by_boot() {
     let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", 0, &PATROL_STEPS));
-    for line in ["boot patrol", "deadman 200", "save"] {
-        dialogue.expect_accepted(line);
-    }
-    let (robot, memory) = (*dialogue.motion().robot(), dialogue.board.memory.clone());
-    let mut unattended_dialogue = Dialogue::with_memory(robot, memory, Restart::NONE);
+    dialogue.expect_all_accepted(&["boot patrol", "deadman 200", "save"]);
+    let mut unattended_dialogue = dialogue.power_on_copy();
     let lines = unattended_dialogue.run_frames(10 * LONG_FRAMES);
-    assert_eq!(
-        lines[lines.len() - 2..],
-        ["# boot: patrol", "# waiting for button"]
-    );
+    let expected_end = ["# boot: patrol", "# waiting for button"];
+    assert_eq!(lines[lines.len() - 2..], expected_end);
     let lines = press(&mut unattended_dialogue, BUTTON, DEBOUNCE_FRAMES);
     assert_eq!(lines, ["# waiting for nose"]);
     assert_eq!(activity_name(&unattended_dialogue), "sway");
@@ -334,15 +303,12 @@ fn deadman_does_not_limit_the_waits_of_a_routine_started_by_boot() {
 fn a_pins_pull_up_is_switched_on_at_the_first_wait_for_its_contact() {
     let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", 1, &PATROL_STEPS));
     assert_eq!(dialogue.board.pulled_up_pins, 0);
-    dialogue.expect_accepted("patrol");
-    dialogue.run_frames(10);
+    dialogue.send_and_run("patrol", 10);
     assert_eq!(dialogue.board.pulled_up_pins, 1 << BUTTON.pin());
     dialogue.run_frames(DEBOUNCE_FRAMES);
     press(&mut dialogue, BUTTON, 10);
-    assert_eq!(
-        dialogue.board.pulled_up_pins,
-        1 << BUTTON.pin() | 1 << NOSE.pin()
-    );
+    let expected_pins = 1 << BUTTON.pin() | 1 << NOSE.pin();
+    assert_eq!(dialogue.board.pulled_up_pins, expected_pins);
 }
 
 #[test]
@@ -356,14 +322,10 @@ fn only_a_free_pin_of_the_board_gets_a_pull_up() {
         });
         let mut dialogue = wake_robot(robot);
         dialogue.board.closed_pins = u32::MAX;
-        dialogue.expect_accepted("patrol");
-        dialogue.run_frames(10);
+        dialogue.send_and_run("patrol", 10);
         let is_free = (2..=12).contains(&pin) || (15..=19).contains(&pin);
-        let expected_pins = if is_free && !pins.contains(&pin) {
-            1 << pin
-        } else {
-            0
-        };
+        let gets_pull_up = is_free && !pins.contains(&pin);
+        let expected_pins = if gets_pull_up { 1 << pin } else { 0 };
         assert_eq!(dialogue.board.pulled_up_pins, expected_pins, "pin {pin}");
         assert_eq!(activity_name(&dialogue), "Stop");
     }
@@ -394,13 +356,12 @@ fn a_routine_may_wait_once_and_repeat_only_the_later_steps() {
         routine.channels[3].offset = 2;
     });
     let mut dialogue = wake_robot(robot);
-    dialogue.expect_accepted("patrol");
-    assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# waiting for button"]);
+    let printed_lines = dialogue.send_and_run("patrol", LONG_FRAMES);
+    assert_eq!(printed_lines, ["# waiting for button"]);
     press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
     for _ in 0..3 {
         assert_eq!(activity_name(&dialogue), "sway");
-        set_contact(&mut dialogue, NOSE, true);
-        assert_eq!(run_until_change(&mut dialogue).1, "back");
+        assert_eq!(close_until_change(&mut dialogue, NOSE).1, "back");
         set_contact(&mut dialogue, NOSE, false);
         assert_eq!(run_until_change(&mut dialogue).1, "sway left");
         run_until_change(&mut dialogue);

@@ -40,8 +40,8 @@ fn run_and_record_activities(dialogue: &mut Dialogue, frames: u32) -> (Vec<Strin
 }
 
 /// Starts the routine. Returns clones of the dialogue at many times during the routine.
-fn record_snapshots(build_robot: fn() -> Sample) -> Vec<Dialogue> {
-    let mut dialogue = wake_robot(build_robot());
+fn record_snapshots() -> Vec<Dialogue> {
+    let mut dialogue = wake_robot(robot_with_routine(0));
     dialogue.send_line("patrol");
     let mut snapshots = Vec::new();
     for _ in 0..40 {
@@ -104,14 +104,10 @@ fn help_boot_and_cal_treat_a_routine_as_a_gait() {
     let printed_lines = dialogue.send(b"cal\r");
     assert!(printed_lines.contains(&"# boot patrol".to_string()));
     dialogue.expect_accepted("save");
-    let eeprom = dialogue.board.memory.clone();
-    let mut unattended_dialogue =
-        Dialogue::with_memory(*robot_with_routine(1), eeprom, Restart::default());
+    let mut unattended_dialogue = dialogue.power_on_copy();
     let printed_lines = unattended_dialogue.run_frames(150);
-    assert_eq!(
-        printed_lines.last().map(String::as_str),
-        Some("# boot: patrol")
-    );
+    let last_line = printed_lines.last().map(String::as_str);
+    assert_eq!(last_line, Some("# boot: patrol"));
     assert_eq!(unattended_dialogue.status_value("gait"), "patrol");
     dialogue.send_line("rest");
     dialogue.expect_refused("patrol", "7 the servos are resting; send stand first");
@@ -119,17 +115,14 @@ fn help_boot_and_cal_treat_a_routine_as_a_gait() {
 
 #[test]
 fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
-    for snapshot in record_snapshots(|| robot_with_routine(0)) {
+    for snapshot in record_snapshots() {
         for line in ["stop", "rest", "stand", "sway", "back 1", NEUTRAL_COMMAND] {
             let mut dialogue = snapshot.clone();
             dialogue.expect_accepted(line);
             let (gaits, printed_lines) = run_and_record_activities(&mut dialogue, 600);
             assert!(gaits.len() <= 2, "{line}: {gaits:?}");
-            assert_eq!(
-                printed_lines.len(),
-                usize::from(line == "back 1"),
-                "{line}: {printed_lines:?}"
-            );
+            let line_count = usize::from(line == "back 1");
+            assert_eq!(printed_lines.len(), line_count, "{line}: {printed_lines:?}");
             assert_ne!(dialogue.status_value("gait"), "patrol");
         }
         let mut repeated_dialogue = snapshot.clone();
@@ -137,31 +130,22 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
         let (gaits, _) = run_and_record_activities(&mut repeated_dialogue, 30);
         assert_eq!(gaits.last().map(String::as_str), Some("sway"));
         let mut low_supply_dialogue = snapshot.clone();
-        set_supply(&mut low_supply_dialogue, 4_200);
-        low_supply_dialogue.run_frames(60);
-        assert_status(
-            &mut low_supply_dialogue,
-            &[("gait", "stop"), ("fault", "supply")],
-        );
+        low_supply_dialogue.run_at_supply(4_200, 60);
+        let stopped_values = [("gait", "stop"), ("fault", "supply")];
+        assert_status(&mut low_supply_dialogue, &stopped_values);
         set_supply(&mut low_supply_dialogue, 5_000);
-        assert_eq!(
-            run_and_record_activities(&mut low_supply_dialogue, 300).0,
-            ["Stop"],
-            "the routine does not continue by itself"
-        );
+        let (gaits, _) = run_and_record_activities(&mut low_supply_dialogue, 300);
+        assert_eq!(gaits, ["Stop"], "the routine does not continue by itself");
         let mut failing_supply_dialogue = snapshot.clone();
-        set_supply(&mut failing_supply_dialogue, 3_900);
-        failing_supply_dialogue.run_frames(60);
+        failing_supply_dialogue.run_at_supply(3_900, 60);
         assert_eq!(failing_supply_dialogue.status_value("gait"), "rest");
         for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
             let mut reset_dialogue = snapshot.clone();
             reset_dialogue.reset(cause);
             let (gaits, printed_lines) = run_and_record_activities(&mut reset_dialogue, 400);
-            let is_standing_or_stopped = ["stand", "Stop"].contains(&gaits[0].as_str());
-            assert!(
-                is_standing_or_stopped && gaits.len() == 1,
-                "{cause:?}: {gaits:?}"
-            );
+            let case = format!("{cause:?}: {gaits:?}");
+            assert_eq!(gaits.len(), 1, "{case}");
+            assert!(["stand", "Stop"].contains(&gaits[0].as_str()), "{case}");
             assert!(!printed_lines.contains(&"# done".to_string()));
         }
     }
@@ -170,13 +154,8 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
 #[test]
 fn a_low_supply_slows_a_routine_without_ending_it() {
     let mut dialogue = wake_robot(robot_with_routine(1));
-    set_supply(&mut dialogue, 4_400);
-    dialogue.run_frames(40);
-    dialogue.send_line("patrol");
-    assert_eq!(
-        run_and_record_activities(&mut dialogue, 2 * LONG_FRAMES).1,
-        ["# done"]
-    );
+    dialogue.run_at_supply(4_400, 40);
+    assert_eq!(dialogue.send_and_run("patrol", 2 * LONG_FRAMES), ["# done"]);
 }
 
 #[test]
@@ -186,50 +165,33 @@ fn the_guard_ends_a_routine_as_it_ends_a_gait() {
     dialogue.send_line("patrol");
     let (gaits, printed_lines) = run_and_record_activities(&mut dialogue, LONG_FRAMES);
     assert_eq!(gaits, ["stray", "Stop"]);
-    assert_eq!(printed_lines.len(), 1);
-    assert!(printed_lines[0].starts_with("# held"), "{printed_lines:?}");
+    assert_line_starts(&printed_lines, &["# held"]);
     assert_eq!(dialogue.status_value("fault"), "guard");
 }
 
 #[test]
 fn silence_ends_a_routine_that_a_command_began_but_not_one_that_boot_began() {
-    for snapshot in record_snapshots(|| robot_with_routine(0)) {
-        let mut dialogue = snapshot;
-        dialogue.send_line("deadman 200");
+    for mut dialogue in record_snapshots() {
         let notice = "# fault: no command within the deadman time, stopped";
-        assert_eq!(dialogue.run_frames(100), [notice]);
+        assert_eq!(dialogue.send_and_run("deadman 200", 100), [notice]);
         assert_eq!(dialogue.status_value("gait"), "stop");
     }
     let mut dialogue = wake_robot(robot_with_routine(0));
-    dialogue.send_line("boot patrol");
-    dialogue.send_line("deadman 200");
-    dialogue.expect_accepted("save");
-    let eeprom = dialogue.board.memory.clone();
-    let start_unattended = || {
-        let mut unattended_dialogue =
-            Dialogue::with_memory(*robot_with_routine(0), eeprom.clone(), Restart::default());
-        unattended_dialogue.run_frames(150);
-        unattended_dialogue
-    };
-    let mut idle_dialogue = start_unattended();
-    assert!(
-        idle_dialogue.run_frames(5 * LONG_FRAMES).is_empty(),
-        "the routine continues"
-    );
+    dialogue.expect_all_accepted(&["boot patrol", "deadman 200", "save"]);
+    let mut unattended_dialogue = dialogue.power_on_copy();
+    unattended_dialogue.run_frames(150);
+    let mut idle_dialogue = unattended_dialogue.clone();
+    let printed_lines = idle_dialogue.run_frames(5 * LONG_FRAMES);
+    assert!(printed_lines.is_empty(), "the routine continues");
     // The first valid line starts the `deadman` timeout.
-    idle_dialogue.send_line("speed 90");
-    assert_eq!(idle_dialogue.run_frames(100).len(), 1);
+    assert_eq!(idle_dialogue.send_and_run("speed 90", 100).len(), 1);
     assert_eq!(idle_dialogue.status_value("fault"), "link");
     // Neither single bytes nor an invalid line starts the `deadman` timeout.
-    let mut noisy_dialogue = start_unattended();
-    noisy_dialogue.board.send(b"x");
-    assert!(noisy_dialogue.run_frames(LONG_FRAMES).is_empty());
-    noisy_dialogue.board.send(b"x\r");
-    assert_eq!(
-        noisy_dialogue.run_frames(100).len(),
-        1,
-        "only the error is printed"
-    );
+    unattended_dialogue.board.send(b"x");
+    assert!(unattended_dialogue.run_frames(LONG_FRAMES).is_empty());
+    unattended_dialogue.board.send(b"x\r");
+    let printed_lines = unattended_dialogue.run_frames(100);
+    assert_eq!(printed_lines.len(), 1, "only the error is printed");
 }
 
 #[test]
@@ -255,10 +217,8 @@ fn after_a_rest_in_a_routine_the_servos_wake_one_by_one() {
     assert_eq!(printed_lines, ["# done"]);
     assert_eq!(pulsing_counts, [4, 0, 1, 2, 3, 4, 0, 1, 2, 3, 4]);
     // Each of the two rests takes 50 frames; the first servo wakes five frames later.
-    assert!(
-        (100..=112).contains(&frames_without_pulses),
-        "{frames_without_pulses}"
-    );
+    let is_expected = (100..=112).contains(&frames_without_pulses);
+    assert!(is_expected, "{frames_without_pulses}");
 }
 
 #[test]
@@ -276,8 +236,7 @@ fn a_resting_routine_can_be_stopped_and_its_last_rest_pose_is_saved() {
     };
     for line in ["stop", "rest"] {
         let mut dialogue = start_and_rest();
-        dialogue.expect_accepted(line);
-        assert!(dialogue.run_frames(LONG_FRAMES).is_empty());
+        assert!(dialogue.send_and_run(line, LONG_FRAMES).is_empty());
         assert!(dialogue.motion().is_resting());
     }
     let mut dialogue = start_and_rest();
@@ -286,9 +245,6 @@ fn a_resting_routine_can_be_stopped_and_its_last_rest_pose_is_saved() {
     let pose = *dialogue.motion().pose();
     dialogue.lose_power(None);
     dialogue.run_frames(1);
-    assert_eq!(
-        *dialogue.motion().pose(),
-        pose,
-        "the robot wakes in its rest pose"
-    );
+    let waking_pose = *dialogue.motion().pose();
+    assert_eq!(waking_pose, pose, "the robot wakes in its rest pose");
 }

@@ -9,23 +9,17 @@ fn status_reports_each_value_under_its_key() {
     dialogue.board.count_lost_bytes(65_535);
     dialogue.run_frames(1);
     dialogue.send_line("speed 42");
-    dialogue.send_line("sway left");
-    dialogue.run_frames(200);
+    dialogue.send_and_run("sway left", 200);
     let line = dialogue.send_line("status");
     let motion = dialogue.motion();
     let phase = (u64::from(motion.phase()) * 1000) >> 24;
-    let angles: Vec<String> = motion
-        .pose()
-        .angles(&motion.robot().neutral_angles())
-        .iter()
-        .map(|angle| {
-            let centideg = angle.centideg();
-            format!("{}.{:02}", centideg / 100, centideg % 100)
-        })
-        .collect();
-    let margin = Clearance::measure(motion.robot(), motion.pose())
-        .min_margin()
-        .thousandths();
+    let angles = motion.pose().angles(&motion.robot().neutral_angles());
+    let angles = angles.map(|angle| {
+        let centideg = angle.centideg();
+        format!("{}.{:02}", centideg / 100, centideg % 100)
+    });
+    let clearance = Clearance::measure(motion.robot(), motion.pose());
+    let margin = clearance.min_margin().thousandths();
     let expected = format!(
         "ok gait=sway-left phase=0.{phase:03} pose={} margin=0.{margin:03} speed=42 frames={} \
          late=7 rx_lost=65535 guard=clear fault=none reset=power resets=0 vcc=5.00 rail=6.00",
@@ -66,8 +60,7 @@ fn status_shows_the_robots_activity() {
 fn the_longest_possible_status_fits_into_an_output_line() {
     let name = "longest name of a gait that any robot may have..";
     assert_eq!(name.len(), crate::numbers::gaits::MAX_NAME_BYTES);
-    let robot = Sample::asymmetric().with_gait(name);
-    let mut dialogue = wake_robot(robot);
+    let mut dialogue = wake_robot(Sample::asymmetric().with_gait(name));
     dialogue.board.late_edges = u16::MAX;
     dialogue.board.count_lost_bytes(u16::MAX);
     dialogue.expect_accepted(name);
@@ -82,10 +75,8 @@ fn the_longest_possible_status_fits_into_an_output_line() {
         ("frames", "4294967295"),
         ("guard", "clear"),
     ];
-    let extra_bytes: usize = longest_values
-        .iter()
-        .map(|(key, longest_value)| longest_value.len() - values[*key].len())
-        .sum();
+    let extra_bytes = longest_values.map(|(key, longest)| longest.len() - values[key].len());
+    let extra_bytes: usize = extra_bytes.iter().sum();
     assert!(line.len() + extra_bytes + "\r\n".len() <= usize::from(MAX_OUTPUT_LINE_BYTES));
 }
 
@@ -109,8 +100,7 @@ fn watch_reports_the_pose_of_every_nth_frame_until_watch_0() {
         }
         let expected: Vec<u32> = (1..=200).filter(|frame| frame % interval == 0).collect();
         assert_eq!(report_frames, expected);
-        dialogue.send_line("watch 0");
-        assert!(dialogue.run_frames(200).is_empty());
+        assert!(dialogue.send_and_run("watch 0", 200).is_empty());
     }
 }
 
@@ -118,11 +108,9 @@ fn watch_reports_the_pose_of_every_nth_frame_until_watch_0() {
 fn watch_continues_at_rest_and_a_new_watch_starts_a_new_interval() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("watch 5");
-    dialogue.send_line("rest");
-    assert_eq!(dialogue.run_frames(50).len(), 10);
+    assert_eq!(dialogue.send_and_run("rest", 50).len(), 10);
     dialogue.run_frames(3);
-    dialogue.send_line("watch 10");
-    assert!(dialogue.run_frames(9).is_empty());
+    assert!(dialogue.send_and_run("watch 10", 9).is_empty());
     assert_eq!(dialogue.run_frames(1).len(), 1);
 }
 
@@ -136,9 +124,7 @@ fn several_unread_reports_are_written_as_one_report() {
     assert!(dialogue.has_output());
     dialogue.board.send(b"watch 0\r");
     let printed_lines = dialogue.read_lines();
-    assert!(
-        printed_lines.len() == 2 && printed_lines[1] == "ok watch 0",
-        "{printed_lines:?}"
-    );
+    assert_eq!(printed_lines.len(), 2, "{printed_lines:?}");
+    assert_eq!(printed_lines[1], "ok watch 0");
     assert!(dialogue.run_frames(10).is_empty());
 }

@@ -25,14 +25,12 @@ fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held() {
         motion.advance_frame();
     }
     let hazard = motion.hazard();
+    let last_pulses = last_pose.pulses(&motion.calibration);
     assert_eq!(motion.pose(), &last_pose);
     assert_eq!(motion.activity(), Activity::Stop);
     assert_eq!(motion.phase(), 0);
     for _ in 0..100 {
-        assert_eq!(
-            motion.advance_frame(),
-            last_pose.pulses(&motion.calibration)
-        );
+        assert_eq!(motion.advance_frame(), last_pulses);
         assert_eq!(motion.hazard(), hazard);
     }
     // The reported hazard occurs in the gait's poses.
@@ -58,10 +56,8 @@ fn the_hazard_is_cleared_only_when_the_next_motion_begins() {
     let mut refused_motion = run_until_guard_stops();
     assert!(refused_motion.go_to(&Pose([Sweep(13_000); 4])).is_err());
     refused_motion.run(20);
-    assert!(
-        refused_motion.hazard().is_some(),
-        "a refused pose begins no motion"
-    );
+    let is_held = refused_motion.hazard().is_some();
+    assert!(is_held, "a refused pose begins no motion");
     let mut motion = run_until_guard_stops();
     motion.start("sway");
     assert!(motion.hazard().is_some());

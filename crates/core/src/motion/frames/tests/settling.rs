@@ -21,10 +21,8 @@ fn every_servo_settles_exactly_as_fast_as_its_gain_allows() {
         (per_frame * f64::from(servo.gain).abs() / 16_384.0).floor() as u16
     });
     for (index, max_change) in max_changes.iter().enumerate() {
-        assert!(
-            !max_changes[..index].contains(max_change),
-            "{max_changes:?}"
-        );
+        let is_repeated = max_changes[..index].contains(max_change);
+        assert!(!is_repeated, "{max_changes:?}");
     }
     lengthen_neutral_pulses(&mut motion);
     motion.settle();

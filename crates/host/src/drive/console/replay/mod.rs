@@ -50,30 +50,21 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     let mut printer = DialoguePrinter::new(true);
     for entry in &session.entries {
-        let (sender, text) = match &entry.event {
+        let (from, text) = match &entry.event {
             Event::Sent(line) => (Sender::User, line.clone()),
             Event::Answer(line) | Event::Note(line) => (Sender::Robot, line.clone()),
             Event::Gone => (Sender::Robot, "(the port disappeared)".to_owned()),
             Event::Begin { .. } | Event::Status(_) | Event::Pose { .. } => continue,
         };
         let ms = entry.ms as f64;
-        printer.print(
-            &DialogueLine {
-                ms,
-                from: sender,
-                text,
-            },
-            &mut out,
-        )?;
+        printer.print(&DialogueLine { ms, from, text }, &mut out)?;
     }
     writeln!(out)?;
     summary::print(&session, &mut out)?;
 
     let hash_text = format!(" {:08x},", robot.firmware().hash());
-    if session
-        .banner()
-        .is_some_and(|banner| !banner.contains(&hash_text))
-    {
+    let banner = session.banner();
+    if banner.is_some_and(|banner| !banner.contains(&hash_text)) {
         writeln!(
             out,
             "picture     the session's robot differs from robot.toml: the angles are correct, but \
@@ -81,8 +72,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
         )?;
     }
     let log = session.build_frame_log(&robot);
-    let (robot, log) = (&robot, &log);
-    let picture = timeline::draw(Run { robot, log }, &session.compute_spans(), &CAPTION);
+    let run = Run::new(&robot, &log);
+    let picture = timeline::draw(run, &session.compute_spans(), &CAPTION);
     crate::shared::files::write(&args.svg, picture.as_bytes())?;
     writeln!(out, "picture     {}", args.svg.display())?;
     Ok(())

@@ -2,77 +2,72 @@ use super::*;
 
 const WALKING_STATUS: &str = "ok gait=walk phase=0 pose=1,2,3,4 margin=0.5 guard=clear fault=none";
 
+/// Starts a session; also returns its start.
+fn start(polls_status: bool, watches_poses: bool) -> (Instant, Session) {
+    let now = Instant::now();
+    (now, Session::new(now, polls_status, watches_poses))
+}
+
+/// Starts a session of a person who drives; also returns its start.
+fn start_driving(polls_status: bool) -> (Instant, Session) {
+    let (now, session) = start(polls_status, false);
+    (now, session.with_deadman())
+}
+
+/// Checks the line that the session sends at `time`; `None` stands for no line.
+#[track_caller]
+fn assert_sends(session: &mut Session, time: Instant, line: Option<&str>) {
+    assert_eq!(session.take_next_line(time).as_deref(), line);
+}
+
+/// Checks that the session shows a line from the robot to the user.
+#[track_caller]
+fn assert_shows(session: &mut Session, line: &str) {
+    assert_eq!(session.receive(line).as_deref(), Some(line));
+}
+
 #[test]
 fn a_users_line_is_sent_after_the_previous_answer() {
-    let now = Instant::now();
-    let mut session = Session::new(now, true, false);
-    assert_eq!(session.take_next_line(now).as_deref(), Some("status"));
+    let (now, mut session) = start(true, false);
+    assert_sends(&mut session, now, Some("status"));
     session.queue("walk");
     session.queue("speed 50");
-    assert_eq!(
-        session.take_next_line(now),
-        None,
-        "the status has not been answered"
-    );
-    assert_eq!(
-        session.receive(WALKING_STATUS),
-        None,
-        "the user did not ask for it"
-    );
-    assert_eq!(session.take_next_line(now).as_deref(), Some("walk"));
-    assert_eq!(session.receive("# fault: x").as_deref(), Some("# fault: x"));
-    assert_eq!(session.take_next_line(now), None);
-    assert_eq!(session.receive("ok walk").as_deref(), Some("ok walk"));
-    assert_eq!(session.take_next_line(now).as_deref(), Some("speed 50"));
-    assert_eq!(
-        session.receive("ok speed 50").as_deref(),
-        Some("ok speed 50")
-    );
+    assert_sends(&mut session, now, None); // the status has not been answered
+    assert_eq!(session.receive(WALKING_STATUS), None); // the user did not ask for it
+    assert_sends(&mut session, now, Some("walk"));
+    assert_shows(&mut session, "# fault: x");
+    assert_sends(&mut session, now, None);
+    assert_shows(&mut session, "ok walk");
+    assert_sends(&mut session, now, Some("speed 50"));
+    assert_shows(&mut session, "ok speed 50");
     assert!(session.is_idle());
-    assert_eq!(
-        session.take_next_line(now),
-        None,
-        "the next status is not due"
-    );
-    assert_eq!(
-        session.take_next_line(now + STATUS_INTERVAL).as_deref(),
-        Some("status")
-    );
+    assert_sends(&mut session, now, None); // the next status is not due
+    assert_sends(&mut session, now + STATUS_INTERVAL, Some("status"));
     assert!(session.status().is_some_and(Status::is_moving));
 }
 
 #[test]
 fn a_status_requested_by_the_user_is_shown() {
-    let now = Instant::now();
-    let mut session = Session::new(now, false, false);
+    let (now, mut session) = start(false, false);
     session.queue("status");
     session.take_next_line(now);
-    assert_eq!(
-        session.receive(WALKING_STATUS).as_deref(),
-        Some(WALKING_STATUS)
-    );
+    assert_shows(&mut session, WALKING_STATUS);
 }
 
 #[test]
 fn a_reset_cancels_the_request_and_repeats_watch() {
-    let now = Instant::now();
-    let mut session = Session::new(now, false, true);
-    assert_eq!(session.take_next_line(now).as_deref(), Some("watch 1"));
+    let (now, mut session) = start(false, true);
+    assert_sends(&mut session, now, Some("watch 1"));
     session.receive("ok watch 1");
     session.queue("walk");
     session.take_next_line(now);
     session.receive("# lizard 0.2.0");
-    assert_eq!(
-        session.take_next_line(now).as_deref(),
-        Some("watch 1"),
-        "poses are requested again"
-    );
+    assert_sends(&mut session, now, Some("watch 1")); // poses are requested again
 }
 
 #[test]
 fn poses_are_shown_only_if_the_user_asks_for_them() {
-    let now = Instant::now();
-    let mut session = Session::new(now, false, true);
+    let (now, mut session) = start(false, true);
     session.take_next_line(now);
     session.receive("ok watch 1");
     assert_eq!(session.receive("# t=1 pose=1,2,3,4"), None);
@@ -84,70 +79,53 @@ fn poses_are_shown_only_if_the_user_asks_for_them() {
 
 #[test]
 fn a_missing_answer_is_reported_once() {
-    let now = Instant::now();
-    let mut session = Session::new(now, false, false);
+    let (now, mut session) = start(false, false);
     session.queue("walk");
     session.queue("stop");
     session.take_next_line(now);
     assert_eq!(session.time_out_request(now), None);
     let later = now + ANSWER_TIMEOUT;
-    assert_eq!(
-        session.time_out_request(later).as_deref(),
-        Some("(no answer to `walk`)")
-    );
+    let message = session.time_out_request(later);
+    assert_eq!(message.as_deref(), Some("(no answer to `walk`)"));
     assert_eq!(session.time_out_request(later), None);
-    assert_eq!(session.take_next_line(later).as_deref(), Some("stop"));
+    assert_sends(&mut session, later, Some("stop"));
 }
 
 #[test]
 fn stop_waits_for_no_answer_and_drops_queued_lines() {
-    let now = Instant::now();
-    let mut session = Session::new(now, true, false);
-    assert_eq!(session.take_next_line(now).as_deref(), Some("status"));
+    let (now, mut session) = start(true, false);
+    assert_sends(&mut session, now, Some("status"));
     session.queue("walk");
     session.stop(now);
-    assert_eq!(session.take_next_line(now).as_deref(), Some("stop"));
-    assert_eq!(
-        session.receive(WALKING_STATUS),
-        None,
-        "the answer to the earlier status"
-    );
-    assert_eq!(session.receive("ok stop").as_deref(), Some("ok stop"));
+    assert_sends(&mut session, now, Some("stop"));
+    assert_eq!(session.receive(WALKING_STATUS), None); // the answer to the earlier status
+    assert_shows(&mut session, "ok stop");
     assert!(session.is_idle());
-    assert_eq!(
-        session.take_next_line(now + STATUS_INTERVAL).as_deref(),
-        Some("status")
-    );
+    assert_sends(&mut session, now + STATUS_INTERVAL, Some("status"));
 }
 
 #[test]
 fn stop_is_repeated_until_answered_and_late_answers_are_ignored() {
-    let now = Instant::now();
-    let mut session = Session::new(now, false, false);
+    let (now, mut session) = start(false, false);
     session.stop(now);
     let mut time = now;
     for _ in 0..9 {
-        assert_eq!(session.take_next_line(time).as_deref(), Some("stop"));
-        assert_eq!(session.take_next_line(time), None);
+        assert_sends(&mut session, time, Some("stop"));
+        assert_sends(&mut session, time, None);
         time += STOP_INTERVAL;
     }
-    let message = session
-        .time_out_request(time)
-        .expect("the user gets a message");
+    let message = session.time_out_request(time);
+    let message = message.expect("the user gets a message");
     assert!(message.contains("may still move"), "{message}");
     assert_eq!(session.time_out_request(time), None, "only once");
-    assert_eq!(session.receive("ok stop").as_deref(), Some("ok stop"));
+    assert_shows(&mut session, "ok stop");
     session.queue("walk");
-    assert_eq!(
-        session.take_next_line(time),
-        None,
-        "late answers may still arrive"
-    );
+    assert_sends(&mut session, time, None); // late answers may still arrive
     time += LATE_ANSWER_TIME;
-    assert_eq!(session.take_next_line(time).as_deref(), Some("walk"));
+    assert_sends(&mut session, time, Some("walk"));
     assert_eq!(session.receive("ok stop"), None, "it does not answer walk");
     assert!(!session.is_idle());
-    assert_eq!(session.receive("ok walk").as_deref(), Some("ok walk"));
+    assert_shows(&mut session, "ok walk");
     assert!(session.is_idle());
 }
 
@@ -157,34 +135,27 @@ fn a_refusal_of_stop_without_pulses_ends_the_repetition() {
         "err 7 the servos are resting; send stand first",
         "err 10 no robot in the flash",
     ] {
-        let now = Instant::now();
-        let mut session = Session::new(now, false, false);
+        let (now, mut session) = start(false, false);
         session.stop(now);
-        assert_eq!(session.take_next_line(now).as_deref(), Some("stop"));
-        assert_eq!(session.receive(refusal).as_deref(), Some(refusal));
+        assert_sends(&mut session, now, Some("stop"));
+        assert_shows(&mut session, refusal);
         session.queue("stand");
-        assert_eq!(
-            session.take_next_line(now + STOP_INTERVAL).as_deref(),
-            Some("stand")
-        );
+        assert_sends(&mut session, now + STOP_INTERVAL, Some("stand"));
     }
 }
 
 #[test]
 fn a_partial_refusal_does_not_answer_stop() {
-    let now = Instant::now();
-    let mut session = Session::new(now, false, false);
+    let (now, mut session) = start(false, false);
     session.stop(now);
     session.take_next_line(now);
     session.receive("err 7 the servos are resting; senok walk");
-    let next = session.take_next_line(now + STOP_INTERVAL);
-    assert_eq!(next.as_deref(), Some("stop"));
+    assert_sends(&mut session, now + STOP_INTERVAL, Some("stop"));
 }
 
 #[test]
 fn a_late_answer_does_not_count_for_the_next_line() {
-    let now = Instant::now();
-    let mut session = Session::new(now, false, false);
+    let (now, mut session) = start(false, false);
     session.queue("trim 1 2");
     session.queue("walk");
     session.take_next_line(now);
@@ -198,31 +169,26 @@ fn a_late_answer_does_not_count_for_the_next_line() {
 
 #[test]
 fn every_event_is_kept_in_order() {
-    let now = Instant::now();
-    let mut session = Session::new(now, true, false);
+    let (now, mut session) = start(true, false);
     session.queue("walk");
     session.take_next_line(now);
     session.receive("# note");
     session.receive("err 1 no");
     session.take_next_line(now);
     session.receive(WALKING_STATUS);
-    let events = session.take_events();
-    assert_eq!(
-        events,
-        [
-            Event::Sent("walk".to_owned()),
-            Event::Note("# note".to_owned()),
-            Event::Answer("err 1 no".to_owned()),
-            Event::Status(WALKING_STATUS.to_owned()),
-        ]
-    );
+    let events = [
+        Event::Sent("walk".to_owned()),
+        Event::Note("# note".to_owned()),
+        Event::Answer("err 1 no".to_owned()),
+        Event::Status(WALKING_STATUS.to_owned()),
+    ];
+    assert_eq!(session.take_events(), events);
     assert!(session.take_events().is_empty());
 }
 
 #[test]
 fn failed_lines_are_counted_once_and_the_first_is_named() {
-    let now = Instant::now();
-    let mut session = Session::new(now, false, false);
+    let (now, mut session) = start(false, false);
     let mut ask = |line: &str, answer: Option<&str>| {
         session.queue(line);
         session.take_next_line(now);
@@ -230,28 +196,20 @@ fn failed_lines_are_counted_once_and_the_first_is_named() {
             Some(answer) => drop(session.receive(answer)),
             None => drop(session.time_out_request(now + ANSWER_TIMEOUT)),
         }
-        session
-            .check_all_accepted()
-            .map_err(|failure| failure.to_string())
+        let result = session.check_all_accepted();
+        result.map_err(|failure| failure.to_string())
     };
     assert_eq!(ask("walk", Some("ok walk")), Ok(()));
-    let expected_message =
+    let refusal =
         |count| format!("the robot did not accept {count} lines, the first `fly`: err 1 no");
-    assert_eq!(
-        ask("fly", Some("err 1 no")),
-        Err(expected_message("1 of 2"))
-    );
-    assert_eq!(
-        ask("swim", Some("err 2 no")),
-        Err(expected_message("2 of 3"))
-    );
-    assert_eq!(ask("stop", None), Err(expected_message("3 of 4")));
+    assert_eq!(ask("fly", Some("err 1 no")), Err(refusal("1 of 2")));
+    assert_eq!(ask("swim", Some("err 2 no")), Err(refusal("2 of 3")));
+    assert_eq!(ask("stop", None), Err(refusal("3 of 4")));
     session.receive("err 3 late");
-    assert!(
-        session
-            .check_all_accepted()
-            .is_err_and(|failure| failure.to_string() == expected_message("3 of 4"))
-    );
+    let failure = session
+        .check_all_accepted()
+        .expect_err("lines were refused");
+    assert_eq!(failure.to_string(), refusal("3 of 4"));
 }
 
 /// Runs the session for `duration_ms` with the robot's answers from `answer_line`; returns the sent lines with their
@@ -289,8 +247,7 @@ fn exclude_status(lines: &[(u64, String)]) -> Vec<&str> {
 
 #[test]
 fn driving_sets_deadman_and_sends_lines_in_time() {
-    let now = Instant::now();
-    let mut session = Session::new(now, true, false).with_deadman();
+    let (now, mut session) = start_driving(true);
     session.queue("walk");
     let lines = run_session(&mut session, now, 5000, answer_as_robot);
     assert_eq!(exclude_status(&lines), ["cal", "deadman 700", "walk"]);
@@ -300,59 +257,42 @@ fn driving_sets_deadman_and_sends_lines_in_time() {
 
 #[test]
 fn deadman_is_restored_before_cal_and_set_again_afterwards() {
-    let now = Instant::now();
-    let mut session = Session::new(now, false, false).with_deadman();
+    let (now, mut session) = start_driving(false);
     for line in ["walk", "cal"] {
         session.queue(line);
     }
     let lines = run_session(&mut session, now, 500, answer_as_robot);
-    let expected = [
-        "cal",
-        "deadman 700",
-        "walk",
-        "deadman 700",
-        "cal",
-        "deadman 700",
-    ];
-    assert_eq!(exclude_status(&lines), expected);
+    let lines = exclude_status(&lines).join(", ");
+    assert_eq!(
+        lines,
+        "cal, deadman 700, walk, deadman 700, cal, deadman 700"
+    );
 }
 
 #[test]
 fn a_stopped_robot_gets_its_own_deadman_back() {
-    let now = Instant::now();
-    let mut session = Session::new(now, true, false).with_deadman();
+    let (now, mut session) = start_driving(true);
     let answer_with_own_deadman = |line: &str| answer_as_robot(line).replace("700", "2000");
     session.queue("walk");
     let lines = run_session(&mut session, now, 1000, answer_with_own_deadman);
     assert_eq!(exclude_status(&lines), ["cal", "deadman 901", "walk"]);
     session.queue("save");
-    let saved_lines = run_session(
-        &mut session,
-        now + Duration::from_secs(1),
-        500,
-        answer_with_own_deadman,
-    );
-    assert_eq!(
-        exclude_status(&saved_lines),
-        ["deadman 2000", "save", "deadman 901"]
-    );
-    session.stop(now + Duration::from_secs(2));
+    let now = now + Duration::from_secs(1);
+    let lines = run_session(&mut session, now, 500, answer_with_own_deadman);
+    let expected = ["deadman 2000", "save", "deadman 901"];
+    assert_eq!(exclude_status(&lines), expected);
+    let now = now + Duration::from_secs(1);
+    session.stop(now);
     let answer_as_stopped_robot =
         |line: &str| answer_with_own_deadman(line).replace("gait=walk", "gait=stop");
-    let lines = run_session(
-        &mut session,
-        now + Duration::from_secs(2),
-        2000,
-        answer_as_stopped_robot,
-    );
+    let lines = run_session(&mut session, now, 2000, answer_as_stopped_robot);
     assert_eq!(exclude_status(&lines), ["stop", "deadman 2000"]);
     assert_eq!(session.restore_deadman(), None);
 }
 
 #[test]
 fn deadman_left_by_an_earlier_run_is_restored_as_zero() {
-    let now = Instant::now();
-    let mut session = Session::new(now, true, false).with_deadman();
+    let (now, mut session) = start_driving(true);
     session.queue("arc left");
     let answer_with_driving_deadman = |line: &str| answer_as_robot(line).replace("700", "901");
     run_session(&mut session, now, 1000, answer_with_driving_deadman);
@@ -361,48 +301,36 @@ fn deadman_left_by_an_earlier_run_is_restored_as_zero() {
 
 #[test]
 fn a_script_sets_no_deadman() {
-    let now = Instant::now();
-    let mut session = Session::new(now, true, false);
+    let (now, mut session) = start(true, false);
     session.queue("walk");
-    assert_eq!(
-        exclude_status(&run_session(&mut session, now, 1000, answer_as_robot)),
-        ["walk"]
-    );
+    let lines = run_session(&mut session, now, 1000, answer_as_robot);
+    assert_eq!(exclude_status(&lines), ["walk"]);
 }
 
 #[test]
 fn a_gait_starts_only_after_deadman_is_confirmed() {
-    let now = Instant::now();
-    let mut session = Session::new(now, false, false).with_deadman();
+    let (now, mut session) = start_driving(false);
     session.queue("walk");
-    assert_eq!(session.take_next_line(now).as_deref(), Some("cal"));
+    assert_sends(&mut session, now, Some("cal"));
     session.receive("# deadman 0");
     session.receive("ok cal");
-    assert_eq!(session.take_next_line(now).as_deref(), Some("deadman 901"));
+    assert_sends(&mut session, now, Some("deadman 901"));
     let later = now + ANSWER_TIMEOUT;
-    let message = session
-        .time_out_request(later)
-        .expect("the user gets a message");
+    let message = session.time_out_request(later);
+    let message = message.expect("the user gets a message");
     assert!(message.contains("not sent"), "{message}");
-    assert_eq!(session.take_next_line(later), None, "walk is not sent");
-    assert!(
-        session.check_all_accepted().is_err(),
-        "the failure is counted"
-    );
+    assert_sends(&mut session, later, None); // walk is not sent
+    assert!(session.check_all_accepted().is_err()); // the failure is counted
     session.queue("walk");
-    assert_eq!(
-        session.take_next_line(later).as_deref(),
-        Some("deadman 901")
-    );
+    assert_sends(&mut session, later, Some("deadman 901"));
 }
 
 #[test]
 fn a_silent_robot_is_reported_once_until_it_answers() {
-    let mut now = Instant::now();
-    let mut session = Session::new(now, true, false);
+    let (mut now, mut session) = start(true, false);
     let mut ask = |is_answered: bool| {
         now += STATUS_INTERVAL;
-        assert_eq!(session.take_next_line(now).as_deref(), Some("status"));
+        assert_sends(&mut session, now, Some("status"));
         if is_answered {
             session.receive(WALKING_STATUS);
         }

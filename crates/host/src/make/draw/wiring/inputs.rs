@@ -56,16 +56,14 @@ fn draw_wire(
     let ends = [(BOARD_PINS_X, y), (COMPONENT_PINS_X, y)];
     let path = curve(&ends, colour, THIN_WIRE_WIDTH);
     let board_label = format!("UNO {board_pin}");
-    let terminals = [
-        format!("{component}-{board_pin}"),
-        format!("{component}-at-{board_pin}"),
-    ];
+    let board_terminal = format!("{component}-{board_pin}");
+    let component_terminal = format!("{component}-at-{board_pin}");
     group
         .add(path.set("id", format!("input-{component}-{board_pin}")))
         .add(text_end(&board_label, (BOARD_PINS_X - 10.0, y + 5.0), 13.0))
         .add(text_start(label, (COMPONENT_PINS_X + 40.0, y + 5.0), 13.0))
-        .add(draw_terminal(&terminals[0], ends[0], DARK))
-        .add(draw_terminal(&terminals[1], ends[1], DARK))
+        .add(draw_terminal(&board_terminal, ends[0], DARK))
+        .add(draw_terminal(&component_terminal, ends[1], DARK))
 }
 
 /// Draws a component's case with its first row at `y` and its last row `height` below.

@@ -51,29 +51,21 @@ const LINE_HEIGHT: f64 = 19.0;
 pub fn draw_wiring(robot: &Robot) -> String {
     let pins = robot.servos().map(|servo| servo.pin);
     let order = sort_servos(pins);
-    let analogue_count = order
-        .iter()
-        .filter(|servo| is_analogue(pins[**servo]))
-        .count();
+    let analogue_count = pins.into_iter().filter(|pin| is_analogue(*pin)).count();
     let mut used_pins = pins.to_vec();
     used_pins.extend(robot.firmware().rail_pin());
     used_pins.extend(robot.inputs().named_pins().map(|(_, pin)| pin));
     let remarks_y = UNO.lower_right_corner().1 + WIRE_SPACING * analogue_count as f64 + 50.0;
-    let barrel_jack = (
-        UNO.upper_left_corner.0 + BARREL_JACK_OFFSET.0,
-        UNO.upper_left_corner.1 + BARREL_JACK_OFFSET.1,
-    );
-    let mut group = Group::new();
+    let (x, y) = UNO.upper_left_corner;
+    let barrel_jack = (x + BARREL_JACK_OFFSET.0, y + BARREL_JACK_OFFSET.1);
+    let names = order.map(|servo| SERVO_NAMES[servo]);
     let mut wires = supply::route_wires(barrel_jack);
     wires.extend(strips::route_links());
-    wires.extend(strips::route_resistor_leads(
-        order.map(|servo| SERVO_NAMES[servo]),
-    ));
+    wires.extend(strips::route_resistor_leads(names));
     wires.extend(route_servo_and_board_wires(order, pins));
-    for wire in wires {
-        group = group.add(wire.draw());
-    }
-    group = group
+    let drawn_wires = wires.iter().map(Wire::draw);
+    let mut group = drawn_wires
+        .fold(Group::new(), Group::add)
         .add(supply::draw(barrel_jack))
         .add(strips::draw())
         .add(strips::draw_resistor_bodies())
@@ -142,20 +134,10 @@ fn route_servo_and_board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     }
     let start = strips::ground_hole(strips::LINKED_GROUND_WAY_COUNT - 1);
     let end = strips::signal_ground_hole();
-    let y = GROUND_WIRES_Y[0];
-    let path = vec![
-        start,
-        (GROUND_WIRE_X, start.1),
-        (GROUND_WIRE_X, y),
-        (end.0, y),
-        end,
-    ];
-    wires.push(Wire::new(
-        "signals-ground",
-        path,
-        BLACK_WIRE,
-        THICK_WIRE_WIDTH,
-    ));
+    let (x, y) = (GROUND_WIRE_X, GROUND_WIRES_Y[0]);
+    let path = vec![start, (x, start.1), (x, y), (end.0, y), end];
+    let ground_wire = Wire::new("signals-ground", path, BLACK_WIRE, THICK_WIRE_WIDTH);
+    wires.push(ground_wire);
     wires.extend(route_board_wires(order, pins));
     wires
 }
@@ -198,17 +180,14 @@ fn draw_servo(servo: usize, index: usize, pin: u8) -> Group {
     let case = rectangle(corner, SERVO_SIZE, colour).set("rx", 5);
     let pin_text = format!("to {}", pin_name(pin));
     let text_x = x + 28.0;
+    let position_point = (text_x, SERVO_TOP_Y + 28.0);
     let mut group = Group::new()
         .add(rectangle(corner, SERVO_SIZE, "white").set("rx", 5))
         .add(add_outline(case.set("fill-opacity", 0.18), colour, 2))
         .add(add_outline(circle(shaft, 15.0, "white"), colour, 2))
         .add(circle(shaft, 5.0, DARK))
         .add(text_middle(name, (x, SERVO_TOP_Y + 72.0), 20.0).set("font-weight", "bold"))
-        .add(text_start(
-            SERVO_POSITIONS[servo],
-            (text_x, SERVO_TOP_Y + 28.0),
-            12.0,
-        ))
+        .add(text_start(SERVO_POSITIONS[servo], position_point, 12.0))
         .add(text_start(&pin_text, (text_x, SERVO_TOP_Y + 46.0), 13.0));
     for (lead, point, colour) in [
         ("ground", (x + LEAD_OFFSET, SERVO_TOP_Y), BROWN),
@@ -249,10 +228,9 @@ fn list_remarks(robot: &Robot) -> Vec<String> {
         "The UNO gets its power from USB, or from the battery through its barrel jack.".into(),
     ];
     if let (Some(pin), Some(rail)) = (robot.firmware().rail_pin(), robot.supplies().rail) {
+        let (name, ratio) = (pin_name(pin), rail.divider_ratio);
         lines.push(format!(
-            "{} measures the +5 V strip, divided by {:.2}.",
-            pin_name(pin),
-            rail.divider_ratio
+            "{name} measures the +5 V strip, divided by {ratio:.2}."
         ));
     }
     lines

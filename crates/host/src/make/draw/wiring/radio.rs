@@ -42,21 +42,12 @@ pub fn draw(top: f64) -> Group {
         Wire::new(name, path, colour, THIN_WIRE_WIDTH)
     };
     let divider_path = vec![(DIVIDER_X, row_y(1)), (DIVIDER_X, row_y(2))];
+    let resistor_ends = [UPPER_RESISTOR_X - 14.0, UPPER_RESISTOR_X + 14.0];
     let wires = [
         row_wire("radio-d0", 0, [BOARD_PINS_X, DIODE_X - 12.0], ORANGE),
         row_wire("radio-txd", 0, [DIODE_X + 12.0, MODULE_PINS_X], ORANGE),
-        row_wire(
-            "radio-d1",
-            1,
-            [BOARD_PINS_X, UPPER_RESISTOR_X - 14.0],
-            ORANGE,
-        ),
-        row_wire(
-            "radio-rxd",
-            1,
-            [UPPER_RESISTOR_X + 14.0, MODULE_PINS_X],
-            ORANGE,
-        ),
+        row_wire("radio-d1", 1, [BOARD_PINS_X, resistor_ends[0]], ORANGE),
+        row_wire("radio-rxd", 1, [resistor_ends[1], MODULE_PINS_X], ORANGE),
         Wire::new("radio-2k", divider_path, DARK, LEAD_WIDTH),
         row_wire("radio-ground", 2, [BOARD_PINS_X, MODULE_PINS_X], BLACK_WIRE),
         row_wire("radio-vcc", 3, [BOARD_PINS_X, MODULE_PINS_X], RED),
@@ -72,6 +63,7 @@ pub fn draw(top: f64) -> Group {
     let upper_label_point = (UPPER_RESISTOR_X, row_y(1) - 10.0);
     let lower_resistor = (DIVIDER_X, (row_y(1) + row_y(2)) / 2.0);
     let lower_label_point = (DIVIDER_X + 12.0, lower_resistor.1 + 5.0);
+    let diode_label_point = (DIODE_X, row_y(0) - 13.0);
     group = group
         .add(draw_resistor((UPPER_RESISTOR_X, row_y(1)), (28.0, 10.0)))
         .add(text_middle("1 k\u{3a9}", upper_label_point, 13.0))
@@ -79,17 +71,10 @@ pub fn draw(top: f64) -> Group {
         .add(text_start("2 k\u{3a9}", lower_label_point, 13.0))
         .add(circle((DIVIDER_X, row_y(1)), 4.5, ORANGE))
         .add(circle((DIVIDER_X, row_y(2)), 4.5, BLACK_WIRE))
-        .add(text_middle(
-            "1N4148 or BAT85",
-            (DIODE_X, row_y(0) - 13.0),
-            13.0,
-        ));
+        .add(text_middle("1N4148 or BAT85", diode_label_point, 13.0));
     let module = rectangle((MODULE_PINS_X, top + 42.0), (150.0, 160.0), "#e6eef7").set("rx", 5);
-    group = group.add(add_outline(module, DARK, 1.5)).add(text_end(
-        "HM-10, HC-05",
-        (MODULE_PINS_X + 142.0, top + 126.0),
-        13.0,
-    ));
+    let module_text = text_end("HM-10, HC-05", (MODULE_PINS_X + 142.0, top + 126.0), 13.0);
+    group = group.add(add_outline(module, DARK, 1.5)).add(module_text);
     for (pin, module_pin, offset) in ROWS {
         let y = top + offset;
         let [board_label, terminal, module_terminal] = [

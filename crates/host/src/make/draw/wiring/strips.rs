@@ -37,18 +37,14 @@ const JUMPER_OFFSET: f64 = 5.0;
 
 /// Returns the wire hole of a way in the ground strip; ways count from 0.
 pub fn ground_hole(way: usize) -> (f64, f64) {
-    (
-        FIRST_GROUND_HOLE.0,
-        FIRST_GROUND_HOLE.1 + PITCH * way as f64,
-    )
+    let (x, first_y) = FIRST_GROUND_HOLE;
+    (x, first_y + PITCH * way as f64)
 }
 
 /// Returns the wire hole of a way in the +5 V strip; ways count from 0.
 pub fn supply_hole(way: usize) -> (f64, f64) {
-    (
-        FIRST_SUPPLY_HOLE.0,
-        FIRST_SUPPLY_HOLE.1 + PITCH * way as f64,
-    )
+    let (x, first_y) = FIRST_SUPPLY_HOLE;
+    (x, first_y + PITCH * way as f64)
 }
 
 /// Returns the index of a servo's way in the signal strip; `index` counts the servos from left to right. The middle way
@@ -96,20 +92,12 @@ pub fn route_links() -> Vec<Wire> {
         Wire::new(name, path, colour, THICK_WIRE_WIDTH - 1.0)
     };
     let ground_links = (1..LINKED_GROUND_WAY_COUNT).map(|way| {
-        link_wire(
-            format!("link-ground-{way}"),
-            ground_hole(way - 1),
-            1.0,
-            BLACK_WIRE,
-        )
+        let name = format!("link-ground-{way}");
+        link_wire(name, ground_hole(way - 1), 1.0, BLACK_WIRE)
     });
     let supply_links = (1..SUPPLY_WAY_COUNT).map(|way| {
-        link_wire(
-            format!("link-supply-{way}"),
-            supply_hole(way - 1),
-            -1.0,
-            RED,
-        )
+        let name = format!("link-supply-{way}");
+        link_wire(name, supply_hole(way - 1), -1.0, RED)
     });
     ground_links.chain(supply_links).collect()
 }
@@ -125,16 +113,11 @@ pub fn route_resistor_leads(names: [&str; 4]) -> Vec<Wire> {
             2 => (11.0, 17.0),
             _ => (5.0, 35.0),
         };
-        let y = SIGNAL_EDGES_Y.1;
+        let (y, far_y) = (SIGNAL_EDGES_Y.1, SIGNAL_EDGES_Y.1 + reach);
         let side = if index < 2 { 1.0 } else { -1.0 };
         let start_x = signal_way_x(servo_way(index)) + side * JUMPER_OFFSET;
         let end_x = signal_way_x(SIGNAL_GROUND_WAY) + ground_offset;
-        let path = vec![
-            (start_x, y),
-            (start_x, y + reach),
-            (end_x, y + reach),
-            (end_x, y),
-        ];
+        let path = vec![(start_x, y), (start_x, far_y), (end_x, far_y), (end_x, y)];
         Wire::new(format!("resistor-{name}"), path, DARK, LEAD_WIDTH)
     };
     names.into_iter().enumerate().map(resistor_wire).collect()
@@ -192,10 +175,8 @@ pub fn draw() -> Group {
         }
     }
     let (top, bottom) = SIGNAL_EDGES_Y;
-    group = group.add(draw_case(
-        (FIRST_SIGNAL_WAY_X - SIGNAL_WAY_PITCH / 2.0, top),
-        (5.0 * SIGNAL_WAY_PITCH, bottom - top),
-    ));
+    let corner = (FIRST_SIGNAL_WAY_X - SIGNAL_WAY_PITCH / 2.0, top);
+    group = group.add(draw_case(corner, (5.0 * SIGNAL_WAY_PITCH, bottom - top)));
     for way in 0..5 {
         let x = signal_way_x(way);
         group = draw_way(group, (x, top + 3.0), (x, bottom - 3.0), way + 1);

@@ -84,11 +84,8 @@ pub fn route_wires(barrel_jack: Point) -> Vec<Wire> {
         Wire::new(format!("{part}-ground"), path, BLACK_WIRE, width)
     };
     let ground_wire = |part: &str, start: Point, x: f64| {
-        black_wire(
-            part,
-            route_by(start, x, part_ground_hole(part)),
-            THICK_WIRE_WIDTH,
-        )
+        let path = route_by(start, x, part_ground_hole(part));
+        black_wire(part, path, THICK_WIRE_WIDTH)
     };
     let plug_ground_path = route_by(part_ground_hole("round-plug"), minus_x, plug_minus);
     let mut plug_plus_path = route_by(way_plus, 268.0, (plus_x, 138.0));
@@ -96,15 +93,12 @@ pub fn route_wires(barrel_jack: Point) -> Vec<Wire> {
     let [upper_lead, lower_lead] = capacitor_leads();
     let capacitor_ground_path = vec![upper_lead, part_ground_hole("capacitor")];
     let converter_supply_path = route_by((converter_left, PLUS_Y), 106.0, supply_hole(0));
+    let converter_input_xs = [way_left, converter_right];
     let mut wires = vec![
         red_line("battery-fuse", [BATTERY_LEFT_X, fuse_right], PLUS_Y),
         red_line("fuse-switch", [fuse_left, switch_right], PLUS_Y),
         red_line("switch-way", [switch_left, way_right], PLUS_Y),
-        red_line(
-            "way-converter",
-            [way_left, converter_right],
-            CONVERTER_IN_PLUS_Y,
-        ),
+        red_line("way-converter", converter_input_xs, CONVERTER_IN_PLUS_Y),
         ground_wire("battery", (BATTERY_LEFT_X, BATTERY_MINUS_Y), 546.0),
         ground_wire("converter-in", (converter_right, CONVERTER_MINUS_Y), 252.0),
         ground_wire("converter-out", (converter_left, CONVERTER_MINUS_Y), 119.0),
@@ -114,10 +108,8 @@ pub fn route_wires(barrel_jack: Point) -> Vec<Wire> {
         black_wire("capacitor", capacitor_ground_path, THICK_WIRE_WIDTH),
         red_wire("capacitor-supply", vec![lower_lead, supply_hole(1)]),
     ];
-    let contacts = BALANCE_CONTACTS_Y
-        .into_iter()
-        .zip([RED, GREY_WIRE, BLACK_WIRE]);
-    for (number, (y, colour)) in (1..).zip(contacts) {
+    let colours = [RED, GREY_WIRE, BLACK_WIRE];
+    for (number, (y, colour)) in (1..).zip(BALANCE_CONTACTS_Y.into_iter().zip(colours)) {
         let path = vec![(BATTERY_LEFT_X, y), (ALARM_RIGHT_X, y)];
         let name = format!("balance-{number}");
         wires.push(Wire::new(name, path, colour, LEAD_WIDTH));
@@ -145,10 +137,8 @@ fn draw_case(group: Group, corner: Point, size: Point, fill: &str) -> Group {
 
 /// Draws all parts of the supply; `barrel_jack` is the centre of the board's barrel jack.
 pub fn draw(barrel_jack: Point) -> Group {
-    let mut group = draw_battery(Group::new());
-    group = draw_alarm(group);
-    group = draw_fuse_switch_and_way(group);
-    group = draw_converter(group);
+    let mut group = draw_alarm(draw_battery(Group::new()));
+    group = draw_converter(draw_fuse_switch_and_way(group));
     let [upper_lead, lower_lead] = capacitor_leads();
     let corner = (CAPACITOR_X - 9.0, upper_lead.1 + 5.0);
     let size = (18.0, lower_lead.1 - upper_lead.1 - 10.0);
@@ -180,11 +170,8 @@ fn draw_battery(group: Group) -> Group {
     let cell_middle_x = CELLS_LEFT_X + 41.0;
     for (number, top) in [(2, 30.0), (1, 82.0)] {
         let label = format!("cell {number}: 3.7 V");
-        group = draw_case(group, (CELLS_LEFT_X, top), (82.0, 38.0), "white").add(text_middle(
-            &label,
-            (cell_middle_x, top + 23.0),
-            12.0,
-        ));
+        let label_text = text_middle(&label, (cell_middle_x, top + 23.0), 12.0);
+        group = draw_case(group, (CELLS_LEFT_X, top), (82.0, 38.0), "white").add(label_text);
     }
     let line_to = |x: f64, y: f64| line((BATTERY_LEFT_X, y), (x, y), DARK, 1.6);
     let cell_link = line((cell_middle_x, 68.0), (cell_middle_x, 82.0), DARK, 1.6);
@@ -213,15 +200,11 @@ fn draw_battery(group: Group) -> Group {
 }
 
 fn draw_alarm(group: Group) -> Group {
-    let (label_x, note_x) = (ALARM_RIGHT_X - 84.0, ALARM_RIGHT_X + 26.0);
+    let (label_x, note_point) = (ALARM_RIGHT_X - 84.0, (ALARM_RIGHT_X + 26.0, 113.0));
     let mut group = draw_case(group, (ALARM_RIGHT_X - 92.0, 58.0), (92.0, 38.0), "#e6eef7")
         .add(text_start("low-voltage", (label_x, 74.0), 13.0))
         .add(text_start("alarm", (label_x, 90.0), 13.0))
-        .add(text_end(
-            "balance plug, its own wires",
-            (note_x, 113.0),
-            12.0,
-        ));
+        .add(text_end("balance plug, its own wires", note_point, 12.0));
     for (number, y) in (1..).zip(BALANCE_CONTACTS_Y) {
         let name = format!("alarm-{number}");
         group = group.add(draw_terminal(&name, (ALARM_RIGHT_X, y), DARK));
@@ -230,8 +213,7 @@ fn draw_alarm(group: Group) -> Group {
 }
 
 /// Draws the fuse, the switch and the single way.
-fn draw_fuse_switch_and_way(group: Group) -> Group {
-    let mut group = group;
+fn draw_fuse_switch_and_way(mut group: Group) -> Group {
     for ([left, right], fill) in [
         (FUSE_CONTACTS_X, "#fde9e9"),
         (SWITCH_CONTACTS_X, "#e9f3e9"),
@@ -240,14 +222,12 @@ fn draw_fuse_switch_and_way(group: Group) -> Group {
         group = draw_case(group, (left, PLUS_Y - 13.0), (right - left, 26.0), fill);
     }
     let middle = |ends: [f64; 2]| (ends[0] + ends[1]) / 2.0;
-    let switch_lever = [
-        (SWITCH_CONTACTS_X[0] + 16.0, PLUS_Y + 4.0),
-        (SWITCH_CONTACTS_X[1] - 18.0, PLUS_Y - 8.0),
-    ];
+    let lever_start = (SWITCH_CONTACTS_X[0] + 16.0, PLUS_Y + 4.0);
+    let lever_end = (SWITCH_CONTACTS_X[1] - 18.0, PLUS_Y - 8.0);
     let [way_left, way_right] = SINGLE_WAY_HOLES_X.map(|x| (x, PLUS_Y));
     group = group
         .add(line(way_left, way_right, "#c9b26b", 9.0))
-        .add(line(switch_lever[0], switch_lever[1], DARK, 2.5));
+        .add(line(lever_start, lever_end, DARK, 2.5));
     let fuse_rating = format!("{FUSE_RATING_A} A");
     let switch_label = format!("switch, {MIN_SWITCH_RATING_A} A");
     for (label, ends, y, size) in [
@@ -278,15 +258,12 @@ fn draw_converter(group: Group) -> Group {
     let (left_label_x, right_label_x) = (left + 8.0, right - 8.0);
     let minus_label_y = label_y(CONVERTER_MINUS_Y);
     let in_plus_label_point = (right_label_x, label_y(CONVERTER_IN_PLUS_Y));
+    let out_minus_label_point = (left_label_x, minus_label_y);
     let mut group = draw_case(group, (left, 20.0), (right - left, 102.0), "#e3f0e3")
         .add(text_middle("converter", (middle_x, 66.0), 14.0))
         .add(text_middle("to 5.0 V, 3 A", (middle_x, 84.0), 14.0))
         .add(text_start("OUT+", (left_label_x, label_y(PLUS_Y)), 12.0))
-        .add(text_start(
-            "OUT\u{2212}",
-            (left_label_x, minus_label_y),
-            12.0,
-        ))
+        .add(text_start("OUT\u{2212}", out_minus_label_point, 12.0))
         .add(text_end("IN+", in_plus_label_point, 12.0))
         .add(text_end("IN\u{2212}", (right_label_x, minus_label_y), 12.0));
     for (name, point, colour) in [

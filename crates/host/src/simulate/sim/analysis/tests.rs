@@ -27,20 +27,12 @@ fn an_angle_survives_the_conversion_to_a_pulse_and_back() {
     let robot = built_in_robot("paper");
     let pose = [120.0, 45.0, 300.0, 230.0];
     let log = create_frames(&robot, 2, |_| pose);
-    let (robot, log) = (&robot, &log);
-    let first_frame = Run { robot, log }
-        .servo_frames()
-        .next()
-        .expect("the log has two frames");
+    let first_frame = Run::new(&robot, &log).servo_frames().next();
+    let first_frame = first_frame.expect("the log has two frames");
     let angles = first_frame.angles.expect("all four servos have a pulse");
-    for i in 0..4 {
+    for (angle, expected) in angles.into_iter().zip(pose) {
         // A width is rounded by at most half a cycle of 62.5 ns; a degree is 10 us.
-        assert!(
-            (angles[i] - pose[i]).abs() <= 0.0032,
-            "{} {}",
-            angles[i],
-            pose[i]
-        );
+        assert!((angle - expected).abs() <= 0.0032, "{angle} {expected}");
     }
     assert_eq!(first_frame.seconds, 1.0);
 }
@@ -54,28 +46,16 @@ fn paths_of_walk_back_and_left_match_their_predictions() {
         ("back", -34.16, 0.0),
     ] {
         let frames = create_gait_frames(&robot, gait, 51);
-        let span = Span {
-            command: gait.to_owned(),
-            start_s: 0.0,
-            end_s: 10.0,
-        };
-        let run = Run {
-            robot: &robot,
-            log: &frames,
-        };
-        let paths = compute_command_paths(run, &[span]);
+        let span = Span::new(gait, 0.0, 10.0);
+        let paths = compute_command_paths(Run::new(&robot, &frames), &[span]);
         let total_path = paths.last().expect("the complete run has a path");
-        let compute_error =
-            |actual: Option<f64>, expected: f64| actual.map(|actual| (actual - expected).abs());
-        assert!(
-            compute_error(total_path.forward, forward) < Some(0.35),
-            "{gait}: {total_path:?}"
-        );
-        assert!(
-            compute_error(total_path.turn, turn) < Some(0.2),
-            "{gait}: {total_path:?}"
-        );
-        assert!(total_path.forward.is_some() && total_path.turn.is_some());
+        let is_close = |actual: Option<f64>, expected: f64, tolerance: f64| {
+            actual.is_some_and(|actual| (actual - expected).abs() < tolerance)
+        };
+        let is_forward_close = is_close(total_path.forward, forward, 0.35);
+        assert!(is_forward_close, "{gait}: {total_path:?}");
+        let is_turn_close = is_close(total_path.turn, turn, 0.2);
+        assert!(is_turn_close, "{gait}: {total_path:?}");
     }
 }
 
@@ -83,16 +63,8 @@ fn paths_of_walk_back_and_left_match_their_predictions() {
 fn a_path_that_depends_on_a_tie_is_undetermined() {
     let robot = built_in_robot("paper");
     let log = create_gait_frames(&robot, "look", 100);
-    let run = Run {
-        robot: &robot,
-        log: &log,
-    };
-    let span = |command: &str, start_s, end_s| Span {
-        command: command.to_owned(),
-        start_s,
-        end_s,
-    };
-    let paths = compute_command_paths(run, &[span("stand", 0.0, 1.0), span("look", 1.0, 3.0)]);
+    let spans = [Span::new("stand", 0.0, 1.0), Span::new("look", 1.0, 3.0)];
+    let paths = compute_command_paths(Run::new(&robot, &log), &spans);
     let forward: Vec<bool> = paths.iter().map(|path| path.forward.is_some()).collect();
     assert_eq!(forward, [true, false, false], "{paths:?}");
 }
@@ -102,20 +74,11 @@ fn paths_of_two_commands_compose_to_the_path_of_the_run() {
     let robot = built_in_robot("paper");
     for gait in ["arc-left", "right"] {
         let log = create_gait_frames(&robot, gait, 400);
-        let run = Run {
-            robot: &robot,
-            log: &log,
-        };
-        let span = |start_s, end_s| Span {
-            command: gait.to_owned(),
-            start_s,
-            end_s,
-        };
-        let paths = compute_command_paths(run, &[span(0.0, 3.0), span(3.0, 20.0)]);
-        let total_travel = robot.ground().travel(
-            run.servo_frames()
-                .filter_map(|servo_frame| servo_frame.sweeps),
-        );
+        let run = Run::new(&robot, &log);
+        let spans = [Span::new(gait, 0.0, 3.0), Span::new(gait, 3.0, 20.0)];
+        let paths = compute_command_paths(run, &spans);
+        let sweeps = run.servo_frames().filter_map(|frame| frame.sweeps);
+        let total_travel = robot.ground().travel(sweeps);
         let [first, second, total_path] = &paths[..] else {
             panic!("expected the paths of two commands and of the run: {paths:?}")
         };
@@ -127,10 +90,8 @@ fn paths_of_two_commands_compose_to_the_path_of_the_run() {
         let distance_between = |a: Travel, b: Travel| {
             (a.forward - b.forward).hypot(a.left - b.left) + (a.turn - b.turn).abs()
         };
-        assert!(
-            distance_between(to_travel(total_path), total_travel) < 1e-6,
-            "{total_path:?} {total_travel:?}"
-        );
+        let distance = distance_between(to_travel(total_path), total_travel);
+        assert!(distance < 1e-6, "{total_path:?} {total_travel:?}");
         let combined = compose_travel(to_travel(first), to_travel(second));
         assert!(distance_between(to_travel(total_path), combined) < 1e-6);
     }
@@ -146,30 +107,22 @@ fn servo_reports_have_pulse_widths_slew_rates_and_errors() {
     });
     frames.max_period_error[1] = 7;
     frames.widths[1][2] -= 3;
-    let commands: Vec<[u16; 4]> = (0..3)
-        .map(|n| [24_000 + 320 * n, 24_000, 24_000, 24_000])
-        .collect();
-    let (robot, log) = (&robot, &frames);
-    let reports = compute_servo_reports(Run { robot, log }, Some(&commands));
-    assert_eq!(
-        (reports[0].pulse_count, reports[0].min_us, reports[0].max_us),
-        (3, 1500.0, 1540.0)
-    );
-    assert!((reports[0].slew - 100.0).abs() < 0.5);
-    let errors: Vec<_> = reports
+    let commands = [0, 320, 640].map(|extra| [24_000 + extra, 24_000, 24_000, 24_000]);
+    let reports = compute_servo_reports(Run::new(&robot, &frames), Some(&commands));
+    let a1 = &reports[0];
+    assert_eq!((a1.pulse_count, a1.min_us, a1.max_us), (3, 1500.0, 1540.0));
+    assert!((a1.slew - 100.0).abs() < 0.5);
+    let errors = reports
         .iter()
-        .map(|report| (report.width_error, report.period_error))
-        .collect();
-    assert_eq!(
-        errors,
-        [(Some(0), 0), (Some(0), 7), (Some(3), 0), (Some(0), 0)]
-    );
+        .map(|row| (row.width_error, row.period_error));
+    let expected = [(Some(0), 0), (Some(0), 7), (Some(3), 0), (Some(0), 0)];
+    assert_eq!(errors.collect::<Vec<_>>(), expected);
 }
 
 #[test]
 fn a_pose_near_a_singularity_is_a_violation() {
     let robot = built_in_robot("paper");
-    let check_log = |log: &FrameLog| check_safety(Run { robot: &robot, log });
+    let check_log = |log: &FrameLog| check_safety(Run::new(&robot, log));
     let walk_safety = check_log(&create_gait_frames(&robot, "walk", 50));
     assert_eq!(walk_safety.violation_count, 0);
     assert!(walk_safety.min_margin.is_some_and(|min| min.value > 0.3));

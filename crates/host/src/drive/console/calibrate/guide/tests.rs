@@ -12,6 +12,12 @@ fn press_keys<P: Read + Write>(guide: &mut Guide<'_, P>, keys: &[Key]) -> bool {
     is_done
 }
 
+/// Checks that the title of the current step contains `part`.
+#[track_caller]
+fn assert_title<P: Read + Write>(guide: &Guide<'_, P>, part: &str) {
+    assert!(guide.view().title.contains(part), "{:?}", guide.view());
+}
+
 const CONFIRM_SIGN_KEYS: [Key; 2] = [Key::Act, Key::Yes];
 
 #[test]
@@ -21,57 +27,32 @@ fn a_complete_calibration_saves_signs_and_trims() {
     let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &[Key::Next, Key::Next]);
     press_keys(&mut guide, &CONFIRM_SIGN_KEYS);
-    assert!(
-        guide
-            .view()
-            .title
-            .contains("which way does A2, front right turn")
-    );
+    assert_title(&guide, "which way does A2, front right turn");
     press_keys(&mut guide, &[Key::Act, Key::No, Key::Act, Key::Yes]);
-    press_keys(&mut guide, &CONFIRM_SIGN_KEYS);
-    press_keys(&mut guide, &CONFIRM_SIGN_KEYS);
-    assert!(
-        guide.view().title.contains("straighten A1"),
-        "{:?}",
-        guide.view()
-    );
-    press_keys(
-        &mut guide,
-        &[
-            Key::LeftRight(0.5),
-            Key::LeftRight(0.5),
-            Key::UpDown(-0.1),
-            Key::Next,
-        ],
-    );
-    press_keys(
-        &mut guide,
-        &[Key::LeftRight(-0.5), Key::Next, Key::Next, Key::Next],
-    );
-    assert!(guide.view().title.contains("scales and limits"));
+    press_keys(&mut guide, &CONFIRM_SIGN_KEYS.repeat(2));
+    assert_title(&guide, "straighten A1");
+    press_keys(&mut guide, &[Key::LeftRight(0.5); 2]);
+    press_keys(&mut guide, &[Key::UpDown(-0.1), Key::Next]);
+    press_keys(&mut guide, &[Key::LeftRight(-0.5)]);
+    press_keys(&mut guide, &[Key::Next; 3]);
+    assert_title(&guide, "scales and limits");
     press_keys(&mut guide, &[Key::Next, Key::Back, Key::Next, Key::Act]);
     guide.read_messages().expect("the robot answers");
     assert!(guide.view().instructions[1].starts_with("The robot walks"));
     press_keys(&mut guide, &[Key::Next]);
-    assert!(
-        guide.view().instructions.contains(&format!(
-            "    A1, front left  sign +  trim +0.90  limits {min:.2} to {max:.2}  scale 10.00"
-        )),
-        "{:?}",
-        guide.view()
-    );
+    let settings_line =
+        format!("    A1, front left  sign +  trim +0.90  limits {min:.2} to {max:.2}  scale 10.00");
+    let view = guide.view();
+    assert!(view.instructions.contains(&settings_line), "{view:?}");
     // The space bar has no effect in this step.
     press_keys(&mut guide, &[Key::Act]);
     assert!(!guide.is_saved());
     assert!(!press_keys(&mut guide, &[Key::Next]));
     assert!(guide.is_saved(), "{:?}", guide.view());
     press_keys(&mut guide, &[Key::Back]);
-    assert!(
-        press_keys(&mut guide, &[Key::Leave]),
-        "the guide is finished"
-    );
-    let after_leaving = read_calibration(&mut link);
-    assert_eq!(after_leaving.servos[0].trim, 0.9);
+    let is_finished = press_keys(&mut guide, &[Key::Leave]);
+    assert!(is_finished, "the guide is finished");
+    assert_eq!(read_calibration(&mut link).servos[0].trim, 0.9);
     link.command("factory").expect("the line is accepted");
     link.command("load").expect("the calibration was saved");
     let loaded = read_calibration(&mut link);
@@ -83,20 +64,11 @@ fn a_complete_calibration_saves_signs_and_trims() {
 
 #[test]
 fn cancelling_restores_the_calibration_and_saves_nothing() {
-    let keys: Vec<Key> = [Key::Next, Key::Next]
-        .into_iter()
-        .chain([Key::Act, Key::No, Key::Act, Key::Yes])
-        .chain(CONFIRM_SIGN_KEYS.repeat(3))
-        .chain([
-            Key::LeftRight(4.0),
-            Key::Next,
-            Key::Next,
-            Key::Next,
-            Key::Next,
-            Key::Next,
-            Key::Act,
-        ])
-        .collect();
+    let mut keys = vec![Key::Next, Key::Next, Key::Act, Key::No, Key::Act, Key::Yes];
+    keys.extend(CONFIRM_SIGN_KEYS.repeat(3));
+    keys.push(Key::LeftRight(4.0));
+    keys.extend([Key::Next; 5]);
+    keys.push(Key::Act);
     for length in [1, 4, 13, 19] {
         let mut link = connect_paper_robot();
         link.command("trim 1 2.50").expect("the line is accepted");
@@ -105,8 +77,7 @@ fn cancelling_restores_the_calibration_and_saves_nothing() {
         let mut guide = Guide::new(&mut link).expect("the robot answers");
         press_keys(&mut guide, &keys[..length]);
         assert!(press_keys(&mut guide, &[Key::Leave]), "after {length} keys");
-        let after = read_calibration(&mut link);
-        assert_eq!(after, before, "after {length} keys");
+        assert_eq!(read_calibration(&mut link), before, "after {length} keys");
         let status = link.ask("status").expect("the robot answers").answer;
         assert!(status.starts_with("ok gait=stand"), "{status}");
         let load = link.ask("load").expect("the robot answers").answer;
@@ -121,11 +92,8 @@ fn reversing_a_sign_keeps_the_neutral_pulse() {
     let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &[Key::Next, Key::Next, Key::Act, Key::No]);
     assert_eq!(guide.robot.calibration().servos[0].trim, -3.0);
-    let settings = read_calibration(&mut link);
-    assert_eq!(
-        (settings.servos[0].trim, settings.servos[0].dir),
-        (-3.0, '-')
-    );
+    let settings = read_calibration(&mut link).servos[0];
+    assert_eq!((settings.trim, settings.dir), (-3.0, '-'));
 }
 
 #[test]
@@ -135,13 +103,11 @@ fn the_sign_step_needs_a_movement_of_one_servo_before_the_answer() {
     press_keys(&mut guide, &[Key::Next, Key::Next, Key::Yes]);
     assert!(guide.view().message.contains("space bar first"));
     press_keys(&mut guide, &[Key::Next]);
-    assert!(guide.view().title.contains("A1"), "no step is skipped");
+    assert_title(&guide, "A1"); // no step is skipped
     press_keys(&mut guide, &[Key::Act]);
     let status = link.ask("status").expect("the robot answers").answer;
-    assert!(
-        status.contains("pose=148.59,41.41,318.59,221.41"),
-        "{status}"
-    );
+    let pose = "pose=148.59,41.41,318.59,221.41";
+    assert!(status.contains(pose), "{status}");
 }
 
 #[test]
@@ -179,22 +145,15 @@ fn a_refused_trim_is_shown_and_changes_nothing() {
     let mut link = connect_paper_robot();
     let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &[Key::Back, Key::Next, Key::Next]);
-    for _ in 0..4 {
-        press_keys(&mut guide, &CONFIRM_SIGN_KEYS);
-    }
+    press_keys(&mut guide, &CONFIRM_SIGN_KEYS.repeat(4));
     press_keys(&mut guide, &[Key::LeftRight(19.9), Key::LeftRight(0.5)]);
     let view = guide.view();
-    assert!(
-        view.message
-            .starts_with("The robot refuses `trim 1 20.40`: 3 trim must")
-    );
-    assert!(
-        view.instructions
-            .contains(&"    trim +19.90 deg".to_owned()),
-        "{view:?}"
-    );
+    let refusal = "The robot refuses `trim 1 20.40`: 3 trim must";
+    assert!(view.message.starts_with(refusal), "{view:?}");
+    let trim_line = "    trim +19.90 deg".to_owned();
+    assert!(view.instructions.contains(&trim_line), "{view:?}");
     press_keys(&mut guide, &[Key::Back]);
-    assert!(guide.view().title.contains("which way does A4"));
+    assert_title(&guide, "which way does A4");
 }
 
 /// Returns the keys from the first step to the scale of A1.
@@ -212,12 +171,7 @@ fn a_scale_correction_keeps_the_neutral_pulse() {
     link.command("trim 1 2.00").expect("the line is accepted");
     let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &keys_to_first_scale());
-    assert!(
-        guide
-            .view()
-            .title
-            .contains("how far does A1, front left turn")
-    );
+    assert_title(&guide, "how far does A1, front left turn");
     press_keys(&mut guide, &[Key::LeftRight(0.5)]);
     assert!(guide.view().message.contains("space bar first"));
     press_keys(&mut guide, &[Key::Act]);
@@ -225,17 +179,12 @@ fn a_scale_correction_keeps_the_neutral_pulse() {
     assert!(moved_degrees.abs() >= 20.0, "{moved_degrees}");
     // Makes four corrections of half a degree each.
     press_keys(&mut guide, &[Key::LeftRight(0.5); 4]);
-    let expected_scale = 10.0 * (1.0 + 0.5 / moved_degrees).powi(4);
+    let expected = 10.0 * (1.0 + 0.5 / moved_degrees).powi(4);
     let settings = read_calibration(&mut link).servos[0];
-    assert!(
-        (settings.scale - expected_scale).abs() < 0.03,
-        "{settings:?}"
-    );
-    // The neutral pulse is unchanged: its offset is trim times scale.
-    assert!(
-        (settings.trim * settings.scale - 20.0).abs() < 0.2,
-        "{settings:?}"
-    );
+    assert!((settings.scale - expected).abs() < 0.03, "{settings:?}");
+    // The neutral pulse is unchanged.
+    let pulse_offset = settings.trim * settings.scale;
+    assert!((pulse_offset - 20.0).abs() < 0.2, "{settings:?}");
 }
 
 #[test]
@@ -245,33 +194,17 @@ fn limits_move_at_most_to_the_travel_that_the_gaits_need() {
     let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &keys_to_first_scale());
     press_keys(&mut guide, &[Key::Next; 4]);
-    let title = guide.view().title;
-    assert!(title.contains("how far may A1, front left turn"), "{title}");
+    assert_title(&guide, "how far may A1, front left turn");
     // With Shift, an arrow stands for 0.1 degrees, but moves the same limit by 1 degree.
-    press_keys(
-        &mut guide,
-        &[
-            Key::LeftRight(0.5),
-            Key::LeftRight(0.1),
-            Key::LeftRight(0.5),
-        ],
-    );
+    press_keys(&mut guide, &[0.5, 0.1, 0.5].map(Key::LeftRight));
     press_keys(&mut guide, &[Key::UpDown(-0.1); 2]);
-    let settings = guide.robot.calibration().servos[0];
-    assert_eq!(
-        settings.limit,
-        [before.limit[0] + 3.0, before.limit[1] - 2.0]
-    );
+    let limit = guide.robot.calibration().servos[0].limit;
+    assert_eq!(limit, [before.limit[0] + 3.0, before.limit[1] - 2.0]);
     press_keys(&mut guide, &[Key::UpDown(-0.1); 90]);
     let view = guide.view();
     assert!(view.message.contains("refuses `limit 1"), "{view:?}");
-    let settings = read_calibration(&mut link).servos[0];
-    let shown_limits = format!(
-        "    limits {:.2} to {:.2} deg",
-        settings.limit[0], settings.limit[1]
-    );
-    assert!(
-        view.instructions.contains(&shown_limits),
-        "{view:?}, {settings:?}"
-    );
+    let [min, max] = read_calibration(&mut link).servos[0].limit;
+    let shown_limits = format!("    limits {min:.2} to {max:.2} deg");
+    let is_shown = view.instructions.contains(&shown_limits);
+    assert!(is_shown, "{view:?}, {shown_limits}");
 }
