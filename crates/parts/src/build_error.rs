@@ -55,7 +55,7 @@ pub struct CollidingPair {
     pub first: String,
     /// Name of the other body.
     pub second: String,
-    /// Distance between the bodies, mm; negative if they overlap.
+    /// Distance between the bodies, mm; negative if they overlap. If the proof was not completed, its lower bound.
     pub mm: f64,
     /// Servo angles at that distance, deg, servo order; `None` if no pose is known or the bodies overlap at every pose.
     pub pose: Option<[f64; 4]>,

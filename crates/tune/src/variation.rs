@@ -144,8 +144,8 @@ impl Variation {
     }
 }
 
-/// Computes quantiles by nearest rank: the values below which the given fractions of all values lie. Returns NaN if
-/// there are no values.
+/// Computes quantiles without interpolation: for each fraction, the sorted value whose index is nearest to the fraction
+/// of the last index. Returns NaN if there are no values.
 pub fn compute_quantiles<const N: usize>(mut values: Vec<f64>, fractions: [f64; N]) -> [f64; N] {
     values.sort_by(f64::total_cmp);
     let last_index = values.len().saturating_sub(1);

@@ -1,11 +1,12 @@
 // A boot loader waits for bytes and flags in loops that read one flag and jump back. Between two clock events, nothing
-// can change that flag. Therefore one step skips all iterations that end before the next event, to the same cycle.
+// can change that flag. Therefore one step skips all iterations that end before the next event, and advances the cycle
+// count as if they had run.
 import { avrInstruction } from 'avr8js';
 
-/** Data addresses of registers whose flags change only by a clock event or by the program. */
 const TIFR1 = 0x36;
 const SPMCSR = 0x57;
 const UCSR0A = 0xc0;
+/** Data addresses of registers whose flags change only by a clock event or by the program. */
 const FLAG_REGISTERS = new Set([TIFR1, SPMCSR, UCSR0A]);
 const SREG = 0x5f;
 const SREG_I = 0x80;

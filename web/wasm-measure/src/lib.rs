@@ -1,6 +1,6 @@
-//! Measures a walking robot with the page's camera, with the same analysis and report as `lizard measure`.
+//! Measures how a robot walks in a video of the page's camera, with the same analysis and report as `lizard measure`.
 //!
-//! The browser passes each frame with its time and gets the tags in the frame. Afterwards it requests the report of the
+//! The page passes each frame with its time and gets the tags found in it. At the end it requests the report on the
 //! gaits that the robot has walked. [`Camera`] stores the video; [`PageCamera`] is the class for JavaScript. This crate
 //! is a WebAssembly module of its own, which the page loads only when needed.
 //!

@@ -107,8 +107,7 @@ lizard_avr::pod! {
         pub slow_pace: u8,
         /// The Arduino numbers of the servo pins; 14 to 19 are A0 to A5.
         pub pins: [u8; 4],
-        /// The headers of the maps of head, tail, left and right, in the last field, because the hash does not include
-        /// them.
+        /// The headers of the maps of head, tail, left and right. The hash does not include them.
         pub maps: [MapHeader; 4],
     }
 }

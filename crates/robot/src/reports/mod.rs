@@ -1,7 +1,8 @@
-//! Tables about a robot's gaits for people, and messages about poses that are not allowed.
+//! Human-readable tables of a robot's gaits, and messages about poses that are not allowed.
 //!
-//! The author of a gait needs to know three things: the gait's distance from the limits, the displacement of the robot,
-//! and the effect of another floor, other feet or softer legs on this displacement. A table answers each question.
+//! The author of a gait asks three questions: how close does the gait come to the limits, how far does it move the
+//! robot, and how does this displacement change on another floor, with other feet or with softer legs? One table
+//! answers each of them.
 
 mod assumptions;
 mod drive_effect;
