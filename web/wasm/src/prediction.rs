@@ -9,7 +9,7 @@ use tsify::Tsify;
 /// The displacement of the body per cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Tsify)]
 pub struct Displacement {
-    /// Ahead, mm; `None` if it is undetermined.
+    /// Forward, mm; `None` if it is undetermined.
     pub forward: Option<f64>,
     /// To the left, mm; `None` if it is undetermined.
     pub left: Option<f64>,

@@ -195,8 +195,10 @@ mod tests {
 
     #[test]
     fn errors_are_printed_with_their_code_and_message() {
-        use LineError::{AngleOutOfRange, IncompleteName, OutOfRange};
-        use LineError::{UnexpectedArgument, UnknownCommand, WrongArguments};
+        use LineError::{
+            AngleOutOfRange, IncompleteName, OutOfRange, UnexpectedArgument, UnknownCommand,
+            WrongArguments,
+        };
         for (line_error, message) in [
             (UnknownCommand, "1 unknown command; send help for the list"),
             (LineError::Garbled, "1 the line was garbled; send it again"),

@@ -200,6 +200,7 @@ fn draw_step(
         });
         let drawn_bodies: Vec<_> = earlier_bodies.chain(new_bodies).collect();
         let mut labels: Vec<Label> = legend::make_servo_and_end_labels(assembly, pose);
+        // The last picture shows the result of the step, without the names of its parts.
         if view_name != "done" {
             let part_labels = legend::make_part_labels(assembly, parts, &drawn_bodies, pose);
             labels.extend(part_labels);

@@ -1,4 +1,4 @@
-//! Joints for URDF and SDF: names without spaces, ranges, friction.
+//! Joints of the models: names without spaces, ranges, motors, springs, friction.
 
 use lizard_kinematics::Side;
 use lizard_robot::SLOT_LENGTH;
@@ -7,6 +7,7 @@ use lizard_robot::servo::SERVO_NAMES;
 use crate::layers::body::Mount;
 use crate::model::cut_joints::CutJoint;
 use crate::model::node::Node;
+use crate::model::scene::StrutSpring;
 use crate::model::text::{MILLI, round};
 use crate::model::writer::Writer;
 
@@ -64,6 +65,17 @@ impl Writer<'_> {
     pub(super) fn effort_and_velocity(&self, node: Node) -> Option<[f64; 2]> {
         let motor = &self.scene.motors.per_servo[self.driving_servo(node)?];
         Some([motor.stall_torque * MILLI, motor.no_load_speed.to_radians()].map(round))
+    }
+
+    /// Relaxed position (m) and stiffness (N/m) of the spring in a body's joint; `None` if the joint has no spring.
+    pub(super) fn spring_values(&self, node: Node) -> Option<[f64; 2]> {
+        match (node, self.scene.strut_spring) {
+            (Node::Pad(_), _) => Some([0.0, self.leaf_stiffness()]),
+            (Node::SlotPin(_), Some(StrutSpring { preload, rate })) => {
+                Some([-preload / rate * MILLI, rate / MILLI].map(round))
+            }
+            _ => None,
+        }
     }
 
     /// Damping (N m s or N s/m) and dry friction (N m or N) of a body's joint.

@@ -5,7 +5,6 @@ use std::f64::consts::FRAC_PI_2;
 use crate::model::cut_joints::list_cut_joints;
 use crate::model::meshes;
 use crate::model::node::{Freedom, Node};
-use crate::model::scene::StrutSpring;
 use crate::model::text::{MILLI, escape_attribute, format_metres, round};
 use crate::model::writer::Writer;
 
@@ -136,17 +135,6 @@ impl Writer<'_> {
         self.xml.close();
         self.xml.close();
         self.xml.close();
-    }
-
-    /// Relaxed position (m) and stiffness (N/m) of the spring in a body's joint; `None` if the joint has no spring.
-    pub(super) fn spring_values(&self, node: Node) -> Option<[f64; 2]> {
-        match (node, self.scene.strut_spring) {
-            (Node::Pad(_), _) => Some([0.0, self.leaf_stiffness()]),
-            (Node::SlotPin(_), Some(StrutSpring { preload, rate })) => {
-                Some([-preload / rate * MILLI, rate / MILLI].map(round))
-            }
-            _ => None,
-        }
     }
 
     /// Opens a joint's element and writes the joint's parent and child. The caller closes the element.
