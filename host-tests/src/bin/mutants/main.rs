@@ -121,7 +121,7 @@ fn try_listed_mutants(filters: &[String]) -> Result<usize, String> {
     if list.iter().any(|mutant| mutant.package.is_none())
         && let elf = scratch
             .build_firmware()?
-            .ok_or("the firmware does not build")?
+            .ok_or("the unchanged firmware does not build in target/mutants/tree")?
         && run_firmware_tests(&elf, "")?.is_none_or(|failed| !failed.is_empty())
     {
         return Err("a test fails or hangs in the unchanged tree".into());
@@ -191,8 +191,14 @@ impl ScratchTree {
         let files = files.map(str::to_owned).collect();
         let scratch = Self { folder, files };
         for name in &scratch.files {
-            let bytes = fs::read(root().join(name)).map_err(|e| format!("{name}: {e}"))?;
+            let source = root().join(name);
+            let bytes = fs::read(&source).map_err(|e| format!("{name}: {e}"))?;
             scratch.write(name, &bytes)?;
+            // The build executes scripts/link.
+            let copy = scratch.folder.join("tree").join(name);
+            fs::metadata(source)
+                .and_then(|metadata| fs::set_permissions(copy, metadata.permissions()))
+                .map_err(|e| format!("{name}: {e}"))?;
         }
         Ok(scratch)
     }
@@ -371,5 +377,15 @@ mod tests {
     fn the_old_texts_of_all_listed_mutants_are_current() {
         let list = super::read_list().expect("the list is current");
         assert!(list.len() > 50, "only {} mutants are listed", list.len());
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn the_linker_of_the_copy_is_executable() {
+        use std::os::unix::fs::PermissionsExt;
+        let scratch = super::ScratchTree::copy().expect("the tree is copied");
+        let linker = scratch.folder.join("tree/scripts/link");
+        let permissions = linker.metadata().expect("the copy has it").permissions();
+        assert_ne!(permissions.mode() & 0o111, 0, "{:o}", permissions.mode());
     }
 }
