@@ -226,7 +226,16 @@ impl ScratchTree {
             .stderr(Stdio::null())
             .status()
             .map_err(|error| format!("cargo: {error}"))?;
+        if !status.success() {
+            return Ok(None);
+        }
         let elf = build.join("avr-atmega328p/release/lizard.elf");
+        // A test of the firmware also loads the HEX file, which `make firmware` makes beside the ELF file.
+        let status = Command::new("avr-objcopy")
+            .args(["-O", "ihex", "-R", ".eeprom"])
+            .args([&elf, &elf.with_extension("hex")])
+            .status()
+            .map_err(|error| format!("avr-objcopy: {error}"))?;
         Ok(status.success().then_some(elf))
     }
 
