@@ -27,11 +27,9 @@ fn main() {
     // The linker script lays out the flash. The address of the robot's section comes from
     // lizard_core::numbers::section::START_ADDRESS.
     let linker_script = Path::new(env!("CARGO_MANIFEST_DIR")).join("avr-specs/atmega328p.ld");
-    println!("cargo::rerun-if-changed={}", linker_script.display());
-    println!(
-        "cargo::rustc-link-arg-bins=-Wl,-T,{}",
-        linker_script.display()
-    );
+    let linker_script = linker_script.display();
+    println!("cargo::rerun-if-changed={linker_script}");
+    println!("cargo::rustc-link-arg-bins=-Wl,-T,{linker_script}");
     println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_start={START_ADDRESS:#x}");
     let end_address = START_ADDRESS + REGION_BYTES;
     println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_end={end_address:#x}");
@@ -42,10 +40,8 @@ fn main() {
     }
     // OUT_DIR is build/<package>/out in the folder of the firmware.
     if let Some(firmware_folder) = out_dir.ancestors().nth(3) {
-        write_file(
-            &firmware_folder.join("gaits.txt"),
-            Report::compute(&robot).to_string().as_bytes(),
-        );
+        let report = Report::compute(&robot).to_string();
+        write_file(&firmware_folder.join("gaits.txt"), report.as_bytes());
     }
 }
 

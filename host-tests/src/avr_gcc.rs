@@ -4,9 +4,9 @@
 use std::fs;
 
 use lizard_linker::Savings;
-use simulated_uno::Image;
 use simulated_uno::avr_gcc::run;
 pub use simulated_uno::avr_gcc::{assemble, compile_c};
+use simulated_uno::{Fidelity, Image, Uno};
 
 /// The options of avr-gcc for both compiling and linking.
 const FLAGS: [&str; 4] = ["-O2", "-std=gnu11", "-mrelax", "-ffunction-sections"];
@@ -54,4 +54,22 @@ pub fn shrink(object: &[u8]) -> (Vec<u8>, Savings) {
 /// If the image has no such variable.
 pub fn ram_address(image: &Image, name: &str) -> u16 {
     (image.symbol(name).expect("the variable exists").address - 0x80_0000) as u16
+}
+
+/// Runs a program on a UNO until its variable `done` is 1.
+///
+/// # Panics
+/// If the variable is not 1 after `max_ms` milliseconds.
+pub fn run_to_end(image: &Image, max_ms: u64) -> Uno {
+    let done_address = ram_address(image, "done");
+    let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
+    let is_done = (0..max_ms).any(|_| {
+        uno.run_ms(1);
+        uno.peek(done_address) == 1
+    });
+    assert!(
+        is_done,
+        "the program did not finish, or the timer interrupted it too rarely"
+    );
+    uno
 }

@@ -179,10 +179,8 @@ fn run_program(
         return Ok(output_text);
     }
     let error_text = String::from_utf8_lossy(&output.stderr);
-    Err(format!(
-        "{program} failed: {}\n{output_text}",
-        error_text.trim()
-    ))
+    let error_text = error_text.trim();
+    Err(format!("{program} failed: {error_text}\n{output_text}"))
 }
 
 /// Parses the output of tools/judge/run.js; the comment at the top of that file describes the lines. Returns `None`
@@ -269,13 +267,14 @@ pub fn compare_pulses(
     for pulses in [&mut simavr_pulses, &mut avr8js_pulses] {
         pulses.retain(|pulse| pulse.rise_cycle + pulse.width <= end_cycle);
     }
-    let mut pairs = simavr_pulses.iter().zip(&avr8js_pulses).enumerate();
-    let difference = pairs.find(|(_, (simavr_pulse, avr8js_pulse))| simavr_pulse != avr8js_pulse);
-    if let Some((index, (simavr_pulse, avr8js_pulse))) = difference {
-        return Err(format!(
-            "pulse {index}: on simavr {simavr_pulse}; on avr8js {avr8js_pulse}, \
-             after subtracting the constant delay of {offset_cycles} cycles"
-        ));
+    let pairs = simavr_pulses.iter().zip(&avr8js_pulses);
+    for (index, (simavr_pulse, avr8js_pulse)) in pairs.enumerate() {
+        if simavr_pulse != avr8js_pulse {
+            return Err(format!(
+                "pulse {index}: on simavr {simavr_pulse}; on avr8js {avr8js_pulse}, \
+                 after subtracting the constant delay of {offset_cycles} cycles"
+            ));
+        }
     }
     let count = simavr_pulses.len().min(avr8js_pulses.len());
     for (name, pulses) in [("simavr", &simavr_pulses), ("avr8js", &avr8js_pulses)] {

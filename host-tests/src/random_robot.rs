@@ -35,7 +35,7 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
     (0..MAX_DRAFT_COUNT)
         .find_map(|_| {
             let base = RobotBase::generate(rng)?;
-            let mut text = base.to_toml();
+            let mut text = base.toml.clone();
             Robot::parse(&text).ok()?;
             for gait in random_gaits(rng, &base) {
                 text = with_allowed_gait(text, &gait);
@@ -74,18 +74,13 @@ pub fn with_many_gaits(text: &str, name_length: usize) -> Robot {
 struct RobotBase {
     /// The scale of all lengths; about 1 for a robot of the paper's size.
     scale: f64,
-    /// The lengths l0 to l19, mm.
-    links: [f64; 20],
     /// The servos' neutral angles, deg.
     neutral: [f64; 4],
-    limits: Limits,
-    /// The keys of the tables of A1 to A4.
-    servo_tables: [String; 4],
     /// The pins of the four servos, then all other pins.
     pins: [&'static str; PINS.len()],
-    /// The speed limits `slew` and `gait_slew`, deg/s.
-    slew_limits: [f64; 2],
     lizard: Lizard,
+    /// The robot.toml of a robot whose only gait is `stand`.
+    toml: String,
 }
 
 impl RobotBase {
@@ -136,64 +131,57 @@ impl RobotBase {
         lizard.links = Links::from(links);
         let mut pins = PINS;
         rng.shuffle(&mut pins);
-        let servo_tables = std::array::from_fn(|servo| {
-            let sign = if rng.bool() { 1.0 } else { -1.0 };
-            let random_us =
-                |rng: &mut Rng, us: f64| (us + random_between(rng, -60.0, 60.0)).round();
-            format!(
-                "pin = \"{}\"\nneutral = {}\nneutral_us = {}\nus_per_degree = {}\nmin_us = {}\nmax_us = {}\n",
-                pins[servo],
-                neutral[servo],
-                random_us(rng, 1500.0),
-                sign * round_factor(random_between(rng, 6.0, 14.0)),
-                random_us(rng, 600.0),
-                random_us(rng, 2400.0),
-            )
-        });
-        Some(Self {
-            scale,
-            links,
-            neutral,
-            limits,
-            servo_tables,
-            pins,
-            slew_limits: [
-                random_between(rng, 120.0, 500.0).round(),
-                random_between(rng, 150.0, 800.0).round(),
-            ],
-            lizard,
-        })
-    }
-
-    /// Returns the robot.toml text of a robot whose only gait is `stand`.
-    fn to_toml(&self) -> String {
-        let (leg, limits) = (&self.lizard.leg, &self.limits);
-        let links = self.links.iter().enumerate();
-        let links = links.map(|(link, length)| format!("l{link} = {length}\n"));
-        let servos = SERVO_NAMES.iter().zip(&self.servo_tables);
-        let servos = servos.map(|(name, table)| format!("[servo.{name}]\n{table}\n"));
-        let [slew, gait_slew] = self.slew_limits;
-        format!(
-            "[links]\n{}[leg]\nground = {ground}\ncrank = {crank}\n\
-             coupler = {ground}\nfollower = {crank}\n\
-             hip_forward = {}\nhip_side = {}\nmount = 7.5\n{}\
+        let servos = random_servos(rng, &pins, neutral);
+        let mut links_text = String::new();
+        for (link, length) in links.iter().enumerate() {
+            links_text += &format!("l{link} = {length}\n");
+        }
+        let toml = format!(
+            "[links]\n{links_text}[leg]\nground = {ground}\ncrank = {leg_length}\n\
+             coupler = {ground}\nfollower = {leg_length}\n\
+             hip_forward = {}\nhip_side = {}\nmount = 7.5\n{servos}\
              [limits]\ntype2 = {}\ntype1 = {}\nleg = {}\nstroke_min = {}\nstroke_max = {}\n\
-             slew = {slew}\ngait_slew = {gait_slew}\n\
+             slew = {}\ngait_slew = {}\n\
              [ground]\nfriction_back_over_forward = 0.8\n\
              [gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n",
-            links.collect::<String>(),
-            round(self.scale * 55.0),
-            round(self.scale * 35.0),
-            servos.collect::<String>(),
+            round(scale * 55.0),
+            round(scale * 35.0),
             limits.type2,
             limits.type1,
             limits.leg,
             limits.stroke_min,
             limits.stroke_max,
-            ground = leg.ground,
-            crank = leg.crank,
-        )
+            random_between(rng, 120.0, 500.0).round(),
+            random_between(rng, 150.0, 800.0).round(),
+        );
+        Some(Self {
+            scale,
+            neutral,
+            pins,
+            lizard,
+            toml,
+        })
     }
+}
+
+/// Returns the text of the tables of A1 to A4, with random pulses.
+fn random_servos(rng: &mut Rng, pins: &[&str], neutral: [f64; 4]) -> String {
+    let mut text = String::new();
+    for (servo, name) in SERVO_NAMES.iter().enumerate() {
+        let sign = if rng.bool() { 1.0 } else { -1.0 };
+        let random_us = |rng: &mut Rng, us: f64| (us + random_between(rng, -60.0, 60.0)).round();
+        text += &format!(
+            "[servo.{name}]\npin = \"{}\"\nneutral = {}\nneutral_us = {}\nus_per_degree = {}\n\
+             min_us = {}\nmax_us = {}\n\n",
+            pins[servo],
+            neutral[servo],
+            random_us(rng, 1500.0),
+            sign * round_factor(random_between(rng, 6.0, 14.0)),
+            random_us(rng, 600.0),
+            random_us(rng, 2400.0),
+        );
+    }
+    text
 }
 
 /// Returns the angles of a random neutral pose, deg; `None` if no pose was found. The pose's margins exceed their

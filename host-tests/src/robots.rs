@@ -99,12 +99,11 @@ pub fn gait_commands() -> Vec<String> {
 /// If a file is invalid. The message names the file.
 pub fn robots() -> &'static [NamedRobot] {
     static ROBOTS: LazyLock<Vec<NamedRobot>> = LazyLock::new(|| {
-        let random_robots = (0..RANDOM_ROBOT_COUNT).map(|number| NamedRobot {
+        let mut robots = load_robots_from_files();
+        robots.extend((0..RANDOM_ROBOT_COUNT).map(|number| NamedRobot {
             name: format!("random robot {number} of seed {}", seed()),
             robot: random_robot(&mut rng(number)).1,
-        });
-        let mut robots = load_robots_from_files();
-        robots.extend(random_robots);
+        }));
         robots
     });
     &ROBOTS
@@ -121,19 +120,18 @@ pub fn load_robots_from_files() -> Vec<NamedRobot> {
     let mut files: Vec<PathBuf> = files.filter(is_toml).collect();
     files.sort();
     assert!(!files.is_empty(), "robots/ contains no robots");
-    let robot_under_test = NamedRobot {
+    let mut robots = vec![NamedRobot {
         name: "the robot under test".into(),
         robot: robot().clone(),
-    };
-    let named_robots = files.iter().map(|path| NamedRobot {
-        name: path
-            .file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into(),
-        robot: load(path),
-    });
-    [robot_under_test].into_iter().chain(named_robots).collect()
+    }];
+    for path in files {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        robots.push(NamedRobot {
+            name: name.into(),
+            robot: load(&path),
+        });
+    }
+    robots
 }
 
 /// The seed of all random numbers, from the environment variable `PROPTEST_RNG_SEED` (default 1).

@@ -8,10 +8,8 @@ use std::process::Command;
 
 use lizard_core::numbers::section::START_ADDRESS;
 use lizard_host::firmware::CODE_HEX;
-use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::script::{Script, Step};
 use lizard_host::sim::session::{Recording, play};
-use lizard_host::sim::supplies;
 use lizard_host_tests::{FirmwareBench, robot, root};
 use simulated_uno::{Fidelity, Image, State, Uno};
 
@@ -25,13 +23,21 @@ fn extract_code(image: &Image) -> Vec<u8> {
     code
 }
 
-/// Returns the image that the program `lizard` contains, with the section of the robot under test.
-fn embedded_image() -> Image {
-    let mut image = Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX");
-    let section_addresses = u32::from(START_ADDRESS)..0x7e00;
-    let result = image.replace(section_addresses, &robot().section());
+/// Returns the code that the program `lizard` contains.
+fn embedded_code() -> Image {
+    Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX")
+}
+
+/// Replaces the robot's section of an image.
+fn with_section(mut image: Image, section: &[u8]) -> Image {
+    let result = image.replace(u32::from(START_ADDRESS)..0x7e00, section);
     result.expect("the section fits");
     image
+}
+
+/// Returns the image that the program `lizard` contains, with the section of the robot under test.
+fn embedded_image() -> Image {
+    with_section(embedded_code(), &robot().section())
 }
 
 /// Reads the versions of the installed compiler and linker, one per line.
@@ -59,36 +65,24 @@ fn record_minute(image: Image) -> Recording {
         (48_023, "stand"),
         (55_027, "rest"),
     ];
-    let steps = commands.map(|(ms, command)| Step {
-        ms,
-        command: command.to_owned(),
-    });
-    let script = Script {
-        steps: steps.to_vec(),
-        end_ms: 60_000,
-        ..Script::default()
-    };
+    let steps = commands.map(|(ms, command)| Step::new(ms, command));
+    let script = Script::new(steps.to_vec(), 60_000);
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    supplies::connect(&mut uno, robot());
-    let pins = servo_pins(robot());
-    let recording =
-        play(&mut uno, pins, &script, |_| Ok(())).expect("the event handler never fails");
+    let recording = play(&mut uno, robot(), &script, |_| Ok(()));
+    let recording = recording.expect("the event handler never fails");
     assert_eq!(recording.state, State::Alive);
     recording
 }
 
 #[test]
 fn the_program_contains_the_code_built_from_the_source() {
-    let embedded_code = extract_code(&Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX"));
-    let mut built_image = FirmwareBench::image();
-    let result = built_image.replace(u32::from(START_ADDRESS)..0x7e00, &[]);
-    result.expect("the robot can be removed");
-    let built_code = extract_code(&built_image);
+    let code_images = [embedded_code(), with_section(FirmwareBench::image(), &[])];
+    let [embedded_code, built_code] = code_images.map(|image| extract_code(&image));
     let recorded_versions = std::fs::read_to_string(root().join("firmware/tools.txt"));
     let recorded_versions = recorded_versions.expect("firmware/tools.txt is readable");
     if recorded_versions == read_tool_versions() {
-        let first_difference =
-            (0..START_ADDRESS.into()).find(|&index| embedded_code[index] != built_code[index]);
+        let mut pairs = embedded_code.iter().zip(&built_code);
+        let first_difference = pairs.position(|(embedded, built)| embedded != built);
         assert_eq!(
             first_difference, None,
             "{OUTDATED_MESSAGE} (address of the first differing byte)"
@@ -132,8 +126,7 @@ fn the_code_in_the_program_walks_once_a_robot_is_added() {
     let robot_text = format!(" robot {robot_label}");
     assert!(banner.contains(&robot_text), "{banner}");
     assert!(recording.frames.widths.len() > 2700);
-    let code = Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX");
-    let byte_count = code.flash().len();
+    let byte_count = embedded_code().flash().len();
     let allowed_counts = 20_000..=usize::from(START_ADDRESS);
     assert!(allowed_counts.contains(&byte_count), "{byte_count} bytes");
 }

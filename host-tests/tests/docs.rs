@@ -1,5 +1,7 @@
 //! Tests of the documentation: its pages name only existing tests, code items, links and files.
 
+mod workspace;
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::mem::offset_of;
@@ -9,6 +11,7 @@ use lizard_core::numbers::curve::Table;
 use lizard_core::numbers::gaits::{Gait, Wave};
 use lizard_core::numbers::section::{Header, Numbers, REGION_BYTES, START_ADDRESS};
 use lizard_host_tests::root;
+use workspace::list_crates;
 
 /// Reads a file. The path is relative to the root of the repository.
 fn read_file(path: impl AsRef<Path>) -> String {
@@ -101,24 +104,18 @@ fn the_firmware_page_states_every_offset_and_size_in_a_robots_section() {
             maps
         ]
     );
-    let format_part_row = |name: &str, bytes: usize| format!("| {name} | {bytes} each |");
-    let part_rows = [
+    let other_texts = [
         format!("| header | {} |", size_of::<Header>()),
         format!("| numbers | {} |", size_of::<Numbers>()),
-        format_part_row("curves", size_of::<Table>()),
-        format_part_row("gaits", size_of::<Gait>()),
-        format_part_row("waveforms", size_of::<Wave>()),
-    ];
-    let address_texts = [
+        format!("| curves | {} each |", size_of::<Table>()),
+        format!("| gaits | {} each |", size_of::<Gait>()),
+        format!("| waveforms | {} each |", size_of::<Wave>()),
         format!("{START_ADDRESS:#x}"),
         format!("{:#x}", START_ADDRESS + REGION_BYTES),
         format!("{REGION_BYTES} bytes"),
     ];
     let page = read_file("docs/firmware.md");
-    let mut missing_texts = header_rows.to_vec();
-    missing_texts.extend(number_rows);
-    missing_texts.extend(part_rows);
-    missing_texts.extend(address_texts);
+    let mut missing_texts = [&header_rows[..], &number_rows, &other_texts].concat();
     missing_texts.retain(|text| !page.contains(text));
     assert!(
         missing_texts.is_empty(),
@@ -139,26 +136,17 @@ fn the_license_lists_every_crate_with_or_without_libsimavr() {
     let pieces = license.split_once("therefore licensed");
     let (_, text) = pieces.expect("LICENSE names the users of libsimavr");
     let lists = text.split_once("The firmware");
-    let (text_about_simavr_users, text_about_others) = lists.expect("LICENSE has both lists");
-    let simavr_users = split_words(text_about_simavr_users);
-    let others = split_words(text_about_others);
-    let workspace_manifest = read_file("crates/Cargo.toml");
-    let members = find_text_between(&workspace_manifest, "members = [", "]");
-    let member_folders: Vec<&str> = members.split('"').skip(1).step_by(2).collect();
-    assert!(member_folders.len() > 9, "{member_folders:?}");
-    for member_folder in member_folders {
-        let crate_folder = match member_folder.strip_prefix("../") {
-            Some(name) => name.to_owned(),
-            None => format!("crates/{member_folder}"),
-        };
+    let (simavr_users, others) = lists.expect("LICENSE has both lists");
+    let [simavr_users, others] = [simavr_users, others].map(split_words);
+    let crate_folders = list_crates();
+    assert!(crate_folders.len() > 9, "{crate_folders:?}");
+    for crate_folder in crate_folders {
         let manifest = read_file(format!("{crate_folder}/Cargo.toml"));
-        let uses_simavr =
-            crate_folder == "crates/simulated-uno" || manifest.contains("\nsimulated-uno = ");
+        let is_simavr = crate_folder == "crates/simulated-uno";
+        let uses_simavr = is_simavr || manifest.contains("\nsimulated-uno = ");
         let crate_path = &*format!("{crate_folder}/");
-        let is_listed = [
-            simavr_users.contains(crate_path) || crate_folder == "crates/simulated-uno",
-            others.contains(crate_path),
-        ];
+        let is_simavr_user = is_simavr || simavr_users.contains(crate_path);
+        let is_listed = [is_simavr_user, others.contains(crate_path)];
         let expected = [uses_simavr, !uses_simavr];
         assert_eq!(is_listed, expected, "LICENSE and {crate_folder}/Cargo.toml");
     }
@@ -167,14 +155,11 @@ fn the_license_lists_every_crate_with_or_without_libsimavr() {
 #[test]
 fn every_code_path_on_a_page_names_an_existing_item() {
     let mut item_count = 0;
-    let pages = list_paths("docs");
-    for page in pages.filter(|page| page.extension().is_some_and(|extension| extension == "md")) {
-        let text = read_file(&page);
-        for path in text.split('`').filter(|code| code.starts_with("lizard_")) {
-            let rest = path.strip_prefix("lizard_");
-            let Some((crate_name, item)) = rest.and_then(|rest| rest.split_once("::")) else {
-                continue;
-            };
+    for (page, text) in read_pages() {
+        let quoted_texts = text.split('`');
+        let paths = quoted_texts.filter_map(|code| code.strip_prefix("lizard_"));
+        for (crate_name, item) in paths.filter_map(|path| path.split_once("::")) {
+            let path = format!("lizard_{crate_name}::{item}");
             let sources = read_sources(&root().join("crates").join(crate_name).join("src"));
             for name in item.split("::") {
                 let is_declared = ["fn", "mod", "struct", "enum", "trait", "const", "type"]
@@ -224,19 +209,17 @@ fn a_console_command_is_in_at_most_seven_files_and_the_docs_name_them() {
     let files = quoted.filter(|text| text.contains('/') && !text.contains(' '));
     let listed_files: BTreeSet<PathBuf> = files.map(PathBuf::from).collect();
 
-    let folders = [
-        "crates/core",
-        "tools/explore",
-        "tools/fuzz",
-        "tools/rules",
-        "docs/console.md",
-    ];
-    let mut files_with_command: BTreeSet<PathBuf> = folders
-        .iter()
-        .flat_map(|folder| find_files_with_word(&root().join(folder), "center"))
-        .collect();
-    let text_file = root().join("crates/core/src/console/text.rs");
-    files_with_command.extend(find_files_with_word(&text_file, "deadman"));
+    let mut files_with_command = BTreeSet::new();
+    for (path, word) in [
+        ("crates/core", "center"),
+        ("tools/explore", "center"),
+        ("tools/fuzz", "center"),
+        ("tools/rules", "center"),
+        ("docs/console.md", "center"),
+        ("crates/core/src/console/text.rs", "deadman"),
+    ] {
+        files_with_command.extend(find_files_with_word(&root().join(path), word));
+    }
     assert_eq!(listed_files, files_with_command);
     assert!(listed_files.len() <= 7, "{listed_files:?}");
 }
@@ -251,6 +234,11 @@ fn read_pages() -> Vec<(PathBuf, String)> {
         (path, text)
     };
     paths.into_iter().map(read_page).collect()
+}
+
+/// True if a page, which comes with its text, is in docs/.
+fn is_in_docs((page, _): &(PathBuf, String)) -> bool {
+    page.parent().is_some_and(|folder| folder.ends_with("docs"))
 }
 
 /// Returns the targets of a page's links and images: the texts between `](` and `)`, and the values of `src="..."`.
@@ -305,13 +293,11 @@ fn every_link_of_a_page_has_an_existing_target() {
 fn the_book_contains_every_page_of_docs_and_the_readme_is_short() {
     let book = read_file("mkdocs.yml");
     let count = |name: &str| book.matches(name).count();
-    for (page, _) in read_pages() {
+    for (page, _) in read_pages().into_iter().filter(is_in_docs) {
         let name = page.file_name().expect("the page has a file name");
         let name = name.to_str().expect("the file name is UTF-8");
-        if page.parent().is_some_and(|folder| folder.ends_with("docs")) {
-            let counts = [",", "]", "\n"].map(|end| count(&format!("{name}{end}")));
-            assert_eq!(counts.iter().sum::<usize>(), 1, "{name}");
-        }
+        let counts = [",", "]", "\n"].map(|end| count(&format!("{name}{end}")));
+        assert_eq!(counts.iter().sum::<usize>(), 1, "{name}");
     }
     let readme = read_file("README.md");
     let line_count = readme.lines().count();
@@ -321,12 +307,9 @@ fn the_book_contains_every_page_of_docs_and_the_readme_is_short() {
 #[test]
 fn no_picture_is_on_two_pages_of_the_book() {
     let mut pictures = BTreeSet::new();
-    for (page, text) in read_pages() {
+    // README.md is not a page of the book.
+    for (page, text) in read_pages().into_iter().filter(is_in_docs) {
         let folder = page.parent().expect("the page is in a folder");
-        // README.md is not a page of the book.
-        if !folder.ends_with("docs") {
-            continue;
-        }
         let is_picture = |link: &&str| link.ends_with(".svg") || link.ends_with(".png");
         for link in find_links(&text).into_iter().filter(is_picture) {
             assert!(
@@ -342,11 +325,7 @@ fn no_picture_is_on_two_pages_of_the_book() {
 #[test]
 fn the_pages_name_the_current_version() {
     let manifest = read_file("Cargo.toml");
-    let version = manifest
-        .lines()
-        .find_map(|line| line.strip_prefix("version = "))
-        .expect("Cargo.toml has a version")
-        .trim_matches('"');
+    let version = find_text_between(&manifest, "\nversion = \"", "\"");
     let changelog = read_file("CHANGELOG.md");
     let has_section = changelog.contains(&format!("\n## {version} ("));
     assert!(has_section, "CHANGELOG.md has no section for {version}");
@@ -358,12 +337,8 @@ fn the_pages_name_the_current_version() {
                 let is_end = |c: char| !c.is_ascii_digit() && c != '.';
                 let named_version = text_after_prefix.split(is_end).next().unwrap_or_default();
                 if named_version.matches('.').count() == 2 {
-                    assert_eq!(
-                        named_version,
-                        version,
-                        "{}: {prefix}{named_version}",
-                        page.display()
-                    );
+                    let page = page.display();
+                    assert_eq!(named_version, version, "{page}: {prefix}{named_version}");
                     version_count += 1;
                 }
             }

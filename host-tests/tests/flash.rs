@@ -21,11 +21,22 @@ fn start_make_flash(board: &ConnectedBoard) -> Shell {
     Shell::start("make", &["flash"], &[("RAVEDUDE_PORT", &board.port_path())])
 }
 
+/// Types a line in the console and waits for its answer.
+fn say(board: &mut ConnectedBoard, shell: &mut Shell, line: &str) {
+    shell.type_line(line);
+    board.wait_for_text(shell, &format!("ok {line}"));
+}
+
 /// Runs the board for a number of frames.
 fn run_frames(board: &mut ConnectedBoard, count: u64) {
     let end_cycle = board.uno.cycle() + count * FRAME_CYCLES;
     let is_in_time = board.run_until(|uno| uno.cycle() > end_cycle);
     assert!(is_in_time, "waited {TIME_LIMIT} for {count} frames");
+}
+
+/// Returns the pulse widths of each frame, cycles.
+fn expect_widths(frames: &[Frame]) -> Vec<[u64; 4]> {
+    frames.iter().map(Frame::expect_all_widths).collect()
 }
 
 #[test]
@@ -36,32 +47,28 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
     let screen = shell.screen();
     assert!(screen.contains("bytes of flash verified"), "{screen}");
 
-    let elf = FirmwareBench::elf_path();
-    let expected_uno = Uno::load(&elf, Fidelity::DataSheet).expect("the image loads");
+    let expected_uno = Uno::load(FirmwareBench::elf_path(), Fidelity::DataSheet);
+    let expected_uno = expected_uno.expect("the image loads");
     board.assert_flashed_with(expected_uno.flash());
 
     // Waits until all four servos are awake, then walks for two gait cycles.
-    shell.type_line("stand");
-    board.wait_for_text(&shell, "ok stand");
+    say(&mut board, &mut shell, "stand");
     run_frames(&mut board, AWAKE_FRAMES);
-    shell.type_line("walk");
-    board.wait_for_text(&shell, "ok walk");
+    say(&mut board, &mut shell, "walk");
     board.edges.clear();
     run_frames(&mut board, 110);
     let pins = servo_pins(robot());
     let mut edges = board.edges.iter();
     let first_edge = edges.find(|edge| edge.is_rising && edge.pin == pins[0]);
     let start_cycle = first_edge.expect("A1 has a pulse").cycle;
-    let frames = group_frames(&board.edges, pins, start_cycle, 100);
-    let walked_widths: Vec<[u64; 4]> = frames.iter().map(Frame::expect_all_widths).collect();
+    let walked_widths = expect_widths(&group_frames(&board.edges, pins, start_cycle, 100));
 
     // Runs the same image in a simulation without boot loader, port and wall clock.
     let mut bench = FirmwareBench::boot_with(Fidelity::DataSheet);
     bench.say("stand");
     bench.run_for_frames(AWAKE_FRAMES);
     bench.say("walk");
-    let frames = bench.run_for_frames(150);
-    let bench_widths: Vec<[u64; 4]> = frames.iter().map(Frame::expect_all_widths).collect();
+    let bench_widths = expect_widths(&bench.run_for_frames(150));
     assert!(
         bench_widths
             .windows(walked_widths.len())
@@ -90,14 +97,12 @@ fn a_saved_calibration_is_in_effect_after_the_next_upload() {
     let mut shell = start_make_flash(&board);
     board.wait_for_text(&shell, "# lizard");
     for line in ["trim 1 3", "deadman 700", "save"] {
-        shell.type_line(line);
-        board.wait_for_text(&shell, &format!("ok {line}"));
+        say(&mut board, &mut shell, line);
     }
     shell.interrupt();
     let mut shell = start_make_flash(&board);
     board.wait_for_text(&shell, "# lizard");
-    shell.type_line("cal");
-    board.wait_for_text(&shell, "ok cal");
+    say(&mut board, &mut shell, "cal");
     let screen = shell.screen();
     assert!(screen.contains("# A1 trim 3.00 "), "{screen}");
     assert!(screen.contains("# deadman 700"), "{screen}");
@@ -117,19 +122,16 @@ fn a_byte_that_changes_after_its_write_ends_the_upload() {
         }
         shell.has_ended()
     });
+    let screen = shell.screen();
     assert!(
         has_ended,
-        "waited {TIME_LIMIT} for the end of the upload:\n{}",
-        shell.screen()
+        "waited {TIME_LIMIT} for the end of the upload:\n{screen}"
     );
-    let screen = shell.screen();
     assert!(has_flipped_bit, "nothing was written:\n{screen}");
     assert!(screen.contains("verification"), "{screen}");
     assert!(screen.contains("flash: the upload to"), "{screen}");
-    assert!(
-        !screen.contains("# lizard"),
-        "the console started:\n{screen}"
-    );
+    let has_console = screen.contains("# lizard");
+    assert!(!has_console, "the console started:\n{screen}");
 }
 
 #[test]

@@ -20,15 +20,14 @@ fn check_ports_as(
 ) -> Result<String, String> {
     let scripts = copy_scripts();
     let script = scripts.path().join("scripts/flash");
-    let command_line: Vec<&str> = [user_command, &["bash"]].concat();
-    let mut command = Command::new(command_line[0]);
-    command.args(&command_line[1..]).arg(script).arg("--check");
-    command
-        .env("FLASH_DEV", port_folder)
-        .env_remove("RAVEDUDE_PORT");
-    if let Some(port) = port {
-        command.env("RAVEDUDE_PORT", port);
-    }
+    // `env` runs the command in its arguments.
+    let mut command = Command::new("env");
+    command.args(user_command).arg("bash").arg(script);
+    command.arg("--check").env("FLASH_DEV", port_folder);
+    match port {
+        Some(port) => command.env("RAVEDUDE_PORT", port),
+        None => command.env_remove("RAVEDUDE_PORT"),
+    };
     let output = TIME_LIMIT.run_command(&mut command, b"");
     let output = output.expect("the script ends");
     let error_output = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -37,6 +36,9 @@ fn check_ports_as(
         false => Err(error_output),
     }
 }
+
+/// The command that runs another command as a user other than root, from Debian's package util-linux.
+const NOBODY_COMMAND: [&str; 3] = ["/usr/bin/setpriv", "--reuid=nobody", "--clear-groups"];
 
 fn check_ports(port_folder: &Path) -> Result<String, String> {
     check_ports_as(&[], port_folder, None)
@@ -59,10 +61,8 @@ fn create_folder() -> TempDir {
 fn copy_scripts() -> TempDir {
     let copy = create_folder();
     let mut command = Command::new("cp");
-    command
-        .arg("-r")
-        .arg(root().join("scripts"))
-        .arg(copy.path());
+    command.args(["-r", "scripts"]).arg(copy.path());
+    command.current_dir(root());
     let output = TIME_LIMIT.run_command(&mut command, b"").expect("cp ends");
     assert!(output.status.success(), "cp failed");
     copy
@@ -126,7 +126,6 @@ fn without_permission_the_message_names_the_group_to_join() {
     let port = port_folder.path().join("ttyACM0");
     File::create(&port).expect("the file can be created");
     fs::set_permissions(&port, Permissions::from_mode(0o660)).expect("the test owns the file");
-    let nobody_command = ["setpriv", "--reuid=nobody", "--clear-groups"];
     if !is_root() {
         // Only root can run the script as another user. A port that its owner may not open has the same effect.
         fs::set_permissions(&port, Permissions::from_mode(0o000)).expect("the test owns the file");
@@ -139,7 +138,7 @@ fn without_permission_the_message_names_the_group_to_join() {
     let chgrp_output = TIME_LIMIT.run_command(&mut chgrp, b"").expect("chgrp ends");
     let is_changed = chgrp_output.status.success();
     assert!(is_changed, "the group dialout does not exist");
-    let error_output = check_ports_as(&nobody_command, port_folder.path(), None)
+    let error_output = check_ports_as(&NOBODY_COMMAND, port_folder.path(), None)
         .expect_err("nobody may not open the port");
     assert_contains(&error_output, "nobody may not open");
     assert_contains(&error_output, "usermod -aG dialout nobody");
@@ -161,18 +160,19 @@ fn without_avrdude_the_message_names_the_package_to_install() {
         .expect("the test owns the file");
     let scripts = copy_scripts();
     let script = scripts.path().join("scripts/setup-flash");
-    let mut command = if is_root() {
-        let mut command = Command::new("/usr/bin/setpriv");
-        command.args(["--reuid=nobody", "--clear-groups", "/usr/bin/bash"]);
-        command
-    } else {
-        Command::new("/usr/bin/bash")
-    };
-    command.arg(script).env("PATH", bin_folder.path());
+    let user_command = if is_root() { &NOBODY_COMMAND[..] } else { &[] };
+    let mut command = Command::new("/usr/bin/env");
+    command.args(user_command).arg("/usr/bin/bash").arg(script);
+    command.env("PATH", bin_folder.path());
     let output = TIME_LIMIT.run_command(&mut command, b"");
-    let output = output.expect("bash runs (as root with setpriv of Debian package util-linux)");
-    let stdout_text = String::from_utf8_lossy(&output.stdout);
-    assert_contains(&stdout_text, "setup:");
+    let output = output.expect("the script ends");
+    let [stdout_text, error_output] =
+        [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
+    // As root, the error output tells if setpriv is missing.
+    assert!(
+        stdout_text.contains("setup:"),
+        "{stdout_text}{error_output}"
+    );
     assert!(!output.status.success());
     let instruction = "As root, run:\n    apt-get install -y avrdude";
     assert_contains(&stdout_text, instruction);

@@ -18,49 +18,36 @@ fn boot_to_stand() -> FirmwareBench {
     bench
 }
 
-/// The allowed difference in time between the bytes of two consoles.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum TimeTolerance {
-    /// Two cycles. Two interrupts may delay the main loop before a byte, and each may come one cycle later on one
-    /// simulator than on the other.
-    Cycles,
-    /// One iteration of the main loop, which polls the EEPROM and the receiver only once per iteration.
-    LoopIteration,
-    /// No limit: the consoles are not compared. While long answers are sent, some bytes of a flood are lost, and the
-    /// choice of bytes depends on single cycles.
-    Any,
-}
+/// The allowed difference in time between the bytes of two consoles. Two interrupts may delay the main loop before a
+/// byte, and each may come one cycle later on one simulator than on the other.
+const INTERRUPT_CYCLES: u64 = 2;
 
-/// Upper bound of the cycles in one iteration of the main loop. An iteration computes a frame in at most 12 000 cycles,
-/// and writes a piece of a line. If the EEPROM becomes ready just before an iteration on one simulator and just after
-/// its start on the other, the main loop notices the change one iteration later on the other simulator.
+/// The allowed difference in time if the console depends on the EEPROM or the receiver, which the main loop polls only
+/// once per iteration: an upper bound of the cycles in one iteration of the main loop. An iteration computes a frame in
+/// at most 12 000 cycles, and writes a piece of a line. If the EEPROM becomes ready just before an iteration on one
+/// simulator and just after its start on the other, the main loop notices the change one iteration later on the other
+/// simulator.
 const MAX_LOOP_CYCLES: u64 = 20_000;
 
-/// Runs avr8js on the bytes that the bench has received, and checks that pulses, console and EEPROM agree.
-fn check_agreement(bench: &mut FirmwareBench, case_name: &str, tolerance: TimeTolerance) {
+/// Runs avr8js on the bytes that the bench has received, and checks that pulses, console and EEPROM agree. Without a
+/// maximum jitter, the consoles are not compared.
+fn check_agreement(bench: &mut FirmwareBench, case_name: &str, max_jitter_cycles: Option<u64>) {
     let end_cycle = bench.uno.cycle();
     let edges = bench.uno.edges();
     let simavr_outputs = Outputs::new(&edges, bench.bytes(), end_cycle);
     let received_bytes = bench.uno.received_by_uno();
     let image = FirmwareBench::image();
     let avr8js = run_on_avr8js(&image, &received_bytes, end_cycle, robot());
-    let avr8js = unwrap_or_panic(avr8js);
+    let avr8js = unwrap_or_panic(avr8js, case_name);
     let pulse_agreement = compare_pulses(&simavr_outputs, &avr8js.outputs, &servo_pins(robot()));
-    let pulse_agreement =
-        pulse_agreement.unwrap_or_else(|difference| panic!("{case_name}: {difference}"));
+    let pulse_agreement = unwrap_or_panic(pulse_agreement, case_name);
     assert_eq!(
         pulse_agreement.offset_cycles, AVR8JS_LAG_CYCLES,
         "{case_name}: the pulses' delay, cycles"
     );
-    let max_jitter_cycles = match tolerance {
-        TimeTolerance::Cycles => Some(2),
-        TimeTolerance::LoopIteration => Some(MAX_LOOP_CYCLES),
-        TimeTolerance::Any => None,
-    };
     if let Some(max_jitter_cycles) = max_jitter_cycles {
         let console_agreement = compare_console(&simavr_outputs, &avr8js.outputs);
-        let console_agreement =
-            console_agreement.unwrap_or_else(|difference| panic!("{case_name}: {difference}"));
+        let console_agreement = unwrap_or_panic(console_agreement, case_name);
         assert!(
             console_agreement.offset_cycles.abs() <= 1
                 && console_agreement.jitter_cycles <= max_jitter_cycles,
@@ -82,8 +69,8 @@ fn check_agreement(bench: &mut FirmwareBench, case_name: &str, tolerance: TimeTo
     );
 }
 
-fn unwrap_or_panic<T>(result: Result<T, String>) -> T {
-    result.unwrap_or_else(|error| panic!("{error}"))
+fn unwrap_or_panic<T>(result: Result<T, String>, case_name: &str) -> T {
+    result.unwrap_or_else(|error| panic!("{case_name}: {error}"))
 }
 
 #[test]
@@ -96,7 +83,7 @@ fn two_simulators_agree_on_every_pulse_of_every_gait() {
     }
     bench.say("stop");
     bench.run_ms(500);
-    check_agreement(&mut bench, "all gaits", TimeTolerance::Cycles);
+    check_agreement(&mut bench, "all gaits", Some(INTERRUPT_CYCLES));
 }
 
 #[test]
@@ -113,27 +100,26 @@ fn two_simulators_agree_on_saved_settings() {
         "only {written_count} bytes of two calibrations and a pose were written"
     );
     let case_name = "two calibrations and a pose";
-    check_agreement(&mut bench, case_name, TimeTolerance::LoopIteration);
+    check_agreement(&mut bench, case_name, Some(MAX_LOOP_CYCLES));
 }
 
 #[test]
 fn two_simulators_agree_with_a_saturated_serial_line() {
-    let moving_gait = gait_commands()
-        .iter()
-        .find(|line| *line != "stand")
-        .cloned();
+    let mut commands = gait_commands().into_iter();
+    let moving_gait = commands.find(|line| line != "stand");
     let moving_gait = moving_gait.unwrap_or_else(|| "stand".into());
     // No flood contains a command that moves the robot: bytes of a flood are lost, so the two simulators might execute
-    // different commands.
+    // different commands. While long answers are sent, some bytes of a flood are lost, and the choice of bytes depends
+    // on single cycles, so these consoles are not compared.
     let floods = [
-        ("status\n", TimeTolerance::Any),
-        ("help\n", TimeTolerance::Any),
-        ("?\r", TimeTolerance::Any),
-        ("x", TimeTolerance::LoopIteration),
-        ("\0\u{7f}\u{8}\n", TimeTolerance::LoopIteration),
+        ("status\n", None),
+        ("help\n", None),
+        ("?\r", None),
+        ("x", Some(MAX_LOOP_CYCLES)),
+        ("\0\u{7f}\u{8}\n", Some(MAX_LOOP_CYCLES)),
     ];
     thread::scope(|scope| {
-        for (flood, tolerance) in floods {
+        for (flood, max_jitter_cycles) in floods {
             let moving_gait = &moving_gait;
             scope.spawn(move || {
                 let mut bench = boot_to_stand();
@@ -144,7 +130,7 @@ fn two_simulators_agree_with_a_saturated_serial_line() {
                 bench.uno.flood(b"");
                 bench.uno.send(b"\nwatch 0\nstatus\n");
                 bench.run_ms(500);
-                check_agreement(&mut bench, &format!("{flood:?}"), tolerance);
+                check_agreement(&mut bench, &format!("{flood:?}"), max_jitter_cycles);
             });
         }
     });
@@ -152,7 +138,7 @@ fn two_simulators_agree_with_a_saturated_serial_line() {
 
 #[test]
 fn the_known_errors_of_avr8js_still_exist_and_are_corrected() {
-    unwrap_or_panic(run_judge_tests());
+    unwrap_or_panic(run_judge_tests(), "the judge's own tests");
 }
 
 fn pulse(rise_cycle: u64, width: u64) -> PinPulse {
@@ -183,38 +169,41 @@ fn the_first_difference_between_two_simulators_is_reported() {
             .map(|agreement| (agreement.count, agreement.offset_cycles))
     };
     assert_eq!(compare_with_simavr(&later_pulses), Ok((2, 1)));
-    for (avr8js_pulses, expected_text) in [
+    let find_pulse_error = |pulses: &[PinPulse]| compare_with_simavr(pulses).err();
+    let find_console_error =
+        |text: &str| compare_console(&simavr_outputs, &build_outputs(&pulses, text)).err();
+    for (message, expected_text) in [
         (
-            &[pulse(1_000, 24_000), pulse(321_000, 24_001)][..],
+            find_pulse_error(&[pulses[0], pulse(321_000, 24_001)]),
             "pulse 1: on simavr D9 rises at cycle 321000 for 24000 cycles; on avr8js D9 rises at cycle 321000 for 24001 cycles",
         ),
         (
-            &[pulse(1_000, 24_000), pulse(321_001, 24_000)],
+            find_pulse_error(&[pulses[0], pulse(321_001, 24_000)]),
             "on avr8js D9 rises at cycle 321001",
         ),
-        (&pulses[..1], "pulse 1 occurs only on simavr"),
         (
-            &[pulses[0], pulses[1], pulse(641_000, 24_000)],
+            find_pulse_error(&pulses[..1]),
+            "pulse 1 occurs only on simavr",
+        ),
+        (
+            find_pulse_error(&[pulses[0], pulses[1], pulse(641_000, 24_000)]),
             "pulse 2 occurs only on avr8js: D9 rises at cycle 641000",
         ),
-        (&[], "no servo gets a pulse"),
-    ] {
-        let message = compare_with_simavr(avr8js_pulses).expect_err(expected_text);
-        assert!(message.contains(expected_text), "{message}");
-    }
-    for (text, expected_text) in [
+        (find_pulse_error(&[]), "no servo gets a pulse"),
         (
-            "ok well",
+            find_console_error("ok well"),
             "byte 4 of the console, cycle 0: simavr sends \"ok wa\", avr8js \"ok we\"",
         ),
-        ("ok", "byte 2 of the console occurs only on simavr: \"ok \""),
         (
-            "ok walks",
+            find_console_error("ok"),
+            "byte 2 of the console occurs only on simavr: \"ok \"",
+        ),
+        (
+            find_console_error("ok walks"),
             "byte 7 of the console occurs only on avr8js: \"ok walks\"",
         ),
     ] {
-        let message = compare_console(&simavr_outputs, &build_outputs(&pulses, text))
-            .expect_err(expected_text);
+        let message = message.expect(expected_text);
         assert!(message.contains(expected_text), "{message}");
     }
 }

@@ -1,8 +1,8 @@
 //! Tests that a program computes the same results after `lizard-linker` has reordered its functions.
 
-use lizard_host_tests::avr_gcc::{compile_to_object, link, ram_address, shrink};
+use lizard_host_tests::avr_gcc::{compile_to_object, link, ram_address, run_to_end, shrink};
 use lizard_linker::{ROUTINES, Savings};
-use simulated_uno::{Fidelity, Image, Uno};
+use simulated_uno::Image;
 
 /// Links a program twice: unchanged, and shrunk by `lizard-linker`. Returns both images with their savings.
 fn link_plain_and_shrunk(program: &str) -> [(Image, Savings); 2] {
@@ -10,18 +10,6 @@ fn link_plain_and_shrunk(program: &str) -> [(Image, Savings); 2] {
     let (shrunk, savings) = shrink(&object);
     [(object, Savings::default()), (shrunk, savings)]
         .map(|(object, savings)| (link(ROUTINES, &object).expect("the object links"), savings))
-}
-
-/// Runs the program to its end on a UNO.
-fn run_to_end(image: &Image) -> Uno {
-    let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
-    uno.run_ms(100);
-    assert_eq!(
-        uno.peek(ram_address(image, "done")),
-        1,
-        "the program did not finish, or the timer interrupted it too rarely"
-    );
-    uno
 }
 
 /// Generates a C program that a timer interrupts, with twenty functions of 600 bytes. Each function `i` of the first
@@ -77,7 +65,7 @@ fn compute_expected_sum() -> u16 {
 }
 
 fn run_and_read_result(image: &Image) -> u16 {
-    let uno = run_to_end(image);
+    let uno = run_to_end(image, 100);
     let result_address = ram_address(image, "result");
     u16::from_le_bytes([uno.peek(result_address), uno.peek(result_address + 1)])
 }

@@ -34,15 +34,11 @@ fn eight_servos_are_exact_to_the_cycle_during_a_flood_of_echoed_bytes() {
         uno.flood(b"");
         uno.run_ms(10_000);
         assert_eq!(*uno.state(), State::Alive);
-        let edges = uno.edges();
         let frame_length_cycles = u64::from(frame_cycles(8));
-        let servo_edges = edges.iter().filter(|edge| edge.pin != Pin::d(13));
-        let servo_edges: Vec<_> = servo_edges.copied().collect();
-        assert_eq!(
-            max_pins_high(&servo_edges),
-            1,
-            "number of pins that are high at the same time"
-        );
+        let mut servo_edges = uno.edges();
+        servo_edges.retain(|edge| edge.pin != Pin::d(13));
+        let high_count = max_pins_high(&servo_edges);
+        assert_eq!(high_count, 1, "pins that are high at the same time");
         // The first two or three frames are not among the edges.
         let first_width = uno.pulses(Pin::arduino(PINS[0]))[0].width;
         let skipped_frame_count = (0..10)
@@ -51,9 +47,8 @@ fn eight_servos_are_exact_to_the_cycle_during_a_flood_of_echoed_bytes() {
         for (servo, pin) in PINS.into_iter().enumerate() {
             let pulses = uno.pulses(Pin::arduino(pin));
             assert!(pulses.len() > 880, "{} pulses of pin {pin}", pulses.len());
-            for (frame, pulse) in pulses.iter().enumerate() {
-                let expected =
-                    compute_expected_width(servo as u64, skipped_frame_count + frame as u64);
+            for (frame, pulse) in (skipped_frame_count..).zip(&pulses) {
+                let expected = compute_expected_width(servo as u64, frame);
                 assert_eq!(
                     pulse.width, expected,
                     "{fidelity:?}, pin {pin}, frame {frame}"
@@ -70,14 +65,28 @@ fn eight_servos_are_exact_to_the_cycle_during_a_flood_of_echoed_bytes() {
         // therefore loses bytes. The simulation according to the data sheet loses no byte.
         if fidelity == Fidelity::DataSheet {
             assert!(echo.len() > 115_000, "{} bytes", echo.len());
-            let expected_echo: Vec<u8> = text.iter().cycle().take(echo.len()).copied().collect();
-            let wrong_index = (0..echo.len()).find(|index| echo[*index] != expected_echo[*index]);
+            let mut pairs = echo.iter().zip(text.iter().cycle());
+            let wrong_index = pairs.position(|(byte, expected)| byte != expected);
             assert_eq!(wrong_index, None, "the first wrong byte of the echo");
             assert_eq!(uno.overrun_count(), 0);
             assert_eq!(uno.sent_byte_count(), echo.len() as u64);
         } else {
             assert!(echo.len() > 100_000, "{} bytes", echo.len());
         }
+    }
+}
+
+#[test]
+fn servo_pins_left_high_are_low_before_the_first_pulse() {
+    let mut uno = load_sweep_example(Fidelity::DataSheet);
+    let pins = PINS.map(|number| servo_pulses::Pin::arduino(number).expect("the UNO has the pin"));
+    for pin in pins {
+        uno.poke(u16::from(pin.port()), 0xff);
+    }
+    uno.run_ms(1);
+    for pin in pins {
+        let level = uno.peek(u16::from(pin.port())) & pin.mask();
+        assert_eq!(level, 0, "{pin:?}");
     }
 }
 
@@ -99,34 +108,26 @@ fn the_costs_in_the_readme_match_the_example() {
     uno.run_ms(100);
     let count_interrupt_cycles = |uno: &Uno| {
         let interrupts = uno.interrupt_stats();
-        let handler_cycles = |vector| {
-            let mut interrupts = interrupts.iter();
-            let handler = interrupts.find(|interrupt| interrupt.vector == vector);
-            handler.map_or(0, |interrupt| interrupt.cycles)
-        };
-        handler_cycles(11) + handler_cycles(12) // TIMER1_COMPA and TIMER1_COMPB
+        let handlers = interrupts.iter();
+        // TIMER1_COMPA and TIMER1_COMPB.
+        let handlers = handlers.filter(|handler| [11, 12].contains(&handler.vector));
+        handlers.map(|handler| handler.cycles).sum::<u64>()
     };
     let cycles_before = count_interrupt_cycles(&uno);
     uno.run_cycles(100 * u64::from(frame_cycles(8)));
     let cycles_per_frame = (count_interrupt_cycles(&uno) - cycles_before) as f64 / 100.0;
     let readme =
         std::fs::read_to_string(root().join("crates/pulses/README.md")).expect("the README exists");
-    let read_row = |name: &str| -> Vec<String> {
-        let row = readme
-            .lines()
-            .find(|line| line.starts_with(&format!("| {name}")));
-        let row = row.unwrap_or_else(|| panic!("the README has no row {name}"));
-        row.split('|')
-            .map(|cell| cell.trim().replace(' ', ""))
-            .collect()
-    };
-    let parse_number = |cell: &str| {
-        cell.parse::<f64>()
-            .unwrap_or_else(|_| panic!("{cell} is not a number"))
+    let read_number = |name: &str| -> f64 {
+        let prefix = format!("| {name}");
+        let row = readme.lines().find(|line| line.starts_with(&prefix));
+        let cell = row.and_then(|row| row.split('|').nth(2));
+        let number = cell.and_then(|cell| cell.replace(' ', "").parse().ok());
+        number.unwrap_or_else(|| panic!("the README has no number in a row {name}: {row:?}"))
     };
     // The tolerance is 2 %, because another compiler version may save a few bytes.
     let assert_near = |name: &str, measured: f64| {
-        let stated_value = parse_number(&read_row(name)[2]);
+        let stated_value = read_number(name);
         let error = (measured - stated_value).abs();
         assert!(
             error <= stated_value / 50.0,

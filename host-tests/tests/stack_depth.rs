@@ -1,5 +1,7 @@
 //! Tests of the stack depth computed from machine code, which is compared with known and measured depths.
 
+use std::fmt::Display;
+
 use lizard_host::bench::{StackDepth, StackError};
 use lizard_host_tests::assert_contains;
 use lizard_host_tests::avr_gcc::{assemble, compile_c};
@@ -17,6 +19,22 @@ fn compute_depth(image: &Image) -> StackDepth {
 
 fn expect_error(image: &Image) -> StackError {
     StackDepth::compute(image).expect_err("the stack depth of the program has no bound")
+}
+
+/// Checks that the stack depth of a program has no bound, for a reason whose message contains all `parts`.
+#[track_caller]
+fn assert_unbounded(image: &Image, parts: &[&str]) {
+    let error = expect_error(image).to_string();
+    for part in parts {
+        assert_contains(&error, part);
+    }
+}
+
+/// Checks the computed and the measured stack depth of a program.
+#[track_caller]
+fn assert_depth(image: &Image, expected: u16, case_name: impl Display) {
+    let depths = (compute_depth(image).max_depth(), measure_depth(image));
+    assert_eq!(depths, (expected, expected), "{case_name}");
 }
 
 /// Runs a program for 10 ms and returns its stack depth.
@@ -46,8 +64,7 @@ fn pushes_and_calls_add_up_along_the_deepest_path() {
     over: pop r17
         ret"
     ));
-    assert_eq!(compute_depth(&image).max_depth(), 2 + 3 + 2 + 1);
-    assert_eq!(measure_depth(&image), 8);
+    assert_depth(&image, 2 + 3 + 2 + 1, "pushes and calls");
     // There is no static data, so the rest of SRAM is free.
     assert_eq!(compute_depth(&image).margin(), 2048 - 8);
 }
@@ -78,10 +95,7 @@ fn stack_frames_and_final_jumps_are_counted() {
         last: push r16 $ pop r16
         leaf: ret"
         ));
-        let expected = 2 + 2 + frame_bytes + 2;
-        let computed = compute_depth(&image).max_depth();
-        assert_eq!(computed, expected, "{frame_bytes}");
-        assert_eq!(measure_depth(&image), expected, "{frame_bytes}");
+        assert_depth(&image, 2 + 2 + frame_bytes + 2, frame_bytes);
     }
 }
 
@@ -146,9 +160,7 @@ fn the_error_for_recursion_names_the_function() {
         }
         int main(void) { for (;;) deeper(PINB); }",
     );
-    let error = expect_error(&image).to_string();
-    assert_contains(&error, "deeper");
-    assert_contains(&error, "calls itself");
+    assert_unbounded(&image, &["deeper", "calls itself"]);
 }
 
 #[test]
@@ -161,14 +173,7 @@ fn the_error_for_an_indirect_call_names_the_function() {
         __attribute__((noinline)) void choose(void) { chosen(); GPIOR1 = 1; }
         int main(void) { chosen = PINB ? one : two; for (;;) choose(); }",
     );
-    let error = expect_error(&image).to_string();
-    assert_contains(&error, "choose");
-    assert_contains(&error, "computed address");
-    for jump in ["ijmp", "icall"] {
-        let image = assemble(&format!("{SET_STACK_POINTER}\n{jump}\nend: rjmp end"));
-        let error = expect_error(&image).to_string();
-        assert!(error.contains("computed address"), "{jump}");
-    }
+    assert_unbounded(&image, &["choose", "computed address"]);
 }
 
 #[test]
@@ -186,6 +191,8 @@ fn code_without_a_bound_on_its_stack_is_refused() {
             "stack pointer",
         ),
         ("nop", "runs beyond the end"),
+        ("ijmp\nend: rjmp end", "computed address"),
+        ("icall\nend: rjmp end", "computed address"),
     ];
     for (program, reason) in programs {
         let error = expect_error(&assemble(&format!("{SET_STACK_POINTER}\n{program}"))).to_string();
@@ -199,8 +206,7 @@ fn code_without_a_bound_on_its_stack_is_refused() {
     start: rjmp start
     handler: sei $ reti",
     );
-    let error = expect_error(&image).to_string();
-    assert!(error.contains("enables interrupts in"), "{error}");
+    assert_unbounded(&image, &["enables interrupts in"]);
 }
 
 #[test]
@@ -242,9 +248,7 @@ fn the_registers_and_locals_of_shared_prologues_are_counted() {
         // The stack contains the return address of `framed`, the saved registers, the local variables, and the return
         // address of `leaf`.
         let expected = 2 + saved_bytes + locals_bytes + 2;
-        let computed = compute_depth(&image).max_depth();
-        assert_eq!(computed, expected, "{first_register}");
-        assert_eq!(measure_depth(&image), expected, "{first_register}");
+        assert_depth(&image, expected, first_register);
     }
 }
 

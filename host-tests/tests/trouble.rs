@@ -2,7 +2,6 @@
 //! scenarios.
 
 use std::collections::BTreeSet;
-use std::thread;
 
 use lizard_host_tests::trouble::{Activity, Scenario, run_campaign, run_scenario};
 use lizard_host_tests::{FirmwareBench, patrolling_robot, robot_with_patrol, root, seed};
@@ -13,16 +12,9 @@ const SCENARIO_COUNT: u64 = 156;
 
 #[test]
 fn faults_at_any_moment_violate_no_rule() {
-    let image = FirmwareBench::image_with(patrolling_robot());
-    let thread_count = thread::available_parallelism().map_or(1, usize::from);
-    let summary = run_campaign(
-        &image,
-        patrolling_robot(),
-        seed(),
-        SCENARIO_COUNT,
-        thread_count,
-        |_, _| {},
-    );
+    let robot = patrolling_robot();
+    let image = FirmwareBench::image_with(robot);
+    let summary = run_campaign(&image, robot, seed(), SCENARIO_COUNT, |_, _| {});
     let first_failure = summary.failures.first();
     assert!(
         summary.failures.is_empty(),
@@ -54,12 +46,12 @@ fn seed_and_number_determine_a_scenario() {
 
 #[test]
 fn most_patrols_reach_the_wait_for_an_obstacle() {
-    let image = FirmwareBench::image_with(patrolling_robot());
-    let scenarios =
-        (0..SCENARIO_COUNT).map(|number| Scenario::generate(seed(), number, patrolling_robot()));
+    let robot = patrolling_robot();
+    let image = FirmwareBench::image_with(robot);
+    let scenarios = (0..SCENARIO_COUNT).map(|number| Scenario::generate(seed(), number, robot));
     let patrols = scenarios.filter(|scenario| scenario.activity == Activity::Patrolling);
     let reaches_obstacle_wait = |scenario: &Scenario| {
-        let record = run_scenario(&image, patrolling_robot(), scenario);
+        let record = run_scenario(&image, robot, scenario);
         let mut lines = record.printed_lines.iter();
         lines.any(|line| line.text == "# waiting for nose")
     };

@@ -1,12 +1,10 @@
 //! Test of the running image with the digital twin, from power-on to the body's position on the floor.
 
-use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::script::{Script, Step};
 use lizard_host::sim::session::play;
 use lizard_host::sim::spans::list_command_spans;
-use lizard_host::sim::supplies;
 use lizard_host::twin::replay::Replay;
-use lizard_host::twin::report::Report;
+use lizard_host::twin::report::compute_rows;
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_twin::ServoModel;
 use simulated_uno::{Fidelity, Uno};
@@ -21,25 +19,19 @@ fn walk_all_gaits(model: ServoModel) -> Replay {
         steps.push(Step { ms, command });
         ms += 1000 + (3000.0 * gait.period()).ceil() as u64;
     }
-    let script = Script {
-        steps,
-        end_ms: ms,
-        ..Script::default()
-    };
+    let script = Script::new(steps, ms);
     let mut uno = Uno::with_image(FirmwareBench::image(), Fidelity::DataSheet);
-    supplies::connect(&mut uno, robot());
-    let recording = play(&mut uno, servo_pins(robot()), &script, |_| Ok(()));
+    let recording = play(&mut uno, robot(), &script, |_| Ok(()));
     let recording = recording.expect("the event handler never fails");
     let spans = list_command_spans(&script, &recording.answers);
-    Replay::simulate(robot(), &recording.frames, spans, model)
+    Replay::simulate(robot(), recording.frames, spans, model)
 }
 
 #[test]
 fn the_image_moves_the_body_as_predicted() {
     let model = ServoModel::Ideal;
-    let report = Report::compute(robot(), &walk_all_gaits(model), model, false);
-    let cycles: Vec<_> = report
-        .rows
+    let rows = compute_rows(robot(), &walk_all_gaits(model), model, false);
+    let cycles: Vec<_> = rows
         .iter()
         .filter_map(|row| Some((row, row.cycle.as_ref()?)))
         .collect();
@@ -52,23 +44,23 @@ fn the_image_moves_the_body_as_predicted() {
     );
     let mut compared_count = 0;
     for (row, cycle) in cycles {
-        let mut compare =
-            |name: &str, measured: Option<f64>, expected: Option<f64>, tolerance: f64| {
-                let (Some(measured), Some(expected)) = (measured, expected) else {
-                    assert_eq!(measured, expected, "{} {name}", row.command);
-                    return;
-                };
-                compared_count += 1;
-                let error = (measured - expected).abs();
-                assert!(
-                    error <= tolerance.max(0.03 * expected.abs()),
-                    "{} {name}: expected {expected}, got {measured}",
-                    row.command
-                );
+        let (displacement, ideal) = (&cycle.displacement, &cycle.ideal_displacement);
+        for (name, measured, expected, tolerance) in [
+            ("forward", displacement.forward, ideal.forward, 0.5_f64),
+            ("turn", displacement.turn, ideal.turn, 0.3),
+        ] {
+            let (Some(measured), Some(expected)) = (measured, expected) else {
+                assert_eq!(measured, expected, "{} {name}", row.command);
+                continue;
             };
-        let (displacement, expected) = (&cycle.displacement, &cycle.ideal_displacement);
-        compare("forward", displacement.forward, expected.forward, 0.5);
-        compare("turn", displacement.turn, expected.turn, 0.3);
+            compared_count += 1;
+            let error = (measured - expected).abs();
+            assert!(
+                error <= tolerance.max(0.03 * expected.abs()),
+                "{} {name}: expected {expected}, got {measured}",
+                row.command
+            );
+        }
         let max_rate = robot().speed_limits().gait_slew + 5.0;
         assert!(row.servo_rate <= max_rate, "{}", row.command);
         let (name, margin) = row.margin.expect("the loops close at every pose");

@@ -10,7 +10,7 @@ import { readFileSync } from 'node:fs';
 
 import { corrections } from './src/corrections/index.js';
 import { loadHex } from './src/hex.js';
-import { PulseRecorder } from './src/pulse-recorder.js';
+import { recordPulses } from './src/pulse-recorder.js';
 import { readScript } from './src/script.js';
 import { Uno } from './src/uno.js';
 
@@ -22,7 +22,7 @@ function run(firmwarePath, script) {
   const { analogue, bytes, endCycle } = readScript(script);
   for (const { channel, volts } of analogue) uno.adc.channelValues[channel] = volts;
   const lines = [];
-  new PulseRecorder(uno, (pin, rise, width) => lines.push(`pulse ${pin} ${rise} ${width}`));
+  recordPulses(uno, (pin, rise, width) => lines.push(`pulse ${pin} ${rise} ${width}`));
   uno.usart.onByteTransmit = (byte, cycle) => lines.push(`sent ${cycle} ${toHex(byte)}`);
   uno.scheduleBytes(bytes);
   uno.run(endCycle);

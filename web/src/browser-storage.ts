@@ -31,25 +31,30 @@ function store(key: string, value: unknown): void {
   }
 }
 
-/** Loads the stored robots that this version of the page can use; returns an empty list for a damaged text. */
-function loadSavedChanges(key: string): SavedChanges[] {
+/** Loads a stored value; returns null if it is missing or damaged. */
+function load(key: string): unknown {
   try {
-    const robots = [JSON.parse(localStorage.getItem(key) ?? '[]')].flat() as (SavedChanges | null)[];
-    return robots.flatMap((robot) => {
-      if (!robot || typeof robot.toml !== 'string' || typeof robot.file !== 'string') return [];
-      // An earlier version of the page stored springs in another format, which is dropped.
-      const isCurrentFormat = typeof robot.floor?.twist === 'number' && ['rigid', 'strut'].includes(robot.floor.kind);
-      return [{ ...robot, floor: isCurrentFormat ? robot.floor : null }];
-    });
+    return JSON.parse(localStorage.getItem(key) ?? 'null');
   } catch {
-    return [];
+    return null;
   }
+}
+
+/** Loads the stored robots that this version of the page can use. */
+function loadSavedChanges(key: string): SavedChanges[] {
+  const robots = [load(key)].flat() as (SavedChanges | null)[];
+  return robots.flatMap((robot) => {
+    if (!robot || typeof robot.toml !== 'string' || typeof robot.file !== 'string') return [];
+    // An earlier version of the page stored springs in another format, which is dropped.
+    const isCurrentFormat = typeof robot.floor?.twist === 'number' && ['rigid', 'strut'].includes(robot.floor.kind);
+    return [{ ...robot, floor: isCurrentFormat ? robot.floor : null }];
+  });
 }
 
 /** Returns true if a stored value has the fields of a gait; the robot checks the ranges of the numbers later. */
 function isGait(value: unknown): value is Bars {
   const { name, held, period, duty, amplitude, start, gain } = (value ?? {}) as Partial<Bars>;
-  const numbers = [period, duty, amplitude, ...(start ?? []), ...(gain ?? [])];
+  const numbers = [period, duty, amplitude, start, gain].flat();
   return typeof name === 'string' && typeof held === 'boolean' && numbers.length === 11 && numbers.every(Number.isFinite);
 }
 
@@ -67,12 +72,8 @@ export const browserStorage = {
 
   /** Returns the gait in the editor; null if no usable gait is stored. */
   getGait: (): Bars | null => {
-    try {
-      const gait: unknown = JSON.parse(localStorage.getItem(GAIT_KEY) ?? 'null');
-      return isGait(gait) ? gait : null;
-    } catch {
-      return null;
-    }
+    const gait = load(GAIT_KEY);
+    return isGait(gait) ? gait : null;
   },
 
   putGait: (gait: Bars) => store(GAIT_KEY, gait),

@@ -1,5 +1,6 @@
 // A second robot on the same floor, which can walk another gait. It has its own instance of the firmware's core.
-import { isRefused, type Floor, type Frame, Robot } from './robot';
+import { isRefused, type Frame, Robot } from './robot';
+import type { Session } from './session';
 
 /** Number of frames between power-on and standing. */
 const WAKE_FRAME_COUNT = 200;
@@ -9,28 +10,23 @@ export class Companion {
   frame: Frame | null = null;
   /** The lines that the robot receives with the next frame. */
   private pendingLines = '';
-
-  private constructor(
-    private readonly robot: Robot,
-    private readonly volts: number,
-  ) {}
+  private readonly robot = new Robot();
+  private readonly volts: number;
 
   /**
-   * Creates a companion that stands at the start, with this floor and this servo model. Throws an error with a message
-   * for the user.
+   * Creates a companion that stands at the start, with the floor, the servo model and the supply voltage of the
+   * session. Throws an error with a message for the user.
    */
-  static create(toml: string, floor: Floor, servoModel: string, volts: number): Companion {
-    const robot = new Robot();
-    const result = robot.read(toml);
+  constructor(toml: string, { floor, servos, volts }: Session) {
+    this.volts = volts;
+    const result = this.robot.read(toml);
     if (isRefused(result)) throw new Error(result.refused);
-    robot.setFloor(floor);
-    robot.setServos(servoModel);
-    robot.startCore();
-    const companion = new Companion(robot, volts);
-    for (let frame = 0; frame < WAKE_FRAME_COUNT; frame++) companion.step();
-    robot.restart();
-    companion.step();
-    return companion;
+    this.robot.setFloor(floor);
+    this.robot.setServos(servos);
+    this.robot.startCore();
+    for (let frame = 0; frame < WAKE_FRAME_COUNT; frame++) this.step();
+    this.robot.restart();
+    this.step();
   }
 
   /** Frees the companion's memory; `frame` stays valid. */

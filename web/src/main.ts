@@ -15,9 +15,9 @@ import { canLag, load } from './robot';
 import { Session } from './session';
 import type { BoardBanner } from './session-state';
 import { getMessage } from './problem';
-import { AlarmView } from './view/alarm';
-import { BoardRobotWarning } from './view/board-robot-warning';
-import { CalibrationView } from './view/calibrate';
+import { setUpAlarm } from './view/alarm';
+import { warnOfBoardRobot } from './view/board-robot-warning';
+import { setUpCalibration } from './view/calibrate';
 import { element, setText, showMessage } from './view/elements';
 import { RobotChoice } from './view/robot-choice';
 import { downloadRobot } from './view/download';
@@ -26,18 +26,18 @@ import { FitView } from './view/fit';
 import { FlashView } from './view/flash';
 import { FloorView } from './view/floor';
 import { GaitEditorView } from './view/gait-editor';
-import { HealthView } from './view/health';
+import { setUpHealth } from './view/health';
 import { RecordView } from './view/record';
-import { LengthsView } from './view/lengths';
+import { setUpLengths } from './view/lengths';
 import { LogView } from './view/log';
 import { SingularityMapView } from './view/singularity-map';
 import { MarginsView } from './view/margins';
 import type { MeasureView } from './view/measure';
-import { PaceView } from './view/pace';
+import { setUpPace } from './view/pace';
 import { OwnRobots } from './view/own-robots';
 import { PartsView } from './view/parts';
 import { GestureEditorView } from './view/gesture-editor';
-import { RemoteView } from './view/remote';
+import { setUpRemote, vibrate } from './view/remote';
 import { RobotTextView } from './view/robot-text';
 import { ROOM_OPENED, openRoom } from './view/rooms';
 import { RoutinesView } from './view/routines';
@@ -46,7 +46,7 @@ import { chooseGait, Steering } from './view/steer';
 import { SetupDialog } from './view/setup';
 import { SketchView } from './view/sketch';
 import { ProblemList } from './view/problems';
-import { WorldView } from './view/world';
+import { setUpWorld } from './view/world';
 import { BoardWriter } from './view/writer';
 import { WORDS, findUnknownWords } from './words';
 
@@ -65,13 +65,13 @@ declare global {
 const problems = new ProblemList();
 
 async function start(): Promise<void> {
-  const [module, choice] = await Promise.all([files.robotModule(), RobotChoice.load()]);
+  const [module, choice] = await Promise.all([files.robotModule(), files.robots().then((robots) => new RobotChoice(robots))]);
   const session = new Session(load(module), {
     onFrame(frame, widths, seconds) {
       floor.addToTrack(frame.place);
       recordView.addFrame(frame, widths, seconds);
       if (frame.scene) for (const map of maps) map.addPose(frame.scene);
-      if (widths) scope.setWidths(widths);
+      if (widths) scope.frameWidths = widths;
     },
     onPulse: (pin, rise, width) => {
       latestCycle = rise + width;
@@ -85,7 +85,7 @@ async function start(): Promise<void> {
       log.showReceived(line);
       setup.handleReceived(line);
       measure?.protocol?.handleReceived(line);
-      if (line.startsWith('# fault')) remote.vibrate();
+      if (line.startsWith('# fault')) vibrate();
     },
     confirmUno: () =>
       confirm(
@@ -93,7 +93,7 @@ async function start(): Promise<void> {
           'Writing there would overwrite a Nano’s boot loader, which only a programmer at its pins can repair. OK: it is a UNO.',
       ),
     onProblem(cause, message) {
-      if (cause === 'fault' && message !== null) remote.vibrate();
+      if (cause === 'fault' && message !== null) vibrate();
       // The page offers to write this firmware to a board without it.
       const remedy = { label: 'Write firmware and robot to it', action: () => flash.write('all') };
       problems.setMessage(cause, message, cause === 'board' && session.link.kind !== 'radio' ? remedy : null);
@@ -115,19 +115,19 @@ async function start(): Promise<void> {
   session.followRobot(() => floor.clearTracks());
   const isSetupOpen = () => setup.isOpen;
   const drive = new DriveView(session, predictor);
-  new PaceView(session);
+  setUpPace(session);
   const steer = new Steering(session, predictor, isSetupOpen);
   const writer = new BoardWriter(session);
-  new WorldView(session);
-  new HealthView(session, writer);
-  new LengthsView(session, (edits) => sketch.offerValidLengths(edits));
+  setUpWorld(session);
+  setUpHealth(session, writer);
+  setUpLengths(session, (edits) => sketch.offerValidLengths(edits));
   const parts = new PartsView(session);
   const fit = new FitView(session, parts);
   const sketch = new SketchView(session, fit);
   const recordView = new RecordView(session, floor);
-  new CalibrationView(session);
-  const alarm = new AlarmView(session);
-  const remote = new RemoteView();
+  setUpCalibration(session);
+  const updateAlarm = setUpAlarm(session);
+  setUpRemote();
   const text: RobotTextView = new RobotTextView(session, writer, () => routines.show());
   const routines = new RoutinesView(session, text, writer);
   new GaitEditorView(session, writer, (ownGait, foundGait, output) => {
@@ -148,7 +148,7 @@ async function start(): Promise<void> {
   };
   document.addEventListener(ROOM_OPENED, () => void openMeasure());
   session.followRobot(() => void openMeasure());
-  new BoardRobotWarning(session, problems, ({ file, toml }) => {
+  warnOfBoardRobot(session, problems, ({ file, toml }) => {
     choice.select(file);
     void replaceRobot(async () => {
       await loadChosenFile();
@@ -188,13 +188,13 @@ async function start(): Promise<void> {
     connectButton.disabled = isBusy || (!isReal && !hasSerial());
     radioButton.disabled = isBusy;
     radioButton.hidden = isReal || findBluetoothProblem() !== null;
-    choice.isEnabled = !isBusy;
+    choice.list.disabled = isBusy;
   });
   session.state.link.subscribe(() => (latestCycle = 0));
   session.state.gait.subscribe(() => session.description && updateNumbers());
   function updateNumbers(): void {
     const { last, gait } = session;
-    alarm.update();
+    updateAlarm();
     setText(element('doing'), gait || '–');
     setText(element('age'), `${session.secondsSinceLine.toFixed(1)} s ago`);
     if (last) {
@@ -233,7 +233,7 @@ async function start(): Promise<void> {
     await loadRobot();
     ownRobots.putAside(saved);
   };
-  choice.onChange(() => void (choice.chosenOwnIndex === null ? replaceRobot(loadChosenFile) : ownRobots.restore(choice.chosenOwnIndex)));
+  choice.list.addEventListener('change', () => void (choice.chosenOwnIndex === null ? replaceRobot(loadChosenFile) : ownRobots.restore(choice.chosenOwnIndex)));
 
   element('reset').addEventListener('click', () => void session.reset());
 

@@ -30,5 +30,8 @@ export function load(module: WebAssembly.Module): Robot {
 
 export const isRefused = (result: object): result is Refusal => 'refused' in result;
 
+/** Makes a refusal by the page itself. */
+export const refuse = (refused: string): Refusal => ({ refused, consequence: null, line: null, key: '' });
+
 /** Returns true if a leg can lag behind its servo. */
 export const canLag = ({ kind, play }: Floor) => kind !== 'rigid' || play > 0;

@@ -162,7 +162,7 @@ export class Session {
       this.firmware = firmware;
       const refusal = this.loadToml(toml, null, [toml, predictions]);
       if (refusal) throw new Error(`${name}.toml: ${refusal.refused}`);
-      await this.restartBoard(false);
+      if (!this.isReal) await this.simulate();
       this.file = name;
       this.storeChanges();
     } catch (error) {
@@ -174,13 +174,13 @@ export class Session {
   }
 
   /**
-   * Loads a changed robot.toml or returns its refusal. The simulated UNO restarts with it and keeps its EEPROM. The
-   * floor set in the page stays, unless `floor` replaces it.
+   * Loads a changed robot.toml or returns its refusal. The simulated UNO restarts with it and keeps its EEPROM; a real
+   * board keeps its own robot. The floor set in the page stays, unless `floor` replaces it.
    */
   async change(toml: string, floor = this.state.floor.value): Promise<Refusal | null> {
     const refusal = this.loadToml(toml, floor);
     if (refusal) return refusal;
-    await this.restartBoard(true);
+    if (!this.isReal) await this.simulate(this.simulatedLink?.board.eeprom);
     this.storeChanges();
     return null;
   }
@@ -213,11 +213,6 @@ export class Session {
       this.state.description.value = description;
     });
     return null;
-  }
-
-  /** Restarts a simulated board with the page's robot; a real board keeps its own robot. */
-  private async restartBoard(keepsEeprom: boolean): Promise<void> {
-    if (!this.isReal) await this.simulate(keepsEeprom ? this.simulatedLink?.board.eeprom : undefined);
   }
 
   /** The firmware and the robot as one image of the flash. */
@@ -263,7 +258,7 @@ export class Session {
     for (const [name, pin] of this.description.inputs) board.setContact(pin, this.closedInputs.has(name));
     const onFrame = (widths: Four<number>) =>
       this.handleFrame(this.robot.followPulses(widths), widths, FRAME_SECONDS);
-    await this.attach(new UnoLink(board, pins, { onFrame, onPulse: (...pulse) => this.listener.onPulse(...pulse) }));
+    await this.attach(new UnoLink(board, pins, onFrame, (...pulse) => this.listener.onPulse(...pulse)));
     this.simulatedLink?.board.setSupply(this.volts);
   }
 

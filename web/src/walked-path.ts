@@ -8,12 +8,7 @@ const KEPT_SECONDS = 31;
  * The displacement in the last cycle, in the robot's frame at the cycle's start: `forward` and `left` in mm, `turn` in
  * deg counter-clockwise. `lag` is the largest lag of a leg in this cycle, deg.
  */
-export interface CycleDisplacement {
-  forward: number;
-  left: number;
-  turn: number;
-  lag: number;
-}
+export type CycleDisplacement = ReturnType<typeof Robot.displacementBetween> & { lag: number };
 
 export class WalkedPath {
   private frames: { time: number; frame: Frame }[] = [];

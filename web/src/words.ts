@@ -1,26 +1,14 @@
 // The console words that the page sends or receives. They must be in the core's list, in
 // crates/core/src/console/word.rs: when the page starts, it reports each word that is missing from the list.
 
-export const WORDS = {
-  stop: 'stop',
-  rest: 'rest',
-  help: 'help',
-  status: 'status',
-  pose: 'pose',
-  speed: 'speed',
-  watch: 'watch',
-  trim: 'trim',
-  limit: 'limit',
-  dir: 'dir',
-  scale: 'scale',
-  cal: 'cal',
-  center: 'center',
-  save: 'save',
-  load: 'load',
-  factory: 'factory',
-  boot: 'boot',
-  deadman: 'deadman',
-} as const;
+const WORD_LIST = [
+  'stop', 'rest', 'help', 'status', 'pose', 'speed', 'watch', 'trim', 'limit', 'dir', 'scale', 'cal', 'center', 'save',
+  'load', 'factory', 'boot', 'deadman',
+] as const;
+
+type Word = (typeof WORD_LIST)[number];
+
+export const WORDS = Object.fromEntries(WORD_LIST.map((word) => [word, word])) as { readonly [Name in Word]: Name };
 
 /** The gaits that the page uses by name: every robot has `stand`, and the page prefers `walk` to other gaits. */
 export const GAITS = { stand: 'stand', walk: 'walk' } as const;
@@ -33,5 +21,5 @@ export const NOTHING_SAVED_LINE = '# calibration: none saved';
 
 /** Returns the words of the page and its buttons that are missing from the core's list. */
 export function findUnknownWords(buttons: string[], coreWords: string[]): string[] {
-  return [...new Set([...Object.values(WORDS), ...buttons])].filter((word) => !coreWords.includes(word));
+  return [...new Set([...WORD_LIST, ...buttons])].filter((word) => !coreWords.includes(word));
 }

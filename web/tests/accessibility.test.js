@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { findViolations } from './axe.js';
-import { advance, openStanding, unfold, useBrowser } from './browser.js';
+import { advance, openStanding, startDrag, unfold, useBrowser, testPage } from './browser.js';
 
 useBrowser();
 
@@ -54,8 +54,7 @@ for (const [name, options] of [
   ['dark, on a phone', { ...PHONE, colorScheme: 'dark' }],
   ['in forced colours', { forcedColors: 'active' }],
 ]) {
-  test(`axe-core finds no violations in any step of the first connection, ${name}`, async () => {
-    const page = await openStanding({ ...options, bypassCSP: true });
+  testPage(`axe-core finds no violations in any step of the first connection, ${name}`, () => openStanding({ ...options, bypassCSP: true }), async (page) => {
     await page.locator('#setup-open').click();
     const steps = await page.locator('#setup-steps button').all();
     assert.equal(steps.length, 9);
@@ -88,8 +87,7 @@ test('no screen scrolls sideways, with narrow or wide fonts', async () => {
   assert.deepEqual(overflows, []);
 });
 
-test('arrow keys and dragging pan the floor and switch Follow off', async () => {
-  const page = await openStanding();
+testPage('arrow keys and dragging pan the floor and switch Follow off', openStanding, async (page) => {
   const floor = page.locator('#floor');
   const follow = page.getByRole('button', { name: 'Follow' });
   assert.equal(await follow.getAttribute('aria-pressed'), 'true');
@@ -97,10 +95,8 @@ test('arrow keys and dragging pan the floor and switch Follow off', async () => 
   await floor.press('ArrowLeft');
   assert.equal(await follow.getAttribute('aria-pressed'), 'false');
   await follow.click();
-  const box = await floor.boundingBox();
-  await page.mouse.move(box.x + 300, box.y + 300);
-  await page.mouse.down();
-  await page.mouse.move(box.x + 350, box.y + 320);
+  const { x, y } = await floor.boundingBox();
+  await startDrag(page, [x + 300, y + 300], [x + 350, y + 320]);
   await page.mouse.up();
   assert.equal(await follow.getAttribute('aria-pressed'), 'false');
 });

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { afterEach, test } from 'node:test';
 
-import { openBrowserWithBluetooth, openPage, readText, unfold, useBrowser, hidePage } from './browser.js';
+import { openBrowserWithBluetooth, openPage, readText, unfold, useBrowser, hidePage, testPage, readGait, findGaitButton } from './browser.js';
 import { HM10, NORDIC, Radio } from './radio.js';
 
 let radio;
@@ -13,7 +13,6 @@ afterEach(async () => {
   radio = undefined;
 });
 
-const readActivity = (page) => page.evaluate(() => window.lizard.gait);
 const readPageMs = (page) => page.evaluate(() => performance.now());
 
 /** Opens the page and picks a module that is in range. */
@@ -26,20 +25,19 @@ async function openPicked(module, options) {
 async function openWalking(module) {
   const page = await openPicked(module);
   await radio.runUntil('the robot is found', async () => (await readText(page, '#where')).includes(`board at ${module.name} that has not restarted`));
-  await radio.runUntil('the robot stands', async () => (await readActivity(page)) === 'stand');
-  await page.locator('#gaits button[data-command="walk"]').click();
-  await radio.runUntil('the robot walks', async () => (await readActivity(page)) === 'walk');
+  await radio.runUntil('the robot stands', async () => (await readGait(page)) === 'stand');
+  await findGaitButton(page, 'walk').click();
+  await radio.runUntil('the robot walks', async () => (await readGait(page)) === 'walk');
   return page;
 }
 
 for (const module of [HM10, NORDIC]) {
-  test(`a robot is driven and stopped through the module ${module.name}`, async () => {
-    const page = await openWalking(module);
+  testPage(`a robot is driven and stopped through the module ${module.name}`, () => openWalking(module), async (page) => {
     await radio.run(3000);
-    assert.equal(await readActivity(page), 'walk', 'the page reports the walk');
+    assert.equal(await readGait(page), 'walk', 'the page reports the walk');
     assert.ok((await readPageMs(page)) - (await page.evaluate(() => window.lastMoveMs)) < 100, 'its servos move');
     await page.keyboard.press('Escape');
-    await radio.runUntil('the robot stops', async () => (await readActivity(page)) === 'stop');
+    await radio.runUntil('the robot stops', async () => (await readGait(page)) === 'stop');
     assert.ok(Math.max(...radio.packetLengths) <= 20, 'packets have at most 20 bytes');
     const receivedText = await page.evaluate(() => window.receivedText);
     assert.ok(receivedText.indexOf('deadman 901\n') < receivedText.indexOf('walk\n'), receivedText);
@@ -50,8 +48,7 @@ for (const module of [HM10, NORDIC]) {
   });
 }
 
-test('a robot whose link is cut stops, and the page reconnects by itself', async () => {
-  const page = await openWalking(HM10);
+testPage('a robot whose link is cut stops, and the page reconnects by itself', () => openWalking(HM10), async (page) => {
   await radio.run(1000);
   const cutMs = await readPageMs(page);
   await radio.takeOutOfRange();
@@ -61,17 +58,16 @@ test('a robot whose link is cut stops, and the page reconnects by itself', async
   const lastMoveMs = await page.evaluate(() => window.lastMoveMs);
   assert.ok(lastMoveMs - cutMs <= 901 + 40, `movement after the cut: ${lastMoveMs - cutMs} ms`);
   await radio.bringIntoRange();
-  await radio.runUntil('the robot is stopped', async () => (await readActivity(page)) === 'stop');
+  await radio.runUntil('the robot is stopped', async () => (await readGait(page)) === 'stop');
   await page.locator('#problems', { hasText: 'The robot has stopped by itself, because it received no line for too long.' }).waitFor();
   assert.ok(!(await readText(page, '#problems')).includes('out of range'));
   assert.equal(await page.locator('#alarm').isVisible(), false);
-  await page.locator('#gaits button[data-command="walk"]').click();
-  await radio.runUntil('the robot walks again', async () => (await readActivity(page)) === 'walk');
+  await findGaitButton(page, 'walk').click();
+  await radio.runUntil('the robot walks again', async () => (await readGait(page)) === 'walk');
 });
 
-test('a trim that was set out of range returns to the robot\'s value when the robot answers again', async () => {
-  const page = await openPicked(HM10);
-  await radio.runUntil('the robot stands', async () => (await readActivity(page)) === 'stand');
+testPage('a trim that was set out of range returns to the robot\'s value when the robot answers again', () => openPicked(HM10), async (page) => {
+  await radio.runUntil('the robot stands', async () => (await readGait(page)) === 'stand');
   await unfold(page, '#calibrate');
   const trim = page.locator('#calibration fieldset').first().getByLabel('trim');
   await radio.runUntil('the trim is read', () => trim.isVisible());
@@ -84,8 +80,7 @@ test('a trim that was set out of range returns to the robot\'s value when the ro
   await radio.runUntil('the trim is read again', async () => (await trim.inputValue()) === '0');
 });
 
-test('after a stop that is pressed out of range, "stop" is the first line that the robot receives', async () => {
-  const page = await openWalking(HM10);
+testPage('after a stop that is pressed out of range, "stop" is the first line that the robot receives', () => openWalking(HM10), async (page) => {
   await radio.takeOutOfRange();
   await radio.run(300);
   await page.keyboard.press('Escape');
@@ -98,8 +93,7 @@ test('after a stop that is pressed out of range, "stop" is the first line that t
   assert.equal(lines.find((line) => line !== '' && !line.startsWith('OK+')), 'stop', lines.join('|'));
 });
 
-test('the page names a module through which no robot answers', async () => {
-  const page = await openPicked(HM10, { hasRobot: false });
+testPage('the page names a module through which no robot answers', () => openPicked(HM10, { hasRobot: false }), async (page) => {
   await radio.runUntil('the silence is shown', async () => (await readText(page, '#problems')).includes('no robot answers'));
   assert.match(await readText(page, '#problems'), /The module is connected, but no robot answers from the board at HMSoft\. Check that the module's TXD is on D0/);
   assert.equal(await page.getByRole('button', { name: 'Write firmware and robot to it' }).count(), 0);
@@ -128,8 +122,7 @@ test('the page names the setting that allows forbidden Bluetooth', async () => {
   assert.match(await readText(page, '#problems'), /disallowed by permissions policy/, 'the browser itself has refused it');
 });
 
-test('a phone stops its robot when its screen goes off', async () => {
-  const page = await openWalking(HM10);
+testPage('a phone stops its robot when its screen goes off', () => openWalking(HM10), async (page) => {
   await radio.run(1000);
   await hidePage(page);
   const hiddenMs = await page.evaluate(() => window.readBoardMs());
@@ -140,15 +133,14 @@ test('a phone stops its robot when its screen goes off', async () => {
   assert.ok(lastMoveMs - hiddenMs < 400, `movement afterwards: ${lastMoveMs - hiddenMs} ms`);
 });
 
-test('a robot stops when its phone falls asleep without warning, and the page reports the stop afterwards', async () => {
-  const page = await openWalking(HM10);
+testPage('a robot stops when its phone falls asleep without warning, and the page reports the stop afterwards', () => openWalking(HM10), async (page) => {
   const sleepMs = await page.evaluate(() => window.readBoardMs());
   await radio.sleep(3000);
   const lastMoveMs = await page.evaluate(() => window.lastMoveBoardMs);
   assert.ok(lastMoveMs - sleepMs > 300 && lastMoveMs - sleepMs <= 901 + 40, `movement afterwards: ${lastMoveMs - sleepMs} ms`);
   await page.clock.fastForward(3000);
   await radio.runUntil('the reason is shown', async () => (await readText(page, '#problems')).includes('it received no line for too long'));
-  assert.equal(await readActivity(page), 'stop');
+  assert.equal(await readGait(page), 'stop');
 });
 
 test('on an iPhone, the page names a suitable browser at once', async () => {

@@ -17,9 +17,9 @@ export async function reconnect(page) {
 
 /**
  * Opens the page, connects a board that has the firmware and the named robot in its flash, and advances the page's
- * clock by `ms`.
+ * clock by `ms`: after the default, the robot stands.
  */
-export async function openWithBoard(robotName, ms, settings = {}) {
+export async function openWithBoard(robotName = 'robot', ms = 8000, settings = {}) {
   const page = await openPage({}, installFakeSerial);
   await connect(page, { flashedRobot: robotName, ...settings });
   await page.clock.runFor(ms);

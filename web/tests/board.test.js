@@ -1,8 +1,7 @@
 // A board on USB that is new, has another firmware, or is disconnected while it walks.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
 
-import { readText, unfold, useBrowser, chooseRobot } from './browser.js';
+import { readText, unfold, useBrowser, chooseRobot, testPage, readPlace, findGaitButton } from './browser.js';
 import { openWithBoard, openWithDeafBoard, openWithErasedBoard, runUntil, waitForText } from './board.js';
 
 useBrowser();
@@ -13,13 +12,12 @@ const waitForLine = (page, line, count = 1) =>
 
 async function openWalking() {
   const page = await openWithBoard('robot', 4000);
-  await page.locator('#gaits button[data-command="walk"]').click();
+  await findGaitButton(page, 'walk').click();
   await waitForLine(page, /^ok walk$/);
   return page;
 }
 
-test('the page identifies a new UNO, and one button writes its firmware', async () => {
-  const page = await openWithErasedBoard();
+testPage('the page identifies a new UNO, and one button writes its firmware', openWithErasedBoard, async (page) => {
   await page.locator('#problems', { hasText: 'The board is an Arduino UNO, an ATmega328P according to its boot loader, without this firmware.' }).waitFor();
   assert.equal(await readText(page, '#where'), 'on a board on USB without this firmware');
   await page.getByRole('button', { name: 'Write firmware and robot to it' }).click();
@@ -35,22 +33,19 @@ test('the page identifies a new UNO, and one button writes its firmware', async 
   await page.locator('#log div', { hasText: 'ok watch 2' }).first().waitFor();
 });
 
-test('for a board that does not answer, the page asks whether it is a UNO or a Nano', async () => {
-  const page = await openWithDeafBoard();
+testPage('for a board that does not answer, the page asks whether it is a UNO or a Nano', openWithDeafBoard, async (page) => {
   await waitForText(page, '#problems', /no boot loader answers\. Is it a UNO or a Nano\?/);
   assert.ok(await page.locator('#problems').isVisible());
 });
 
-test('the page queries and tracks a board that its port does not reset', async () => {
-  const page = await openWithBoard('robot', 5000, { boardKeepsRunning: true });
+testPage('the page queries and tracks a board that its port does not reset', () => openWithBoard('robot', 5000, { boardKeepsRunning: true }), async (page) => {
   await page.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
   assert.match(await readText(page, '#where'), /^on a board on USB that has not restarted/);
   assert.equal(await readText(page, '#doing'), 'stand');
   assert.equal(await page.locator('#problems').isVisible(), false);
 });
 
-test('choosing another robot keeps the board connected', async () => {
-  const page = await openWalking();
+testPage('choosing another robot keeps the board connected', openWalking, async (page) => {
   await chooseRobot(page, 'large');
   assert.match(await readText(page, '#where'), /^on a board on USB with another robot, robot paper [0-9a-f]{8}: choose that robot, or write this robot$/);
   await page.locator('#connect', { hasText: 'Back to the simulation' }).waitFor();
@@ -60,8 +55,7 @@ test('choosing another robot keeps the board connected', async () => {
   assert.ok(await page.evaluate(() => window.lizard.isReal && window.lizard.last.place.y > 1), 'the robot is tracked');
 });
 
-test('the page reports a board with another robot, and one press shows that robot', async () => {
-  const page = await openWithBoard('large', 8000);
+testPage('the page reports a board with another robot, and one press shows that robot', () => openWithBoard('large'), async (page) => {
   const offer = page.locator('#problems').getByRole('button', { name: 'Show large' });
   await offer.waitFor();
   assert.match(await readText(page, '#problems'), /^The board on USB has another robot, large, but the page draws and predicts robot\.toml\./);
@@ -81,8 +75,7 @@ test('the page reports a board with another robot, and one press shows that robo
   await page.locator('#problems', { hasText: 'It is not among the page’s robots: open its robot.toml in Build, or write this robot.' }).waitFor();
 });
 
-test('the alarm for a board that is out of range ends when the board is gone', async () => {
-  const page = await openWithBoard('robot', 8000);
+testPage('the alarm for a board that is out of range ends when the board is gone', openWithBoard, async (page) => {
   await page.evaluate(() => {
     const { link } = window.lizard;
     link.onRange(false);
@@ -92,8 +85,7 @@ test('the alarm for a board that is out of range ends when the board is gone', a
   assert.equal(await page.locator('#alarm').isHidden(), true);
 });
 
-test('disconnecting a board stops it', async () => {
-  const page = await openWalking();
+testPage('disconnecting a board stops it', openWalking, async (page) => {
   await page.locator('#connect').click();
   await page.clock.runFor(1500);
   await page.locator('#log div', { hasText: /^ok stop$/ }).waitFor();
@@ -101,16 +93,14 @@ test('disconnecting a board stops it', async () => {
   assert.match(await readText(page, '#where'), /simulated UNO/);
 });
 
-test('the page reports a board that does not confirm the stop', async () => {
-  const page = await openWalking();
+testPage('the page reports a board that does not confirm the stop', openWalking, async (page) => {
   await page.evaluate(() => (window.attachedBoard.send = () => {}));
   await page.locator('#connect').click();
   await page.clock.runFor(3000);
   await page.locator('#problems', { hasText: 'did not confirm its stop' }).waitFor();
 });
 
-test('closing the page stops a walking board, and the browser asks for confirmation', async () => {
-  const page = await openWalking();
+testPage('closing the page stops a walking board, and the browser asks for confirmation', openWalking, async (page) => {
   const dialogEvent = page.waitForEvent('dialog');
   // This call returns only after the dialog is answered.
   const reload = page.evaluate(() => location.reload());
@@ -122,20 +112,17 @@ test('closing the page stops a walking board, and the browser asks for confirmat
   await page.locator('#log div', { hasText: /^ok stop$/ }).waitFor();
 });
 
-test('the page tracks the board again after a reset', async () => {
-  const page = await openWalking();
+testPage('the page tracks the board again after a reset', openWalking, async (page) => {
   const watchCount = await page.locator('#log div', { hasText: /^ok watch 2$/ }).count();
   await page.locator('#reset').click();
   await waitForLine(page, /^ok watch 2$/, watchCount + 1);
-  const readY = () => page.evaluate(() => window.lizard.last.place.y);
-  await page.locator('#gaits button[data-command="walk"]').click();
+  await findGaitButton(page, 'walk').click();
   await waitForLine(page, /^ok walk$/, 2);
-  const startY = await readY();
-  await runUntil(page, 'the page\'s robot has walked 5 mm', async () => (await readY()) - startY > 5);
+  const { y: startY } = await readPlace(page);
+  await runUntil(page, 'the page\'s robot has walked 5 mm', async () => (await readPlace(page)).y - startY > 5);
 });
 
-test('the page tracks a board again that restarted during an answer', async () => {
-  const page = await openWithBoard('robot', 4000);
+testPage('the page tracks a board again that restarted during an answer', () => openWithBoard('robot', 4000), async (page) => {
   await waitForLine(page, /^ok watch 2$/);
   // The page asks for the status twice a second.
   await page.evaluate(() => {
@@ -153,17 +140,14 @@ test('the page tracks a board again that restarted during an answer', async () =
   await waitForLine(page, /^ok watch 2$/, 2);
 });
 
-test('the page shows no pulses for a board that does not report them', async () => {
-  const page = await openWithBoard('robot', 5000);
+testPage('the page shows no pulses for a board that does not report them', () => openWithBoard('robot', 5000), async (page) => {
   await unfold(page, '#pulses');
   await page.clock.runFor(500);
-  const cells = await page.locator('#widths td:nth-child(3)').allInnerTexts();
-  assert.deepEqual(cells, ['–', '–', '–', '–']);
+  assert.deepEqual(await page.locator('#widths td:nth-child(3)').allInnerTexts(), ['–', '–', '–', '–']);
   await page.getByText('A board on USB does not show its pulses here.').waitFor();
 });
 
-test('a HEX file of another program is written only after the user confirms', async () => {
-  const page = await openWithBoard('robot', 8000);
+testPage('a HEX file of another program is written only after the user confirms', openWithBoard, async (page) => {
   await unfold(page, '#flash');
   // A program that loops forever: rjmp .-2.
   const loopHex = ':02000000FFCF30\n:00000001FF\n';
@@ -187,8 +171,7 @@ test('a HEX file of another program is written only after the user confirms', as
   await page.getByRole('button', { name: 'Write firmware and robot to it' }).waitFor();
 });
 
-test('the page removes the refusal by a board when the board is gone', async () => {
-  const page = await openWithBoard('robot', 8000);
+testPage('the page removes the refusal by a board when the board is gone', openWithBoard, async (page) => {
   await page.evaluate(() => void window.lizard.drive('pose 0 0 0 0'));
   await waitForText(page, '#drive-message', /^pose 0 0 0 0: /);
   await page.evaluate(() => window.unplug());

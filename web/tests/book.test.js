@@ -1,9 +1,9 @@
 // The book, opened from a file: the search finds a word.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { before, test } from 'node:test';
+import { before } from 'node:test';
 
-import { openBlankPage, useBrowser } from './browser.js';
+import { openBlankPage, useBrowser, testPage } from './browser.js';
 import { makeFolder } from './temporary-folder.js';
 
 const folder = await makeFolder();
@@ -14,8 +14,7 @@ before(() => {
   assert.equal(build.status, 0, build.stderr);
 });
 
-test('the book\'s search finds a word without a server', async () => {
-  const book = await openBlankPage();
+testPage('the book\'s search finds a word without a server', openBlankPage, async (book) => {
   await book.goto(`file://${folder}/index.html`);
   // The theme reads the input on key-up only, so the text is typed, not set.
   await book.locator('input[name=query]').pressSequentially('brownout');

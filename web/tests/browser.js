@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
-import { after, afterEach, before } from 'node:test';
+import { after, afterEach, before, test } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
 
 import { chromium, firefox } from 'playwright-core';
@@ -68,6 +68,9 @@ function addTimeouts(object, name, methods) {
   }
 }
 
+/** A phone that is held upright. */
+export const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+
 /** Errors and warnings of the current test's pages. */
 export const browserErrors = [];
 
@@ -104,8 +107,7 @@ async function serve(folder, requestedPaths = [], headers = {}) {
       response.setHeader('content-type', CONTENT_TYPES[extname(file)] ?? 'text/plain');
       response.end(bytes);
     } catch {
-      response.statusCode = 404;
-      response.end();
+      response.writeHead(404).end();
     }
   });
   await withTimeout('a web server', new Promise((resolve) => webServer.listen(0, '127.0.0.1', resolve)));
@@ -147,6 +149,9 @@ export function useBrowser(open = openBrowser) {
   afterEach(closePages);
   after(closeBrowser);
 }
+
+/** Defines a test of the page that `open` opens; `check` gets what `open` returns, and the test's context. */
+export const testPage = (name, open, check) => test(name, async (context) => check(await open(), context));
 
 /** Opens the room and the panels of an element, by the links and headings that a user would press. */
 async function reveal(locator) {
@@ -265,6 +270,33 @@ export const hidePage = (page) =>
 
 export const readText = (page, selector) => page.locator(selector).innerText();
 
+/** Returns the text of the page's robot. */
+export const readToml = (page) => page.evaluate(() => window.lizard.toml);
+/** Returns the robot's running gait, or its last command. */
+export const readGait = (page) => page.evaluate(() => window.lizard.gait);
+export const waitForGait = (page, gait) => page.waitForFunction((gait) => window.lizard.gait === gait, gait);
+/** Returns the place of the robot on the floor, mm. */
+export const readPlace = (page) => page.evaluate(() => window.lizard.last.place);
+export const findGaitButton = (page, command) => page.locator(`#gaits button[data-command="${command}"]`);
+
+/** Returns the page's prediction for a gait, and the body's displacement in the last cycle. */
+export const readDisplacements = (page, name) =>
+  page.evaluate((name) => {
+    const { robot, description } = window.lizard;
+    const index = description.gaits.findIndex(({ command }) => command === name);
+    return { predicted: robot.predict(index), measured: window.lizard.measured() };
+  }, name);
+
+/** Waits until the gait editor shows the prediction of its gait. */
+export const waitForPrediction = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-distance').textContent));
+
+/** Presses the mouse at a point, and moves it to another point without releasing it. */
+export async function startDrag(page, from, to, stepCount = 1) {
+  await page.mouse.move(...from);
+  await page.mouse.down();
+  await page.mouse.move(...to, { steps: stepCount });
+}
+
 /** Waits until a function in the page returns true, or a promise of true. */
 export function waitUntil(page, condition, value) {
   return repeatUntil(`${condition} in the page`, () => page.evaluate(condition, value), () => sleep(50));
@@ -326,6 +358,12 @@ export async function advance(page, ms) {
   }, ms);
 }
 
+/** Presses an element, and advances the simulation by some ms. */
+export async function clickAndAdvance(page, selector, ms) {
+  await page.locator(selector).click();
+  await advance(page, ms);
+}
+
 /** Opens the page and waits until its robot stands. */
 export async function openStanding(options) {
   const page = await openPage(options);
@@ -344,7 +382,7 @@ export async function openUnfolded(panel, options) {
 export async function waitForNewGait(page, name, table) {
   await page.waitForFunction((table) => window.lizard.toml.includes(table), table);
   await advance(page, 3000);
-  await page.waitForFunction((name) => window.lizard.gait === name, name);
+  await waitForGait(page, name);
 }
 
 /** Loads the page again, and waits until it has started. */
@@ -355,12 +393,11 @@ export async function reload(page) {
 
 /** Presses Esc, and asserts that the robot then does not move by more than 0.05 mm. */
 export async function assertStops(page) {
-  const readPlace = () => page.evaluate(() => window.lizard.last.place);
   await page.keyboard.press('Escape');
   await advance(page, 500);
-  const stopPlace = await readPlace();
+  const stopPlace = await readPlace(page);
   await advance(page, 1000);
-  const laterPlace = await readPlace();
+  const laterPlace = await readPlace(page);
   for (const key of ['x', 'y']) assert.ok(Math.abs(laterPlace[key] - stopPlace[key]) < 0.05, `${key}: ${stopPlace[key]} mm, then ${laterPlace[key]}`);
 }
 

@@ -1,9 +1,8 @@
 // The cable is pulled at random moments: the page's message about the board is compared with the board's memory.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
 
 import { openWithBoard, runUntil, connect, readFlash, waitForText } from './board.js';
-import { readText, unfold, useBrowser } from './browser.js';
+import { readText, useBrowser, testPage } from './browser.js';
 import { makeImage, SECTION_START } from './flash-image.js';
 
 useBrowser();
@@ -27,9 +26,7 @@ async function plugIn(page, robotName) {
   await waitForText(page, '#where', /^on a board on USB/);
 }
 
-test('after any cut, the page reports a robot as written only if its bytes are on the board', async (t) => {
-  const page = await openWithBoard('large', 8000);
-  await unfold(page, '#flash');
+testPage('after any cut, the page reports a robot as written only if its bytes are on the board', () => openWithBoard('large'), async (page, t) => {
   const robotBytes = (await makeImage('robot')).subarray(SECTION_START);
   const largeBytes = await readFlash(page, SECTION_START, SECTION_START + robotBytes.length);
   const counts = { written: 0, partial: 0, untouched: 0 };
@@ -57,8 +54,7 @@ test('after any cut, the page reports a robot as written only if its bytes are o
   for (const [outcome, count] of Object.entries(counts)) assert.ok(count > 0, `no trial had the outcome ${outcome}`);
 });
 
-test('after any cut, the page reports a calibration as saved only if the board starts with it', async (t) => {
-  const page = await openWithBoard('robot', 8000);
+testPage('after any cut, the page reports a calibration as saved only if the board starts with it', openWithBoard, async (page, t) => {
   const setup = page.locator('#setup');
   const press = (name) => setup.getByRole('button', { name, exact: true }).click();
   const openStep = (name) => setup.getByRole('list', { name: 'Steps' }).getByRole('button', { name: new RegExp(`${name}$`) }).click();

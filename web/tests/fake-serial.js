@@ -28,10 +28,6 @@ export function installFakeSerial() {
     flash.set(section, start);
     return flash;
   };
-  const stopTimers = () => {
-    clearInterval(port.timer);
-    clearInterval(port.garbageTimer);
-  };
   const port = {
     readable: null,
     writable: null,
@@ -49,7 +45,7 @@ export function installFakeSerial() {
       let output;
       port.readable = new ReadableStream({ start: (controller) => (output = controller) });
       window.unplug = () => {
-        stopTimers();
+        clearInterval(port.timer);
         port.readable = null;
         output.error(new Error('The device has been lost.'));
       };
@@ -59,23 +55,25 @@ export function installFakeSerial() {
       if (window.boardSendsGarbage) {
         board.send = () => {};
         board.onByte = () => {};
-        let seed = 1;
-        const randomByte = () => ((seed = (seed * 1103515245 + 12345) % 2147483648) >> 16) & 0xff;
-        port.garbageTimer = setInterval(() => output.enqueue(Uint8Array.from({ length: 20 }, randomByte)), 2);
       }
+      let seed = 1;
+      const randomByte = () => ((seed = (seed * 1103515245 + 12345) % 2147483648) >> 16) & 0xff;
       window.pulseWidthsUs = {};
       board.onPulse = (pin, rise, width) => (window.pulseWidthsUs[pin] = width / 16);
       if (!window.boardKeepsRunning) board.reset('external');
       window.attachedBoard = board;
       window.receivedText = '';
       board.onReceived = (byte) => (window.receivedText += String.fromCharCode(byte));
-      port.timer = setInterval(() => board.run(16_000 * 2), 2);
+      port.timer = setInterval(() => {
+        if (window.boardSendsGarbage) output.enqueue(Uint8Array.from({ length: 20 }, randomByte));
+        board.run(16_000 * 2);
+      }, 2);
     },
     getInfo: () => (window.bluetoothService ? { bluetoothServiceClassId: window.bluetoothService } : { usbVendorId: window.usbVendor ?? 0x2341 }),
     async setSignals({ dataTerminalReady }) {
       if (dataTerminalReady && !window.boardKeepsRunning) board.reset('external');
     },
-    close: async () => stopTimers(),
+    close: async () => clearInterval(port.timer),
   };
   const requestPort = async (options) => {
     window.portRequest = options;

@@ -6,13 +6,11 @@ import { test } from 'node:test';
 import { promisify } from 'node:util';
 
 import { findViolations } from './axe.js';
-import { advance, measureOverflow, openUnfolded, readText, unfold, withTimeout, useBrowser, typeLength, waitForNewGait } from './browser.js';
+import { advance, measureOverflow, openUnfolded, readText, withTimeout, useBrowser, typeLength, waitForNewGait, testPage, waitForPrediction, readToml } from './browser.js';
 
 const ROOT = new URL('../../', import.meta.url).pathname;
 
 useBrowser();
-
-const waitForPrediction = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-distance').textContent));
 
 /** Opens the gait editor with a gait of the robot, and sets the number of rounds of a search. */
 async function openEditor({ gait = 'walk', rounds = 1, seed = 3, maxServoSpeed = '' } = {}, options = {}) {
@@ -52,8 +50,7 @@ async function stopAndReadDistances(page) {
   return readText(page, '#faster-distances');
 }
 
-test('the search finds the gait of lizard tune with the same seed, which the user can try and undo', async () => {
-  const page = await openEditor();
+testPage('the search finds the gait of lizard tune with the same seed, which the user can try and undo', openEditor, async (page) => {
   const loadedPaths = [];
   page.on('request', (request) => loadedPaths.push(new URL(request.url()).pathname));
   const args = ['tune', '--rounds', '1', '--seed', '3', '--name', 'mine', '--json', '--robot', join(ROOT, 'robot.toml')];
@@ -84,14 +81,12 @@ test('the search finds the gait of lizard tune with the same seed, which the use
   await page.waitForFunction((fragment) => document.querySelector('#gait-table').textContent === fragment, tuneResult.fragment);
   await page.locator('#gait-try').click();
   await waitForFoundGait(page);
-  assert.ok((await page.evaluate(() => window.lizard.toml)).includes(tuneResult.fragment));
-  await unfold(page, '#robot-editor');
+  assert.ok((await readToml(page)).includes(tuneResult.fragment));
   await page.locator('#robot-undo').click();
   await page.waitForFunction(() => !window.lizard.toml.includes('[gait.mine]'));
 });
 
-test('a search stopped midway returns the best gait so far, and the page can search again', async () => {
-  const page = await openEditor({ rounds: 200 });
+testPage('a search stopped midway returns the best gait so far, and the page can search again', () => openEditor({ rounds: 200 }), async (page) => {
   await searchUntil(page, 21);
   const message = await readText(page, '#faster-message');
   const [, triedCount] = /^Stopped after (\d+) of 8040 gaits\. Faster on \d+ of 200 random robots/.exec(message) ?? assert.fail(message);
@@ -106,8 +101,7 @@ test('a search stopped midway returns the best gait so far, and the page can sea
   await stopSearch(page);
 });
 
-test('the found gait walks beside the previous gait, and is faster by the predicted ratio', async () => {
-  const page = await openEditor({ rounds: 200 });
+testPage('the found gait walks beside the previous gait, and is faster by the predicted ratio', () => openEditor({ rounds: 200 }), async (page) => {
   await page.locator('#button-3d').click();
   await searchUntil(page, 21);
   const rows = await page.locator('#faster-rows tr').allInnerTexts();
@@ -122,11 +116,10 @@ test('the found gait walks beside the previous gait, and is faster by the predic
   const [, foundDistance, previousDistance] = /^Found: ([0-9.]+) mm.*\. Before: ([0-9.]+) mm/.exec(comparison) ?? assert.fail(comparison);
   assert.ok(Math.abs(foundDistance / previousDistance / (foundSpeed / previousSpeed) - 1) < 0.1, `${comparison} Predicted: ${foundSpeed} mm/s, before ${previousSpeed} mm/s`);
   assert.ok(await page.locator('#faster-result').isVisible(), 'the result stays visible');
-  assert.equal((await page.evaluate(() => window.lizard.toml)).match(/\[gait\.mine\]/g).length, 1);
+  assert.equal((await readToml(page)).match(/\[gait\.mine\]/g).length, 1);
 });
 
-test('the found turn is faster by the predicted ratio, and the page shows both angles', async () => {
-  const page = await openEditor({ gait: 'left', rounds: 200 });
+testPage('the found turn is faster by the predicted ratio, and the page shows both angles', () => openEditor({ gait: 'left', rounds: 200 }), async (page) => {
   // The robot's own turn cannot be made faster, so the search starts with half the stroke of the front legs.
   for (const [leg, gain] of [['LF', '-0.5'], ['RF', '0.5']]) {
     await page.getByLabel(`${leg} gain`).fill(gain);
@@ -147,11 +140,9 @@ test('the found turn is faster by the predicted ratio, and the page shows both a
   assert.ok(Number(foundAngle) > 360, `${foundAngle} is not more than a full turn`);
 });
 
-test('changing the robot ends the search for the previous robot', async () => {
-  const page = await openEditor({ rounds: 200 });
+testPage('changing the robot ends the search for the previous robot', () => openEditor({ rounds: 200 }), async (page) => {
   await startSearch(page);
   await waitForTriedGaits(page, 1);
-  await unfold(page, '#lengths-panel');
   await typeLength(page, 'links.l12', 46);
   await page.waitForFunction(() => window.lizard.toml !== window.lizard.original);
   await waitForSearchEnd(page);
@@ -159,17 +150,15 @@ test('changing the robot ends the search for the previous robot', async () => {
   assert.ok((await page.locator('#faster-progress').isHidden()) && (await page.locator('#faster-result').isHidden()));
 });
 
-test('the page reports a gait that cannot be made faster', async () => {
-  // With servos this slow, no stride is better than that of `left`.
-  const page = await openEditor({ gait: 'left', maxServoSpeed: 200, seed: 1 });
+// With servos this slow, no stride is better than that of `left`.
+testPage('the page reports a gait that cannot be made faster', () => openEditor({ gait: 'left', maxServoSpeed: 200, seed: 1 }), async (page) => {
   await startSearch(page);
   await waitForSearchEnd(page);
   assert.equal(await readText(page, '#faster-message'), 'No faster gait was found for the slowest random robots and floors. More rounds or another seed may find a faster gait.');
   assert.ok(await page.locator('#faster-result').isHidden());
 });
 
-test('an impossible search is refused with a message, and a number out of range is ignored', async () => {
-  const page = await openEditor({ gait: 'arc-left' });
+testPage('an impossible search is refused with a message, and a number out of range is ignored', () => openEditor({ gait: 'arc-left' }), async (page) => {
   await startSearch(page);
   await waitForSearchEnd(page);
   assert.match(await readText(page, '#faster-message'), /^This gait cannot be made faster: the gait `mine` walks along a curve; /);

@@ -3,30 +3,23 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { DIST, advance, openFirefox, measureOverflow, openStanding, reload, assertStops, useBrowser, serveInTest, stopServer, openStored } from './browser.js';
+import { DIST, advance, openFirefox, measureOverflow, openStanding, reload, assertStops, useBrowser, serveInTest, stopServer, openStored, testPage, readDisplacements, readPlace } from './browser.js';
 
 useBrowser(openFirefox);
 
 const click = (page, selector) => page.evaluate((selector) => document.querySelector(selector).click(), selector);
 const readText = (page, selector) => page.evaluate((selector) => document.querySelector(selector).textContent, selector);
-const readPlace = (page) => page.evaluate(() => window.lizard.last.place);
 
-test('the image walks as predicted, and Esc stops it', async () => {
-  const page = await openStanding();
+testPage('the image walks as predicted, and Esc stops it', openStanding, async (page) => {
   assert.match(await readText(page, '#where'), /^on a simulated UNO, robot [a-z-]+ [0-9a-f]{8}$/);
   await click(page, '#gaits button[data-command="walk"]');
   await advance(page, 5500);
-  const { predicted, measured } = await page.evaluate(() => {
-    const { robot, description } = window.lizard;
-    const walkIndex = description.gaits.findIndex(({ command }) => command === 'walk');
-    return { predicted: robot.predict(walkIndex), measured: window.lizard.measured() };
-  });
+  const { predicted, measured } = await readDisplacements(page, 'walk');
   assert.ok(Math.abs(measured.forward / predicted.forward - 1) < 0.03, `distance per cycle: ${measured.forward} mm, predicted ${predicted.forward} mm`);
   await assertStops(page);
 });
 
-test('the page disables Connect a board if this Firefox has no Web Serial, and only then', async () => {
-  const page = await openStanding();
+testPage('the page disables Connect a board if this Firefox has no Web Serial, and only then', openStanding, async (page) => {
   const { hasSerial, note, isConnectDisabled } = await page.evaluate(() => ({
     hasSerial: typeof navigator.serial?.requestPort === 'function',
     note: document.querySelector('#no-serial').hidden ? '' : document.querySelector('#no-serial').textContent,
@@ -36,8 +29,7 @@ test('the page disables Connect a board if this Firefox has no Web Serial, and o
   assert.equal(note.startsWith('This browser cannot connect to a board on USB'), !hasSerial);
 });
 
-test('every step of the first connection can be tried with the simulated board', async () => {
-  const page = await openStanding();
+testPage('every step of the first connection can be tried with the simulated board', openStanding, async (page) => {
   await click(page, '#setup-open');
   const stepCount = await page.evaluate(() => document.querySelectorAll('#setup-steps button').length);
   assert.equal(stepCount, 9);

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { openPage, withTimeout, useBrowser } from './browser.js';
+import { openPage, withTimeout, useBrowser, findGaitButton, testPage } from './browser.js';
 
 useBrowser();
 
@@ -31,7 +31,7 @@ async function openWalking() {
   // The page's Content Security Policy would block the injected style.
   const page = await openPage({ viewport: { width: 1400, height: 1000 }, bypassCSP: true }, () => {});
   await page.clock.runFor(3000);
-  await page.locator('#gaits button[data-command="walk"]').click();
+  await findGaitButton(page, 'walk').click();
   await page.clock.runFor(500);
   const session = await withTimeout('the page to be measured', page.context().newCDPSession(page));
   await withTimeout('the page to be measured', session.send('Performance.enable'));
@@ -42,8 +42,7 @@ async function openWalking() {
   return { page, readCpuMs };
 }
 
-test('at sixty frames a second the processor is idle most of the time', async (t) => {
-  const { page, readCpuMs } = await openWalking();
+testPage('at sixty frames a second the processor is idle most of the time', openWalking, async ({ page, readCpuMs }, t) => {
   const fullCost = await measureCost(page, readCpuMs);
   // The simulation keeps real time: no frame exceeded its budget.
   const realMs = FRAME_COUNT * FRAME_MS * RUN_COUNT;
@@ -56,8 +55,7 @@ test('at sixty frames a second the processor is idle most of the time', async (t
   assert.ok(computeCost.shortestMs < FRAME_MS / 3, `${computeCost.shortestMs} ms without rendering`);
 });
 
-test('changing the spring force does not block rendering', async () => {
-  const { page, readCpuMs } = await openWalking();
+testPage('changing the spring force does not block rendering', openWalking, async ({ page, readCpuMs }) => {
   await page.addStyleTag({ content: 'canvas { display: none !important }' });
   await page.getByLabel('Driven by').selectOption('strut');
   await page.getByLabel('Pull in the strut').fill('0.5');

@@ -1,9 +1,8 @@
 // The gait editor: dragged bars make a gait that walks as predicted; a gait that violates a limit is refused with the
 // nearest valid value.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
 
-import { advance, openUnfolded, reload, unfold, useBrowser, waitForNewGait } from './browser.js';
+import { advance, openUnfolded, reload, unfold, useBrowser, waitForNewGait, testPage, waitForPrediction, readToml } from './browser.js';
 
 useBrowser();
 
@@ -20,8 +19,6 @@ async function reloadEditor(page) {
 }
 
 const readEditorText = (page, id) => page.locator(`#gait-${id}`).innerText();
-/** Waits until the prediction of the shown gait is displayed. */
-const waitForPrediction = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-distance').textContent));
 const waitForChange = (page, id, previousText) => page.waitForFunction(([id, previousText]) => document.querySelector(`#gait-${id}`).textContent !== previousText, [id, previousText]);
 
 /** Drags from one phase to another, 0 to 1, on a ring of the circle. Rings count from 0, the outermost, to 3. */
@@ -37,16 +34,14 @@ async function drag(page, ring, fromPhase, toPhase) {
   await page.mouse.up();
 }
 
-test('for an unchanged gait, the editor predicts the distance shown on its button in Drive', async () => {
-  const page = await openEditor();
+testPage('for an unchanged gait, the editor predicts the distance shown on its button in Drive', openEditor, async (page) => {
   const button = page.locator('#gaits button[data-command="walk"] small');
   await page.waitForFunction(() => document.querySelector('#gaits button[data-command="walk"] small').textContent !== '');
   assert.equal(await readEditorText(page, 'distance'), await button.innerText());
   assert.match(await readEditorText(page, 'table'), /^\[gait\.mine\]\nperiod = 1\.0\nwaveform = "wave"\nduty = 0\.75\namplitude = 20\.0\nstart = /);
 });
 
-test('the numbers follow a bar and its end while they are dragged', async () => {
-  const page = await openEditor();
+testPage('the numbers follow a bar and its end while they are dragged', openEditor, async (page) => {
   const previousDistance = await readEditorText(page, 'distance');
   // walk has LF from 0.25 to 0.25 + 0.75.
   await drag(page, 0, 0.5, 0.6);
@@ -60,8 +55,7 @@ test('the numbers follow a bar and its end while they are dragged', async () => 
   await page.waitForFunction((distance) => document.querySelector('#gait-distance').textContent === distance, previousDistance);
 });
 
-test('an edited gait survives a reload, and an invalid stored gait is dropped', async () => {
-  const page = await openEditor();
+testPage('an edited gait survives a reload, and an invalid stored gait is dropped', openEditor, async (page) => {
   await page.locator('#gait-name').fill('waddle');
   await page.getByLabel('LF starts at').fill('0.35');
   await reloadEditor(page);
@@ -75,8 +69,7 @@ test('an edited gait survives a reload, and an invalid stored gait is dropped', 
   }
 });
 
-test('a value that violates a limit is refused, and a button offers the nearest valid value', async () => {
-  const page = await openEditor();
+testPage('a value that violates a limit is refused, and a button offers the nearest valid value', openEditor, async (page) => {
   await page.locator('#gait-amplitude').fill('40');
   const button = page.locator('#gait-alternatives button', { hasText: 'amplitude' });
   await button.waitFor();
@@ -92,8 +85,7 @@ test('a value that violates a limit is refused, and a button offers the nearest 
   await button.waitFor();
 });
 
-test('a number out of range is marked and ignored, and the box restores its value when it loses the focus', async () => {
-  const page = await openEditor();
+testPage('a number out of range is marked and ignored, and the box restores its value when it loses the focus', openEditor, async (page) => {
   const table = await readEditorText(page, 'table');
   for (const [input, wrongValue, validValue] of [
     [page.locator('#gait-amplitude'), '61', '20'],
@@ -112,8 +104,7 @@ test('a number out of range is marked and ignored, and the box restores its valu
   assert.equal(await readEditorText(page, 'table'), table.replace('mine', 'other'));
 });
 
-test('an edited gait is added to robot.toml and walks as far as predicted', async () => {
-  const page = await openEditor();
+testPage('an edited gait is added to robot.toml and walks as far as predicted', openEditor, async (page) => {
   const previousDistance = await readEditorText(page, 'distance');
   await page.locator('#gait-name').fill('stride');
   await page.locator('#gait-amplitude').fill('16');
@@ -124,16 +115,14 @@ test('an edited gait is added to robot.toml and walks as far as predicted', asyn
   await advance(page, 5000);
   const walkedMm = await page.evaluate(() => window.lizard.measured().forward);
   assert.ok(Math.abs(walkedMm - predictedMm) < 0.03 * predictedMm, `distance per cycle: ${walkedMm} mm, predicted ${predictedMm} mm`);
-  const toml = await page.evaluate(() => window.lizard.toml);
+  const toml = await readToml(page);
   assert.ok(toml.includes(await readEditorText(page, 'table')), toml.slice(-400));
   // The reset button of the lengths restores the previous robot.
-  await unfold(page, '#lengths-panel');
   await page.locator('#lengths-reset').click();
   await page.waitForFunction(() => !window.lizard.toml.includes('[gait.stride]'));
 });
 
-test('a backward gait can be edited, and any gait can be reversed', async () => {
-  const page = await openEditor();
+testPage('a backward gait can be edited, and any gait can be reversed', openEditor, async (page) => {
   const forwardMm = Number.parseFloat(await readEditorText(page, 'distance'));
   await page.getByRole('button', { name: 'Reverse' }).click();
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-distance').textContent) < -1);
@@ -149,8 +138,7 @@ test('a backward gait can be edited, and any gait can be reversed', async () => 
   assert.ok(Math.abs(backMm - Number.parseFloat(await readEditorText(page, 'distance'))) < 0.3);
 });
 
-test('Swap left and right mirrors a gait', async () => {
-  const page = await openEditor();
+testPage('Swap left and right mirrors a gait', openEditor, async (page) => {
   await page.locator('#gait-from').selectOption({ label: 'arc-left' });
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-turn').textContent) > 1);
   const turn = Number.parseFloat(await readEditorText(page, 'turn'));

@@ -1,9 +1,8 @@
 // Drawing a gesture: the point of the head or the tail follows the line; a line out of reach is refused, and a valid
 // size is offered.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
 
-import { advance, measureOverflow, openUnfolded, useBrowser, waitForNewGait } from './browser.js';
+import { advance, measureOverflow, openUnfolded, useBrowser, waitForNewGait, testPage, PHONE } from './browser.js';
 
 useBrowser();
 
@@ -42,8 +41,7 @@ async function drawCircle(page, radiusMm, cornerCount = 40) {
 /** Returns the head's point relative to the middle of the chassis, mm, as the page draws it. */
 const readHeadPoint = (page) => page.evaluate(() => window.lizard.last.scene.points[0]);
 
-test('a drawn circle is added to robot.toml as the path of the head', async () => {
-  const page = await openPanel();
+testPage('a drawn circle is added to robot.toml as the path of the head', openPanel, async (page) => {
   await drawCircle(page, 6);
   await waitForCircle(page);
   assert.equal(await page.locator('#gesture-shape').inputValue(), 'own');
@@ -62,8 +60,7 @@ test('a drawn circle is added to robot.toml as the path of the head', async () =
   for (const mm of distances) assert.ok(Math.abs(mm - 6) < 0.8, `${distances.map((mm) => mm.toFixed(2))} mm from the centre of a circle with a radius of 6 mm`);
 });
 
-test('a line that is too large is refused, and a button offers the largest valid size', async () => {
-  const page = await openPanel();
+testPage('a line that is too large is refused, and a button offers the largest valid size', openPanel, async (page) => {
   await drawCircle(page, 45);
   const button = page.locator('#gesture-alternatives button', { hasText: 'a size of' });
   await button.waitFor();
@@ -78,8 +75,7 @@ test('a line that is too large is refused, and a button offers the largest valid
   await button.waitFor();
 });
 
-test('every predefined shape can be chosen, also for the tail', async () => {
-  const page = await openPanel();
+testPage('every predefined shape can be chosen, also for the tail', openPanel, async (page) => {
   const previousTable = await readPanelText(page, 'table');
   await page.locator('#gesture-end').selectOption('tail');
   await waitForTableChange(page, previousTable);
@@ -92,8 +88,7 @@ test('every predefined shape can be chosen, also for the tail', async () => {
   }
 });
 
-test('a tap does not count as a line, and the message says so', async () => {
-  const page = await openPanel();
+testPage('a tap does not count as a line, and the message says so', openPanel, async (page) => {
   const previousTable = await readPanelText(page, 'table');
   await page.locator('#gesture-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
   await page.locator('#gesture-plane').click();
@@ -101,8 +96,7 @@ test('a tap does not count as a line, and the message says so', async () => {
   assert.equal(await readPanelText(page, 'table'), previousTable);
 });
 
-test('a finger draws on a phone, and the page does not scroll meanwhile', async () => {
-  const page = await openPanel({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+testPage('a finger draws on a phone, and the page does not scroll meanwhile', () => openPanel(PHONE), async (page) => {
   assert.equal(await page.locator('#gesture-plane').evaluate((plane) => getComputedStyle(plane).touchAction), 'none');
   await drawCircle(page, 6);
   await waitForCircle(page);

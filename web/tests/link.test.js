@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { openWithBoard, runUntil, waitForText, sendToBoard } from './board.js';
-import { advance, openStanding, readText, useBrowser, hidePage } from './browser.js';
+import { advance, openStanding, readText, useBrowser, hidePage, testPage, clickAndAdvance, findGaitButton, readGait } from './browser.js';
 
 useBrowser();
 
@@ -25,7 +25,7 @@ const dropLines = (page, words) =>
 const restoreLink = (page) => page.evaluate(() => (window.attachedBoard.send = window.originalSend));
 
 async function startWalk(page) {
-  await page.locator('#gaits button[data-command="walk"]').click();
+  await findGaitButton(page, 'walk').click();
   await waitForText(page, '#doing', /^walk$/);
 }
 
@@ -36,16 +36,15 @@ async function pressEscape(page, ms) {
 }
 
 async function openWalking() {
-  const page = await openWithBoard('robot', 8000);
+  const page = await openWithBoard();
   await startWalk(page);
   return page;
 }
 
-test('"stop" is sent at once, and drops a line that waits for a lost answer', async () => {
-  const page = await openWalking();
+testPage('"stop" is sent at once, and drops a line that waits for a lost answer', openWalking, async (page) => {
   await dropLines(page, ['status']);
   await runUntil(page, 'a status request is lost', () => page.evaluate(() => window.droppedCount > 0), 20);
-  await page.locator('#gaits button[data-command="left"]').click();
+  await findGaitButton(page, 'left').click();
   const receivedLength = (await readReceivedText(page)).length;
   await pressEscape(page, 40);
   assert.ok((await readReceivedText(page)).slice(receivedLength).startsWith('stop\n'));
@@ -54,8 +53,7 @@ test('"stop" is sent at once, and drops a line that waits for a lost answer', as
   assert.equal(await readText(page, '#doing'), 'stop');
 });
 
-test('a lost "stop" is repeated until the robot answers, and the page is red until then', async () => {
-  const page = await openWalking();
+testPage('a lost "stop" is repeated until the robot answers, and the page is red until then', openWalking, async (page) => {
   await dropLines(page, []);
   await pressEscape(page, 600);
   assert.ok(await isStopping(page));
@@ -70,8 +68,7 @@ test('a lost "stop" is repeated until the robot answers, and the page is red unt
   assert.equal(await page.locator('#alarm').isVisible(), false);
 });
 
-test('a robot that rests gets no repeated "stop"', async () => {
-  const page = await openWithBoard('robot', 8000);
+testPage('a robot that rests gets no repeated "stop"', openWithBoard, async (page) => {
   await sendToBoard(page, 'rest');
   const receivedLength = (await readReceivedText(page)).length;
   await pressEscape(page, 1500);
@@ -80,8 +77,7 @@ test('a robot that rests gets no repeated "stop"', async () => {
   assert.equal(await isStopping(page), false);
 });
 
-test('a refusal that the radio has truncated is not mistaken for the answer to "stop"', async () => {
-  const page = await openWalking();
+testPage('a refusal that the radio has truncated is not mistaken for the answer to "stop"', openWalking, async (page) => {
   await dropLines(page, ['stop']);
   await page.keyboard.press('Escape');
   await page.evaluate(() => {
@@ -93,8 +89,7 @@ test('a refusal that the radio has truncated is not mistaken for the answer to "
   await runUntil(page, 'the stop is answered', async () => !(await isStopping(page)));
 });
 
-test('answers to repeated stops are not mistaken for answers to the next lines', async () => {
-  const page = await openWalking();
+testPage('answers to repeated stops are not mistaken for answers to the next lines', openWalking, async (page) => {
   await page.evaluate(() => {
     const board = window.attachedBoard;
     const { onByte } = board;
@@ -103,14 +98,13 @@ test('answers to repeated stops are not mistaken for answers to the next lines',
   });
   await pressEscape(page, 1100);
   assert.ok((await readReceivedText(page)).split('stop').length > 4, '"stop" was sent again');
-  await page.locator('#gaits button[data-command="left"]').click();
+  await findGaitButton(page, 'left').click();
   await waitForText(page, '#doing', /^left$/);
   await pressEscape(page, 3000);
   assert.equal(await readText(page, '#doing'), 'stop');
 });
 
-test('the page reports a silence of 0.8 s with its duration', async () => {
-  const page = await openWalking();
+testPage('the page reports a silence of 0.8 s with its duration', openWalking, async (page) => {
   await dropLines(page, []);
   await page.evaluate(() => (window.attachedBoard.onByte = () => {}));
   await page.clock.runFor(600);
@@ -120,8 +114,7 @@ test('the page reports a silence of 0.8 s with its duration', async () => {
   await page.locator('#age', { hasText: /^[12]\.\d s ago$/ }).waitFor();
 });
 
-test('a gait that ended during a silence is shown as ended', async () => {
-  const page = await openWalking();
+testPage('a gait that ended during a silence is shown as ended', openWalking, async (page) => {
   await page.evaluate(() => {
     const board = window.attachedBoard;
     const { onByte } = board;
@@ -133,10 +126,8 @@ test('a gait that ended during a silence is shown as ended', async () => {
   assert.equal(await readText(page, '#doing'), 'stop');
 });
 
-test('"stop" is repeated for the simulated UNO, too', async () => {
-  const page = await openStanding();
-  await page.locator('#gaits button[data-command="walk"]').click();
-  await advance(page, 400);
+testPage('"stop" is repeated for the simulated UNO, too', openStanding, async (page) => {
+  await clickAndAdvance(page, '#gaits button[data-command="walk"]', 400);
   await page.evaluate(() => {
     const { board } = window.lizard.link;
     const { send } = board;
@@ -171,8 +162,7 @@ async function isMoving(page, ms) {
   return observedWidths.some((widths) => widths.some((width, servo) => Math.abs(width - observedWidths[0][servo]) > 1));
 }
 
-test('while a user drives, the page sets deadman and sends a line at least three times in that period', async () => {
-  const page = await openWalking();
+testPage('while a user drives, the page sets deadman and sends a line at least three times in that period', openWalking, async (page) => {
   const lines = (await readReceivedText(page)).split('\n');
   assert.ok(lines.indexOf('deadman 901') > 0 && lines.indexOf('deadman 901') < lines.indexOf('walk'), 'deadman is set before the walk');
   await recordLineGaps(page);
@@ -183,8 +173,7 @@ test('while a user drives, the page sets deadman and sends a line at least three
   assert.ok(!(await readText(page, '#log')).includes('deadman 901'), 'the log does not show the page\'s own lines');
 });
 
-test('a robot out of range stops, and reports the reason when it is in range again', async () => {
-  const page = await openWalking();
+testPage('a robot out of range stops, and reports the reason when it is in range again', openWalking, async (page) => {
   assert.ok(await isMoving(page, 500));
   await dropLines(page, []);
   await page.clock.runFor(901 + 40);
@@ -195,10 +184,9 @@ test('a robot out of range stops, and reports the reason when it is in range aga
   await page.locator('#log div', { hasText: '# fault: no command within the deadman time' }).waitFor();
 });
 
-test('stopping the robot restores its own deadman', async () => {
-  const page = await openWithBoard('robot', 8000);
+testPage('stopping the robot restores its own deadman', openWithBoard, async (page) => {
   await sendToBoard(page, 'deadman 5000');
-  await page.locator('#gaits button[data-command="walk"]').click();
+  await findGaitButton(page, 'walk').click();
   await page.clock.runFor(1500);
   // The robot's own setting is saved.
   await sendToBoard(page, 'save');
@@ -209,11 +197,10 @@ test('stopping the robot restores its own deadman', async () => {
   assert.match(await readReceivedText(page), /deadman 901\n[^]*save\n[^]*deadman 901\n[^]*stop\n[^]*deadman 5000\n(status\n)*$/);
 });
 
-test('a deadman left behind by a page is not mistaken for the robot\'s own', async () => {
-  const page = await openWithBoard('robot', 8000);
+testPage('a deadman left behind by a page is not mistaken for the robot\'s own', openWithBoard, async (page) => {
   await page.evaluate(() => window.attachedBoard.send([...'deadman 901\n'].map((letter) => letter.charCodeAt(0))));
   await page.clock.runFor(500);
-  await page.locator('#gaits button[data-command="walk"]').click();
+  await findGaitButton(page, 'walk').click();
   await page.clock.runFor(1000);
   await pressEscape(page, 1000);
   assert.match(await readReceivedText(page), /stop\n[^]*deadman 0\n(status\n)*$/);
@@ -233,15 +220,13 @@ test('the page treats an HC-05 at a serial port with 9600 baud as a radio', asyn
   await waitForText(page, '#doing', /^stop$/);
 });
 
-test('a hidden page stops the robot', async () => {
-  const page = await openWalking();
+testPage('a hidden page stops the robot', openWalking, async (page) => {
   await hidePage(page);
   await page.clock.runFor(500);
-  assert.equal(await page.evaluate(() => window.lizard.gait), 'stop');
+  assert.equal(await readGait(page), 'stop');
 });
 
-test('a hidden page stops sending the lines that keep a robot walking', async () => {
-  const page = await openWalking();
+testPage('a hidden page stops sending the lines that keep a robot walking', openWalking, async (page) => {
   await dropLines(page, ['stop']);
   await hidePage(page);
   await page.clock.runFor(3000);

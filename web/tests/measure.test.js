@@ -6,7 +6,7 @@ import { dirname, join } from 'node:path';
 import { afterEach, before, test } from 'node:test';
 
 import { connect } from './board.js';
-import { address, openBlankPage, closeBrowser, browserErrors, openBrowserWithCamera, openPage, closePages, download } from './browser.js';
+import { address, openBlankPage, closeBrowser, browserErrors, openBrowserWithCamera, openPage, closePages, download, testPage, readGait, waitForGait } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 import { makeFolder } from './temporary-folder.js';
 
@@ -86,10 +86,9 @@ function assertNearTrueValues(report) {
   }
 }
 
-test('the page drives the simulated robot in front of a camera, and its measurement of the gait matches lizard measure', async () => {
-  const page = await openRoomWithVideo(walkFolder);
+testPage('the page drives the simulated robot in front of a camera, and its measurement of the gait matches lizard measure', () => openRoomWithVideo(walkFolder), async (page) => {
   await startDriving(page, ['walk'], 5);
-  await page.waitForFunction(() => window.lizard.gait === 'walk');
+  await waitForGait(page, 'walk');
   await page.locator('#measure-results').waitFor();
   const { gaits: [report] } = JSON.parse(await downloadResults(page, 'json'));
   assertNearTrueValues(report);
@@ -146,8 +145,7 @@ test('the gait in a recorded video file is recognised by its path, and rejected 
   await waitForMessage(page, 'message', /^words\.mp4 is not a video that this browser can play/);
 });
 
-test('a video recorded until Done, while another program drives the robot, is measured', async () => {
-  const page = await openRoomWithVideo(walkFolder);
+testPage('a video recorded until Done, while another program drives the robot, is measured', () => openRoomWithVideo(walkFolder), async (page) => {
   await switchCameraOn(page);
   await page.getByRole('button', { name: 'Record' }).click();
   await page.waitForTimeout(6000);
@@ -156,8 +154,7 @@ test('a video recorded until Done, while another program drives the robot, is me
   assertNearTrueValues(JSON.parse(await downloadResults(page, 'json')).gaits[0]);
 });
 
-test('a hidden tag is named while the camera is on, and no result is computed', async () => {
-  const page = await openRoomWithVideo(renderVideo('hidden', 640, 1, 2));
+testPage('a hidden tag is named while the camera is on, and no result is computed', () => openRoomWithVideo(renderVideo('hidden', 640, 1, 2)), async (page) => {
   await switchCameraOn(page, 'Not visible: the left tag of strip 2.');
   await page.getByRole('button', { name: 'Record' }).click();
   await page.waitForTimeout(1000);
@@ -165,37 +162,33 @@ test('a hidden tag is named while the camera is on, and no result is computed', 
   assert.ok(!(await page.locator('#measure-results').isVisible()));
 });
 
-test('a video without tags is reported', async () => {
-  const page = await openRoomWithVideo(renderVideo('none', 640, 1, 0, 1, 2, 3, 4));
+testPage('a video without tags is reported', () => openRoomWithVideo(renderVideo('none', 640, 1, 0, 1, 2, 3, 4)), async (page) => {
   await switchCameraOn(page, 'No tag of the sheet is visible');
 });
 
-test('the page offers to open a video if there is no camera or the browser may not use it', async () => {
-  const page = await openRoomWithVideo(null);
+testPage('the page offers to open a video if there is no camera or the browser may not use it', () => openRoomWithVideo(null), async (page) => {
   await pressAndWait(page, 'Camera', 'message', /This machine has no camera|not allowed to use the camera/);
   await page.evaluate(() => (navigator.mediaDevices.getUserMedia = () => Promise.reject(new DOMException('no', 'NotAllowedError'))));
   await pressAndWait(page, 'Camera', 'message', /not allowed to use the camera.*record a video and open it here/);
 });
 
-test('Stop, or leaving the room, ends the measurement and stops the robot, and leaving also switches the camera off', async () => {
-  const page = await openRoomWithVideo(walkFolder);
+testPage('Stop, or leaving the room, ends the measurement and stops the robot, and leaving also switches the camera off', () => openRoomWithVideo(walkFolder), async (page) => {
   await startDriving(page, ['walk', 'left'], 20);
-  await page.waitForFunction(() => window.lizard.gait === 'walk');
+  await waitForGait(page, 'walk');
   await page.keyboard.press('Escape');
   await waitForMessage(page, 'message', 'it was stopped');
-  await page.waitForFunction(() => window.lizard.gait === 'stop');
+  await waitForGait(page, 'stop');
   // A robot that was stopped stays stopped.
   await page.waitForTimeout(2000);
-  assert.equal(await page.evaluate(() => window.lizard.gait), 'stop');
+  assert.equal(await readGait(page), 'stop');
   await page.getByRole('button', { name: 'Drive and measure' }).click();
-  await page.waitForFunction(() => window.lizard.gait === 'walk');
+  await waitForGait(page, 'walk');
   await page.locator('nav a', { hasText: 'Drive' }).click();
-  await page.waitForFunction(() => window.lizard.gait === 'stop');
+  await waitForGait(page, 'stop');
   assert.equal(await page.evaluate(() => document.querySelector('#measure-view video').srcObject), null);
 });
 
-test('after the link is cut, the board is no longer driven, the room reports the cut, and the recorded cycles are measured', async () => {
-  const page = await openRoomWithVideo(walkFolder);
+testPage('after the link is cut, the board is no longer driven, the room reports the cut, and the recorded cycles are measured', () => openRoomWithVideo(walkFolder), async (page) => {
   await page.evaluate(installFakeSerial);
   // For a robot with a Bluetooth module, the page does not open the dialog of the first connection.
   await connect(page, { flashedRobot: 'paper', boardKeepsRunning: true, bluetoothService: '00001101-0000-1000-8000-00805f9b34fb' });
@@ -208,11 +201,10 @@ test('after the link is cut, the board is no longer driven, the room reports the
   await waitForMessage(page, 'message', 'Ended before all gaits were walked: the link to the robot was cut');
   assertNearTrueValues(JSON.parse(await downloadResults(page, 'json')).gaits[0]);
   assert.ok(!/left/.test(await page.evaluate(() => window.receivedText)), 'no further gait was sent to the board');
-  assert.equal(await page.evaluate(() => window.lizard.gait), 'stand', 'no gait was sent to the simulated board that replaces it');
+  assert.equal(await readGait(page), 'stand', 'no gait was sent to the simulated board that replaces it');
 });
 
-test('the printed sheet equals the output of lizard measure sheet for both paper sizes', async () => {
-  const page = await openRoomWithVideo(null);
+testPage('the printed sheet equals the output of lizard measure sheet for both paper sizes', () => openRoomWithVideo(null), async (page) => {
   for (const [name, paper] of [['A4', 'a4'], ['letter', 'letter']]) {
     await page.locator('#measure-paper').selectOption(name);
     const { bytes } = await download(page, page.getByRole('button', { name: 'Print the sheet' }));
@@ -222,8 +214,7 @@ test('the printed sheet equals the output of lizard measure sheet for both paper
   }
 });
 
-test('a worker that cannot be loaded is reported, and the next press of the button loads it', async () => {
-  const page = await openRoomWithVideo(null);
+testPage('a worker that cannot be loaded is reported, and the next press of the button loads it', () => openRoomWithVideo(null), async (page) => {
   const previousCount = browserErrors.length;
   await page.route(/assets\/worker-/, (route) => route.abort());
   await pressAndWait(page, 'Print the sheet', 'message', /^the worker could not be loaded/);

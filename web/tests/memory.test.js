@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { address, openPage, useBrowser } from './browser.js';
+import { address, openPage, useBrowser, testPage, readGait, waitForGait } from './browser.js';
 import { readPageFile, memory, Robot } from './wasm.js';
 
 useBrowser();
@@ -66,9 +66,8 @@ const SECONDS_IN_ROOM = Number(process.env.STAY ?? 8);
 /** Largest growth without a leak: a kilobyte that leaks in each frame would be 3 MB in a round. */
 const MAX_GROWTH_BYTES = 2_000_000;
 
-test('while a robot walks, a second visit to every room takes no more memory than the first visit', async (t) => {
-  const page = await openPage({ reducedMotion: 'no-preference' });
-  await page.waitForFunction(() => window.lizard.gait === 'walk');
+testPage('while a robot walks, a second visit to every room takes no more memory than the first visit', () => openPage({ reducedMotion: 'no-preference' }), async (page, t) => {
+  await waitForGait(page, 'walk');
   const devTools = await page.context().newCDPSession(page);
   await devTools.send('Performance.enable');
   const rooms = await page.evaluate(() => [...document.querySelectorAll('.room')].map(({ id }) => id.replace('room-', '')));
@@ -93,5 +92,5 @@ test('while a robot walks, a second visit to every room takes no more memory tha
     assert.ok(later.nodes < nodes + 200, `${room}: ${nodes}, then ${later.nodes} nodes`);
     assert.ok(later.listeners < listeners + 20, `${room}: ${listeners}, then ${later.listeners} listeners`);
   }
-  assert.equal(await page.evaluate(() => window.lizard.gait), 'walk');
+  assert.equal(await readGait(page), 'walk');
 });

@@ -7,7 +7,7 @@ import { test } from 'node:test';
 import { gzipSync } from 'node:zlib';
 
 import { writeServiceWorker } from '../offline.js';
-import { DIST, address, advance, openBlankPage, reload, waitUntil, repeatUntil, serveInTest, stopServer, useBrowser, chooseRobot, openStored } from './browser.js';
+import { DIST, address, advance, openBlankPage, reload, waitUntil, repeatUntil, serveInTest, stopServer, useBrowser, chooseRobot, openStored, clickAndAdvance } from './browser.js';
 import { makeFolder } from './temporary-folder.js';
 
 useBrowser();
@@ -38,8 +38,7 @@ test('the page works without a server, with any of its robots, once it was opene
   await reload(page);
   await chooseRobot(page, 'large');
   await advance(page, 3000);
-  await page.locator('#gaits button[data-command="walk"]').click();
-  await advance(page, 3000);
+  await clickAndAdvance(page, '#gaits button[data-command="walk"]', 3000);
   assert.ok((await page.evaluate(() => window.lizard.last.place.y)) > 20);
   assert.equal(await page.locator('#problems').isVisible(), false);
 });

@@ -1,23 +1,12 @@
 // The page in a real browser, used as a user would use it.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
-import { test } from 'node:test';
 
 import { openWithBoard } from './board.js';
-import { advance, assertStops, openStanding, openUnfolded, openPage, readText, sendLine, unfold, useBrowser, chooseRobot, waitForLength, typeLength } from './browser.js';
+import { advance, assertStops, openStanding, openUnfolded, openPage, readText, sendLine, unfold, useBrowser, chooseRobot, waitForLength, typeLength, testPage, findGaitButton, readDisplacements, repeatUntil, clickAndAdvance } from './browser.js';
 import { formatHex, makeImage } from './flash-image.js';
 
 useBrowser();
-
-const findGaitButton = (page, name) => page.locator(`#gaits button[data-command="${name}"]`);
-
-/** Returns the page's prediction for a gait, and the body's displacement in the last cycle. */
-const readDisplacements = (page, name) =>
-  page.evaluate((name) => {
-    const { robot, description } = window.lizard;
-    const index = description.gaits.findIndex(({ command }) => command === name);
-    return { predicted: robot.predict(index), measured: window.lizard.measured() };
-  }, name);
 
 /** Asserts that a value is near the expected value; `tolerance` is relative to the expected value. */
 function assertNear(value, expected, tolerance, quantity) {
@@ -28,19 +17,17 @@ function assertNear(value, expected, tolerance, quantity) {
 async function runGait(page, name) {
   await findGaitButton(page, name).click();
   await advance(page, 5500);
-  const { predicted, measured } = await readDisplacements(page, name);
-  assert.ok(measured, `${name} has completed a cycle`);
-  return { predicted, measured };
+  const displacements = await readDisplacements(page, name);
+  assert.ok(displacements.measured, `${name} has completed a cycle`);
+  return displacements;
 }
 
-test('the log shows the banner of the image', async () => {
-  const page = await openStanding();
+testPage('the log shows the banner of the image', openStanding, async (page) => {
   assert.match(await readText(page, '#log'), /# lizard \d.* robot [a-z-]+ [0-9a-f]{8}, send help/);
   assert.match(await readText(page, '#where'), /simulated UNO/);
 });
 
-test('walk moves the body as predicted', async () => {
-  const page = await openStanding();
+testPage('walk moves the body as predicted', openStanding, async (page) => {
   const { predicted, measured } = await runGait(page, 'walk');
   assertNear(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');
   assert.ok(Math.abs(measured.turn) < 0.3, `walk turns by ${measured.turn} deg per cycle`);
@@ -49,8 +36,7 @@ test('walk moves the body as predicted', async () => {
   await assertStops(page);
 });
 
-test('a gait started while a status is pending is not reverted', async () => {
-  const page = await openStanding();
+testPage('a gait started while a status is pending is not reverted', openStanding, async (page) => {
   await page.evaluate(() => {
     const { lizard } = window;
     window.reportedGaits = [];
@@ -62,8 +48,7 @@ test('a gait started while a status is pending is not reverted', async () => {
   assert.deepEqual(await page.evaluate(() => window.reportedGaits), ['stand', 'walk']);
 });
 
-test('a pace set while a status is pending is not reverted', async () => {
-  const page = await openStanding();
+testPage('a pace set while a status is pending is not reverted', openStanding, async (page) => {
   await page.evaluate(() => {
     const { lizard } = window;
     window.reportedPaces = [];
@@ -85,8 +70,7 @@ test('a pace set while a status is pending is not reverted', async () => {
   assert.equal(await page.locator('#speed').inputValue(), '60');
 });
 
-test('a pace that the robot has not confirmed does not stay on the slider', async () => {
-  const page = await openStanding();
+testPage('a pace that the robot has not confirmed does not stay on the slider', openStanding, async (page) => {
   await page.evaluate(() => {
     window.lizard.link.write = async () => {};
     const slider = document.querySelector('#speed');
@@ -99,24 +83,19 @@ test('a pace that the robot has not confirmed does not stay on the slider', asyn
   assert.equal(await page.locator('#speed').inputValue(), '100');
 });
 
-test('left turns left', async () => {
-  const page = await openStanding();
+testPage('left turns left', openStanding, async (page) => {
   const { predicted, measured } = await runGait(page, 'left');
   assert.ok(predicted.turn > 10);
   assertNear(measured.turn, predicted.turn, 0.03, 'deg in a cycle');
 });
 
-test('a singular pose shows its refusal', async () => {
-  const page = await openStanding();
-  const answer = await sendLine(page, 'pose 75 105 318.59 221.41', 'err 4');
-  assert.match(answer, /^err 4 type-2 margin of the head/);
+testPage('a singular pose shows its refusal', openStanding, async (page) => {
+  assert.match(await sendLine(page, 'pose 75 105 318.59 221.41', 'err 4'), /^err 4 type-2 margin of the head/);
 });
 
-test('changed lengths change the gaits', async () => {
-  const page = await openStanding();
+testPage('changed lengths change the gaits', openStanding, async (page) => {
   const previousPrediction = (await readDisplacements(page, 'walk')).predicted;
   const hash = await page.evaluate(() => window.lizard.description.hash);
-  await unfold(page, '#lengths-panel');
   // Shorter legs make shorter steps.
   const crank = await typeLength(page, 'leg.crank', 35);
   await waitForLength(page, 'leg.crank', 35);
@@ -140,8 +119,7 @@ test('changed lengths change the gaits', async () => {
   assert.equal(await crank.inputValue(), '45');
 });
 
-test('every robot of robots/ can be chosen, and the running image contains it', async () => {
-  const page = await openPage();
+testPage('every robot of robots/ can be chosen, and the running image contains it', openPage, async (page) => {
   const names = await page.locator('#robot option').allInnerTexts();
   assert.ok(names.length >= 5, names.join());
   for (const name of names) {
@@ -178,24 +156,20 @@ async function calibrate(page, runFor) {
   assert.equal(await trim.inputValue(), '2', 'the trim survives a reset');
 }
 
-test('a saved calibration survives a reset', async () => {
-  const page = await openStanding();
+testPage('a saved calibration survives a reset', openStanding, async (page) => {
   await calibrate(page, (ms) => advance(page, ms));
 });
 
-test('the boot action runs after a reset', async () => {
-  const page = await openStanding();
+testPage('the boot action runs after a reset', openStanding, async (page) => {
   await sendLine(page, 'boot walk', 'ok boot walk');
   await sendLine(page, 'save', '> save');
   await advance(page, 2000);
-  await page.locator('#reset').click();
-  await advance(page, 7000);
+  await clickAndAdvance(page, '#reset', 7000);
   await page.locator('#log div', { hasText: '# boot: walk' }).waitFor();
   assert.ok((await readDisplacements(page, 'walk')).measured.forward > 20, 'the page reports the walk');
 });
 
-test('a refused setting shows the reason, and its box shows the previous value', async () => {
-  const page = await openUnfolded('#calibrate');
+testPage('a refused setting shows the reason, and its box shows the previous value', () => openUnfolded('#calibrate'), async (page) => {
   await advance(page, 500);
   const fromInput = page.locator('#calibration fieldset').first().getByLabel('from, deg');
   await fromInput.fill('125');
@@ -212,20 +186,16 @@ async function writeImage(page, runFor, targetText = '') {
   await page.getByLabel('HEX file').setInputFiles({ name: 'large.hex', mimeType: 'text/plain', buffer });
   await page.locator('#flash-question-text', { hasText: /^large\.hex, \d+ bytes\. It is lizard firmware\./ }).waitFor();
   await page.locator('#flash-yes').click();
-  const message = page.locator('#flash-message');
-  for (let n = 0; n < 400; n++) {
-    await runFor(100);
-    if (/written/.test(await message.innerText())) break;
-  }
-  assert.match(await message.innerText(), new RegExp(`^written${targetText} and verified in [\\d.]+ s$`));
+  const readMessage = () => readText(page, '#flash-message');
+  await repeatUntil('the image is written', async () => /written/.test(await readMessage()), () => runFor(100));
+  assert.match(await readMessage(), new RegExp(`^written${targetText} and verified in [\\d.]+ s$`));
   const banner = page.locator('#log div', { hasText: /# lizard .* robot large/ }).last();
-  for (let n = 0; n < 400 && (await banner.count()) === 0; n++) await runFor(100);
+  await repeatUntil('the board sends its banner', async () => (await banner.count()) > 0, () => runFor(100));
   await runFor(2500);
   return banner.innerText();
 }
 
-test('an image is written through the real boot loader', async () => {
-  const page = await openStanding();
+testPage('an image is written through the real boot loader', openStanding, async (page) => {
   const previousLog = await readText(page, '#log');
   const banner = await writeImage(page, (ms) => advance(page, ms), ' to the simulated UNO');
   assert.ok(!previousLog.includes(banner), banner);
@@ -235,16 +205,13 @@ test('an image is written through the real boot loader', async () => {
   assert.deepEqual(writtenBytes, Array.from(image));
 });
 
-test('an invalid HEX file is refused before anything is written', async () => {
-  const page = await openUnfolded('#flash');
-  const input = page.getByLabel('HEX file');
-  await input.setInputFiles({ name: 'x.hex', mimeType: 'text/plain', buffer: Buffer.from('hello\n') });
+testPage('an invalid HEX file is refused before anything is written', () => openUnfolded('#flash'), async (page) => {
+  await page.getByLabel('HEX file').setInputFiles({ name: 'x.hex', mimeType: 'text/plain', buffer: Buffer.from('hello\n') });
   await page.locator('#flash-message', { hasText: "not written: line 1 is not Intel HEX: missing start code ':'" }).waitFor();
   assert.equal((await sendLine(page, 'status', 'ok gait=')).slice(0, 8), 'ok gait=', 'the robot continues');
 });
 
-test('a board on Web Serial is driven, mirrored, calibrated and written', async () => {
-  const page = await openWithBoard('robot', 4000);
+testPage('a board on Web Serial is driven, mirrored, calibrated and written', () => openWithBoard('robot', 4000), async (page) => {
   const runFor = (ms) => page.clock.runFor(ms);
   assert.match(await readText(page, '#where'), /^on a board on USB, robot paper/);
   await page.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
@@ -262,16 +229,14 @@ test('a board on Web Serial is driven, mirrored, calibrated and written', async 
   assert.match(await readText(page, '#where'), /^on a simulated UNO, robot paper/);
 });
 
-test('the page reports an unplugged board, and the simulation continues', async () => {
-  const page = await openWithBoard('robot', 4000);
+testPage('the page reports an unplugged board, and the simulation continues', () => openWithBoard('robot', 4000), async (page) => {
   await page.evaluate(() => window.unplug());
   await page.locator('#problems', { hasText: 'The board is gone: The device has been lost.' }).waitFor();
   await page.clock.runFor(2000);
   assert.match(await readText(page, '#where'), /^on a simulated UNO, robot paper [0-9a-f]{8}$/);
 });
 
-test('a low supply stops the robot, and the page shows the fault', async () => {
-  const page = await openStanding();
+testPage('a low supply stops the robot, and the page shows the fault', openStanding, async (page) => {
   await runGait(page, 'walk');
   await page.locator('#supply').fill('3.9');
   await advance(page, 2000);
@@ -280,8 +245,7 @@ test('a low supply stops the robot, and the page shows the fault', async () => {
   await page.locator('#log div', { hasText: '# supply: ' }).first().waitFor();
 });
 
-test('pads that grip more in one direction change the prediction', async () => {
-  const page = await openStanding();
+testPage('pads that grip more in one direction change the prediction', openStanding, async (page) => {
   const previousForward = (await readDisplacements(page, 'back')).predicted.forward;
   await page.getByLabel('Friction back : ahead').fill('1.5');
   const { predicted, measured } = await runGait(page, 'back');
@@ -295,8 +259,7 @@ async function setSlider(page, label, value) {
   await slider.dispatchEvent('change');
 }
 
-test('weak springs shorten the walk as the contact model predicts', async () => {
-  const page = await openStanding();
+testPage('weak springs shorten the walk as the contact model predicts', openStanding, async (page) => {
   // Ideal servos, because a dead band would shorten the walk.
   await page.locator('#servos').selectOption('ideal');
   await chooseRobot(page, 'paper');
@@ -328,16 +291,14 @@ test('weak springs shorten the walk as the contact model predicts', async () => 
   await page.getByLabel('Mass').press('End');
   const heavyPrediction = (await readDisplacements(page, 'walk')).predicted;
   assert.ok(heavyPrediction.lag > 1.2 * lightPrediction.lag, `lag of heavy and light: ${heavyPrediction.lag} and ${lightPrediction.lag} deg`);
-  await page.locator('#floor-reset').click();
-  await advance(page, 2500);
+  await clickAndAdvance(page, '#floor-reset', 2500);
   const resetDisplacements = await readDisplacements(page, 'walk');
   assertNear(resetDisplacements.predicted.forward, rigidMm, 0.03, 'mm ahead in a cycle, with rigid legs again');
   assertNear(resetDisplacements.measured.forward, rigidMm, 0.03, 'mm ahead in a cycle, with rigid legs again');
   assert.deepEqual([resetDisplacements.predicted.lag, resetDisplacements.measured.lag], [null, 0]);
 });
 
-test('a foot that is too long shortens the walk as the contact model predicts, but not on soft feet', async () => {
-  const page = await openStanding();
+testPage('a foot that is too long shortens the walk as the contact model predicts, but not on soft feet', openStanding, async (page) => {
   await page.locator('#servos').selectOption('ideal');
   await advance(page, 2500);
   const levelMm = (await runGait(page, 'walk')).measured.forward;
@@ -354,8 +315,7 @@ test('a foot that is too long shortens the walk as the contact model predicts, b
   assert.equal(await page.locator('.sprung').first().isVisible(), false, 'rigid legs do not lag');
 });
 
-test('a dead band shortens the stroke as predicted', async () => {
-  const page = await openStanding();
+testPage('a dead band shortens the stroke as predicted', openStanding, async (page) => {
   const walkedMm = [];
   for (const servos of ['ideal', 'own']) {
     await page.locator('#servos').selectOption(servos);
@@ -366,8 +326,7 @@ test('a dead band shortens the stroke as predicted', async () => {
   assertNear(walkedMm[1] / walkedMm[0], 39 / 40, 0.01, 'fraction of the stroke that a dead band of 1 of 40 deg leaves');
 });
 
-test('at half the pace, the last cycle covers the predicted distance', async () => {
-  const page = await openStanding();
+testPage('at half the pace, the last cycle covers the predicted distance', openStanding, async (page) => {
   await sendLine(page, 'speed 50', 'ok speed 50');
   await sendLine(page, 'walk', 'ok walk');
   await advance(page, 8000);

@@ -4,18 +4,15 @@ import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
 import { readFile, readdir, writeFile } from 'node:fs/promises';
 import { join, relative, resolve } from 'node:path';
-import { before, test } from 'node:test';
+import { before } from 'node:test';
 import { promisify } from 'node:util';
-import { gzipSync } from 'node:zlib';
 
 import { unzipSync } from 'fflate';
 
-import { advance, openBlankPage, address, openStanding, openUnfolded, sendLine, unfold, withTimeout, repeatUntil, useBrowser, typeLength, download } from './browser.js';
+import { advance, openBlankPage, address, openStanding, openUnfolded, sendLine, unfold, withTimeout, repeatUntil, useBrowser, typeLength, download, testPage, readToml } from './browser.js';
 import { makeFolder } from './temporary-folder.js';
 
 const ROOT = new URL('../../', import.meta.url).pathname;
-/** Limit of the page's first load, compressed. */
-const MAX_FIRST_LOAD_BYTES = 500_000;
 
 const folder = await makeFolder();
 const runLizard = (command, ...args) => withTimeout(`lizard ${command}`, promisify(execFile)(resolve(ROOT, process.env.LIZARD), [command, ...args]));
@@ -50,8 +47,7 @@ async function lookFromAbove(page) {
   for (let n = 0; n < 12; n++) await page.locator('#canvas-3d').press('ArrowUp');
 }
 
-test('the page reports an unprintable length with the nearest length that lizard parts accepts', async () => {
-  const page = await openUnfolded('#lengths-panel');
+testPage('the page reports an unprintable length with the nearest length that lizard parts accepts', () => openUnfolded('#lengths-panel'), async (page) => {
   const length = await typeLength(page, 'leg.crank', 46);
   await page.locator('#fit-message', { hasText: /^The parts fit: no two come nearer than \d\.\d\d mm\.$/ }).waitFor();
   await typeLength(page, 'leg.crank', 52);
@@ -95,8 +91,7 @@ test('the page reports an unprintable length with the nearest length that lizard
   assert.ok(endsMm[0] <= Number(shortestMm) && endsMm[1] > nearestMm, `the slider: ${endsMm} mm`);
 });
 
-test('colliding parts are red in 3D while a length is dragged, and the page shows their overlap in mm', async () => {
-  const page = await openUnfolded('#lengths-panel');
+testPage('colliding parts are red in 3D while a length is dragged, and the page shows their overlap in mm', () => openUnfolded('#lengths-panel'), async (page) => {
   await page.locator('#button-3d').click();
   await page.getByText('Click a part for its name').waitFor();
   const slider = page.locator('#length-slide');
@@ -120,14 +115,14 @@ test('colliding parts are red in 3D while a length is dragged, and the page show
     }, picture);
   };
   const initialRedCount = await countRedPixels();
-  const previousToml = await page.evaluate(() => window.lizard.toml);
+  const previousToml = await readToml(page);
   const dragTo = (mm) => slider.evaluate((slider, mm) => ((slider.value = String(mm)), slider.dispatchEvent(new Event('input'))), mm);
   await dragTo(52);
   const message = page.locator('#fit-message', { hasText: /^These lengths cannot be printed: .* would overlap by [\d.]+ mm\.$/ });
   await message.waitFor();
   const [, pair, overlapMm] = /printed: (.*) would overlap by ([\d.]+) mm/.exec(await message.innerText());
   await page.locator('#parts-message', { hasText: `${pair} overlap by ${overlapMm} mm.` }).waitFor();
-  assert.equal(await page.evaluate(() => window.lizard.toml), previousToml, 'the slider is not released yet');
+  assert.equal(await readToml(page), previousToml, 'the slider is not released yet');
   // The stop button is red, too. The picture follows the slider after a moment.
   const hasRedParts = async () => (await countRedPixels()) > initialRedCount + 50;
   await repeatUntil('red parts', hasRedParts, () => page.waitForTimeout(200));
@@ -137,8 +132,7 @@ test('colliding parts are red in 3D while a length is dragged, and the page show
   await repeatUntil('no red parts', async () => !(await hasRedParts()), () => page.waitForTimeout(200));
 });
 
-test('the page lists the files that a changed length affects, and downloads only these files', async () => {
-  const page = await openUnfolded('#parts');
+testPage('the page lists the files that a changed length affects, and downloads only these files', () => openUnfolded('#parts'), async (page) => {
   assert.ok(await page.locator('#parts-changed').isHidden(), 'nothing is changed');
   assert.equal(await page.evaluate(() => window.lizard.change(window.lizard.robot.constructor.tryLengths(window.lizard.toml, [['leg.crank', 46], ['leg.follower', 46]], false).text)), null);
   const savedFile = await download(page, page.locator('#parts-changed'));
@@ -146,7 +140,7 @@ test('the page lists the files that a changed length affects, and downloads only
   const archive = unzipSync(savedFile.bytes);
   const changedFolder = await makeFolder();
   const path = join(changedFolder, 'robot.toml');
-  await writeFile(path, await page.evaluate(() => window.lizard.toml));
+  await writeFile(path, await readToml(page));
   await runLizard('parts', join(changedFolder, 'parts'), '--robot', path);
   const paths = await listPaths(join(changedFolder, 'parts'));
   const isSame = async (name) => {
@@ -161,26 +155,20 @@ test('the page lists the files that a changed length affects, and downloads only
   assert.match(await page.locator('#files-message').innerText(), new RegExp(`^${changedNames.length} of ${paths.length} files differ from the files of robot\\.toml:`));
 });
 
-test('opening the page loads no parts, and less than 500 KB compressed', async () => {
-  const page = await openBlankPage();
-  const bodies = new Map();
-  page.on('response', (response) => bodies.set(response.url().replace(address(), ''), response.body()));
+testPage('opening the page loads no parts', openBlankPage, async (page) => {
+  const names = [];
+  page.on('response', (response) => names.push(response.url().replace(address(), '')));
   await page.goto(address());
   await page.waitForFunction(() => window.lizard);
-  const names = [...bodies.keys()];
-  const sizes = await withTimeout('all bodies', Promise.all([...bodies.values()].map(async (body) => gzipSync(await body).length)));
-  const totalBytes = sizes.reduce((a, b) => a + b, 0);
   assert.ok(names.includes('files/lizard.wasm'), names.join(' '));
-  assert.ok(totalBytes < MAX_FIRST_LOAD_BYTES, `${totalBytes} bytes`);
   const earlyNames = names.filter((name) => /parts\.wasm|tune\.wasm|robot-view|make-parts|worker-.*parts/.test(name));
   assert.deepEqual(earlyNames, []);
   await unfold(page, '#parts');
   await page.getByText('Click a part for its name').waitFor();
-  assert.ok(bodies.has('files/parts.wasm') && [...bodies.keys()].some((name) => name.includes('robot-view')));
+  assert.ok(names.includes('files/parts.wasm') && names.some((name) => name.includes('robot-view')));
 });
 
-test('the archive has the files of lizard parts, byte for byte', async () => {
-  const page = await openUnfolded('#parts');
+testPage('the archive has the files of lizard parts, byte for byte', () => openUnfolded('#parts'), async (page) => {
   // Every message is recorded when it appears, because polling a busy browser would miss some.
   await page.evaluate(() => {
     const box = document.querySelector('#files-message');
@@ -209,8 +197,7 @@ test('the archive has the files of lizard parts, byte for byte', async () => {
   assert.match(await page.locator('#files-message').innerText(), new RegExp(`^${paths.length} files. No two parts come nearer than ${smallestMm} mm`));
 });
 
-test('the page saves nothing if making the files is stopped', async () => {
-  const page = await openStanding();
+testPage('the page saves nothing if making the files is stopped', openStanding, async (page) => {
   let downloadCount = 0;
   page.on('download', () => (downloadCount += 1));
   await unfold(page, '#parts');
@@ -230,8 +217,7 @@ test('the page saves nothing if making the files is stopped', async () => {
   assert.equal(downloadCount, 0);
 });
 
-test('a clicked part shows its name and its file', async () => {
-  const page = await openParts();
+testPage('a clicked part shows its name and its file', openParts, async (page) => {
   await lookFromAbove(page);
   assert.match(await clickAt(page, 0.5, 0.5), /^board: board, bought; mounted in step 3\.$/);
   assert.equal(await page.locator('#part option:checked').innerText(), 'board');
@@ -242,8 +228,7 @@ test('a clicked part shows its name and its file', async () => {
   assert.ok((await readdir(join(folder, 'stl'))).includes(`${file}.stl`), file);
 });
 
-test('the page leads through the guide step by step', async () => {
-  const page = await openParts();
+testPage('the page leads through the guide step by step', openParts, async (page) => {
   const guide = await readFile(join(folder, 'guide/guide.md'), 'utf8');
   const titles = [...guide.matchAll(/^## ([0-9]+)\. (.*)$/gm)];
   assert.equal(titles.length, 15);
@@ -260,8 +245,7 @@ test('the page leads through the guide step by step', async () => {
   assert.doesNotMatch(await clickAt(page, 0.5, 0.5), /^board:/);
 });
 
-test('the parts move with the robot', async () => {
-  const page = await openParts();
+testPage('the parts move with the robot', openParts, async (page) => {
   await lookFromAbove(page);
   // Finds the centre of the pixels that show the head's plate. Seen from above, the robot's head is up and to the left.
   const findHead = () =>
@@ -299,15 +283,13 @@ test('the parts move with the robot', async () => {
   assert.ok(sideways > 15, `${straightPlace} to ${bentPlace}`);
 });
 
-test('the page gives the reason why a robot cannot be built', async () => {
-  const page = await openParts();
+testPage('the page gives the reason why a robot cannot be built', openParts, async (page) => {
   const lowPartsToml = '\n[parts]\nheight = 10.0\n';
   assert.equal(await page.evaluate((lowPartsToml) => window.lizard.change(window.lizard.toml + lowPartsToml), lowPartsToml), null);
   await page.getByText(/Cannot make the parts of this robot: parts\.height must be at least .* but is 10 mm/).waitFor();
 });
 
-test('3D rendering takes less than a core on a machine without a graphics chip', async (t) => {
-  const page = await openParts();
+testPage('3D rendering takes less than a core on a machine without a graphics chip', openParts, async (page, t) => {
   const browserSession = await withTimeout('the processes', page.context().browser().newBrowserCDPSession());
   const readGpuSeconds = async () => {
     const { processInfo } = await withTimeout('the processes', browserSession.send('SystemInfo.getProcessInfo'));

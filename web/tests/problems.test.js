@@ -2,15 +2,14 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { address, advance, browserErrors, openBlankPage, openForbidden, openStanding, openPage, readText, sendLine, unfold, useBrowser, chooseRobot } from './browser.js';
+import { address, advance, browserErrors, openBlankPage, openForbidden, openStanding, openPage, readText, sendLine, unfold, useBrowser, chooseRobot, testPage, clickAndAdvance } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 
 useBrowser();
 
 const findProblems = (page) => page.locator('#problems');
 
-test('the message about an unreadable robot file stays while the previous robot walks on', async () => {
-  const page = await openStanding();
+testPage('the message about an unreadable robot file stays while the previous robot walks on', openStanding, async (page) => {
   await page.route('**/files/large.toml', (route) => route.fulfill({ status: 404 }));
   await page.locator('#robot').selectOption('large');
   const message = findProblems(page).getByText('files/large.toml is missing (status 404)');
@@ -29,8 +28,7 @@ test('the message about an unreadable robot file stays while the previous robot 
   browserErrors.splice(0, browserErrors.length, ...browserErrors.filter((browserError) => !/404/.test(browserError)));
 });
 
-test('the page reports an unreadable first robot and accepts another robot', async () => {
-  const page = await openBlankPage();
+testPage('the page reports an unreadable first robot and accepts another robot', openBlankPage, async (page) => {
   await page.route('**/files/robot.toml', (route) => route.fulfill({ status: 404 }));
   await page.goto(address());
   await findProblems(page).getByText('files/robot.toml is missing (status 404)').waitFor();
@@ -41,8 +39,7 @@ test('the page reports an unreadable first robot and accepts another robot', asy
   assert.equal(await findProblems(page).isVisible(), false);
 });
 
-test('the message about a busy port stays until the user dismisses it', async () => {
-  const page = await openPage({}, installFakeSerial);
+testPage('the message about a busy port stays until the user dismisses it', () => openPage({}, installFakeSerial), async (page) => {
   await page.evaluate(() => {
     window.onPortOpen = () => {
       throw new DOMException('Failed to open serial port.', 'NetworkError');
@@ -59,8 +56,7 @@ test('the message about a busy port stays until the user dismisses it', async ()
   assert.equal(await findProblems(page).isVisible(), false);
 });
 
-test('cancelling the choice of a port reports no problem', async () => {
-  const page = await openPage({}, installFakeSerial);
+testPage('cancelling the choice of a port reports no problem', () => openPage({}, installFakeSerial), async (page) => {
   await page.evaluate(() => {
     window.onPortPick = () => {
       window.isPickCancelled = true;
@@ -74,8 +70,7 @@ test('cancelling the choice of a port reports no problem', async () => {
   assert.match(await readText(page, '#where'), /simulated UNO/);
 });
 
-test('the page gives the reason why ports are forbidden, and the simulation continues', async () => {
-  const page = await openForbidden('serial');
+testPage('the page gives the reason why ports are forbidden, and the simulation continues', () => openForbidden('serial'), async (page) => {
   await page.locator('#connect').click();
   await findProblems(page).getByText('Access to the feature "serial" is disallowed by permissions policy.').waitFor();
   assert.match(await findProblems(page).innerText(), /^No board is connected: /);
@@ -89,15 +84,12 @@ test('the page reports a browser without Web Serial at once', async () => {
 
 test('a refusal is on the screen beside the buttons, also on a phone', async () => {
   const page = await openStanding({ viewport: { width: 390, height: 844 }, hasTouch: true });
-  await page.locator('[data-command="rest"]').click();
-  await advance(page, 300);
-  await page.locator('#gaits button[data-command="walk"]').click();
-  await advance(page, 300);
+  await clickAndAdvance(page, '[data-command="rest"]', 300);
+  await clickAndAdvance(page, '#gaits button[data-command="walk"]', 300);
   const message = page.locator('#drive-message');
   await message.getByText('walk: the servos are resting; send stand first').waitFor();
   const { y, height } = await message.boundingBox();
   assert.ok(y >= 0 && y + height <= 844, `the message is on the screen: ${y} to ${y + height}`);
-  await page.locator('#gaits button[data-command="stand"]').click();
-  await advance(page, 300);
+  await clickAndAdvance(page, '#gaits button[data-command="stand"]', 300);
   await message.waitFor({ state: 'hidden' });
 });

@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 
 import { loadHex } from '../../tools/judge/src/hex.js';
-import { TIMEOUT_MS, openPage, useBrowser } from './browser.js';
+import { TIMEOUT_MS, openPage, useBrowser, testPage } from './browser.js';
 import { makeFolder } from './temporary-folder.js';
 
 useBrowser();
@@ -52,8 +52,7 @@ async function simulate(toml) {
   }
 }
 
-test('the image of robot.toml equals that of the compiler, byte for byte', async () => {
-  const page = await openPage();
+testPage('the image of robot.toml equals that of the compiler, byte for byte', openPage, async (page) => {
   const flash = new Uint8Array(32 * 1024).fill(0xff);
   loadHex(readFileSync(HEX_FILE, 'utf8'), flash);
   const image = await page.evaluate(() => Array.from(window.lizard.image));

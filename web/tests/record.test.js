@@ -1,8 +1,7 @@
 // A run is recorded, replayed and saved, and two robots walk on one floor.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
 
-import { advance, openUnfolded, sendLine, useBrowser, chooseRobot, download } from './browser.js';
+import { advance, openUnfolded, sendLine, useBrowser, chooseRobot, download, testPage, waitForGait } from './browser.js';
 
 useBrowser();
 
@@ -25,8 +24,7 @@ function parseCsv(csv) {
   return lines.map((fields) => Object.fromEntries(header.map((name, n) => [name, fields[n]])));
 }
 
-test('the table of a run has the pose, the place and the pulses of every frame', async () => {
-  const page = await openRecordPanel();
+testPage('the table of a run has the pose, the place and the pulses of every frame', openRecordPanel, async (page) => {
   await sendLine(page, 'walk', 'ok walk');
   const startFrameCount = await countFrames(page);
   await findButton(page, 'Record').click();
@@ -50,8 +48,7 @@ test('the table of a run has the pose, the place and the pulses of every frame',
   assert.ok(poseIndex > 0, 'the table has the pose during the run');
 });
 
-test('a run can be replayed from any moment while the robot continues', async () => {
-  const page = await openRecordPanel();
+testPage('a run can be replayed from any moment while the robot continues', openRecordPanel, async (page) => {
   await sendLine(page, 'walk', 'ok walk');
   await findButton(page, 'Record').click();
   await advance(page, 2000);
@@ -69,8 +66,7 @@ test('a run can be replayed from any moment while the robot continues', async ()
   assert.ok(await findButton(page, 'Replay').isDisabled());
 });
 
-test('the floor is saved as a PNG or SVG picture, or as a video', async () => {
-  const page = await openRecordPanel();
+testPage('the floor is saved as a PNG or SVG picture, or as a video', openRecordPanel, async (page) => {
   await sendLine(page, 'walk', 'ok walk');
   const png = await saveFile(page, 'Picture (PNG)');
   assert.equal(png.bytes.subarray(1, 4).toString(), 'PNG');
@@ -89,12 +85,11 @@ test('the floor is saved as a PNG or SVG picture, or as a video', async () => {
   assert.ok(video.bytes.length > 2000, `${video.bytes.length} bytes`);
 });
 
-test('two robots walk side by side, each as far as alone', async () => {
-  const page = await openRecordPanel();
+testPage('two robots walk side by side, each as far as alone', openRecordPanel, async (page) => {
   await page.getByLabel('This robot').selectOption('back');
   await page.getByLabel('Beside it').selectOption('walk');
   await findButton(page, 'Start both').click();
-  await page.waitForFunction(() => window.lizard.gait === 'back');
+  await waitForGait(page, 'back');
   for (let n = 0; n < 20; n++) await advance(page, 500);
   const message = page.locator('#keep-message');
   await page.getByText(/^back: -[0-9.]+ mm.*Beside it, walk: [0-9.]+ mm/).waitFor();

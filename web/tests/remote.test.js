@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 
-import { DIST, address, advance, openStanding, useBrowser } from './browser.js';
+import { DIST, address, advance, openStanding, startDrag, useBrowser, testPage, waitForGait } from './browser.js';
 
 useBrowser();
 
@@ -44,8 +44,7 @@ test('a phone can install the page, with its icons, for use without a network', 
   assert.deepEqual(installabilityErrors.filter(({ errorId }) => errorId !== 'in-incognito'), []);
 });
 
-test('stick and stop are in reach of the thumbs, and the robot fills the screen', async () => {
-  const page = await openRemote();
+testPage('stick and stop are in reach of the thumbs, and the robot fills the screen', openRemote, async (page) => {
   const { width, height } = PHONE.viewport;
   const [stick, stop, floor] = await Promise.all(['#stick', 'button.stop', 'section.floor'].map((name) => page.locator(name).boundingBox()));
   for (const box of [stick, stop]) assert.ok(Math.min(box.width, box.height) >= TARGET_PX, JSON.stringify(box));
@@ -56,24 +55,20 @@ test('stick and stop are in reach of the thumbs, and the robot fills the screen'
   for (const hiddenSelector of ['header', '#console', '#gaits', '#reset']) assert.equal(await page.locator(hiddenSelector).first().isVisible(), false, hiddenSelector);
 });
 
-test('the remote drives and stops, and keeps the screen on while it is open', async () => {
-  const page = await openRemote();
+testPage('the remote drives and stops, and keeps the screen on while it is open', openRemote, async (page) => {
   await page.waitForFunction(() => document.querySelector('#gaits [data-command="walk"] small').textContent !== '');
   const { x, y, width } = await page.locator('#stick').boundingBox();
-  await page.mouse.move(x + width / 2, y + width / 2);
-  await page.mouse.down();
-  await page.mouse.move(x + width / 2, y + 4);
-  await page.waitForFunction(() => window.lizard.gait === 'walk');
+  await startDrag(page, [x + width / 2, y + width / 2], [x + width / 2, y + 4]);
+  await waitForGait(page, 'walk');
   await page.locator('button.stop').dispatchEvent('click');
-  await page.waitForFunction(() => window.lizard.gait === 'stop');
+  await waitForGait(page, 'stop');
   await page.mouse.up();
   await page.getByRole('button', { name: 'Remote' }).click();
   await page.waitForFunction(() => window.wakeLockCount === 0);
   assert.ok(await page.locator('header').isVisible());
 });
 
-test('the phone vibrates when the robot stops by itself', async () => {
-  const page = await openRemote();
+testPage('the phone vibrates when the robot stops by itself', openRemote, async (page) => {
   await page.evaluate(() => window.lizard.ask('walk'));
   await page.evaluate(() => window.lizard.setSupply(3));
   await advance(page, 2000);

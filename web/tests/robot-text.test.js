@@ -3,12 +3,11 @@
 import assert from 'node:assert/strict';
 import { readFile, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
-import { test } from 'node:test';
 
 import jsQR from 'jsqr';
 import { parse } from 'smol-toml';
 
-import { address, openPage, openUnfolded, waitUntil, useBrowser, chooseRobot } from './browser.js';
+import { address, openPage, openUnfolded, waitUntil, useBrowser, chooseRobot, testPage, readToml } from './browser.js';
 import { makeFolder } from './temporary-folder.js';
 
 const LARGE_PATH = new URL('../../robots/large.toml', import.meta.url).pathname;
@@ -16,7 +15,6 @@ const LARGE_PATH = new URL('../../robots/large.toml', import.meta.url).pathname;
 useBrowser();
 
 const findTextBox = (page) => page.locator('#robot-text');
-const readToml = (page) => page.evaluate(() => window.lizard.toml);
 const waitForRobot = (page, text) => page.waitForFunction((text) => window.lizard?.toml === text, text);
 
 /** Types a robot.toml and makes it the page's robot. */
@@ -27,8 +25,7 @@ async function applyText(page, toml) {
 
 const openTextEditor = () => openUnfolded('#robot-editor');
 
-test('a text with a mistake is refused with the line number, and the previous robot stays', async () => {
-  const page = await openTextEditor();
+testPage('a text with a mistake is refused with the line number, and the previous robot stays', openTextEditor, async (page) => {
   const firstToml = await readToml(page);
   assert.equal(await findTextBox(page).inputValue(), firstToml);
   const invalidToml = firstToml.replace('l1 = 30.0', 'l1 = "long"');
@@ -42,8 +39,7 @@ test('a text with a mistake is refused with the line number, and the previous ro
   assert.equal(await findTextBox(page).inputValue(), invalidToml, 'the typed text stays');
 });
 
-test('the message about a refused gait names its effect on the robot, then the line number', async () => {
-  const page = await openTextEditor();
+testPage('the message about a refused gait names its effect on the robot, then the line number', openTextEditor, async (page) => {
   const invalidToml = (await readToml(page)).replace('amplitude = 20.0', 'amplitude = 40.0');
   const line = invalidToml.split('\n').findIndex((text) => text.startsWith('[gait.walk]')) + 1;
   await applyText(page, invalidToml);
@@ -53,8 +49,7 @@ test('the message about a refused gait names its effect on the robot, then the l
   assert.ok(refusalText.endsWith(`(robot.toml:${line}: gait.walk)`), refusalText);
 });
 
-test('a valid text replaces the robot, and undo and redo work step by step', async () => {
-  const page = await openTextEditor();
+testPage('a valid text replaces the robot, and undo and redo work step by step', openTextEditor, async (page) => {
   const firstToml = await readToml(page);
   const secondToml = firstToml.replace('amplitude = 15.0', 'amplitude = 14.0');
   const thirdToml = secondToml.replace('period = 1.25', 'period = 1.5');
@@ -64,31 +59,29 @@ test('a valid text replaces the robot, and undo and redo work step by step', asy
     await waitForRobot(page, text);
   }
   assert.equal(await page.evaluate(() => window.lizard.description.gaits.find(({ name }) => name === 'trot').period), 1.5);
-  for (const text of [secondToml, firstToml]) {
-    await page.locator('#robot-undo').click();
-    await waitForRobot(page, text);
-  }
-  assert.ok(await page.locator('#robot-undo').isDisabled());
+  const undo = page.locator('#robot-undo');
   const redo = page.locator('#robot-redo');
-  for (const text of [secondToml, thirdToml]) {
-    await redo.click();
-    await waitForRobot(page, text);
-  }
+  const pressAndWait = async (button, ...texts) => {
+    for (const text of texts) {
+      await button.click();
+      await waitForRobot(page, text);
+    }
+  };
+  await pressAndWait(undo, secondToml, firstToml);
+  assert.ok(await undo.isDisabled());
+  await pressAndWait(redo, secondToml, thirdToml);
   assert.ok(await redo.isDisabled());
   // A change after an undo drops the undone steps.
-  await page.locator('#robot-undo').click();
-  await waitForRobot(page, secondToml);
+  await pressAndWait(undo, secondToml);
   assert.ok(await redo.isEnabled());
   await findTextBox(page).fill(firstToml);
   await findTextBox(page).press('Control+Enter');
   await waitForRobot(page, firstToml);
   assert.ok(await redo.isDisabled());
-  await page.locator('#robot-undo').click();
-  await waitForRobot(page, secondToml);
+  await pressAndWait(undo, secondToml);
 });
 
-test('a file can be opened, or dropped anywhere on the page', async () => {
-  const page = await openTextEditor();
+testPage('a file can be opened, or dropped anywhere on the page', openTextEditor, async (page) => {
   const largeToml = await readFile(LARGE_PATH, 'utf8');
   await page.locator('#robot-open').setInputFiles(LARGE_PATH);
   await waitForRobot(page, largeToml);
@@ -138,8 +131,7 @@ async function scanQrCode(page) {
   return jsQR.default(Uint8ClampedArray.from(data), side, side)?.data;
 }
 
-test('a link contains the robot, survives a reload, and equals the text of the QR code', async () => {
-  const page = await openTextEditor();
+testPage('a link contains the robot, survives a reload, and equals the text of the QR code', openTextEditor, async (page) => {
   const largeToml = await readFile(LARGE_PATH, 'utf8');
   await page.locator('#robot-open').setInputFiles(LARGE_PATH);
   await waitForRobot(page, largeToml);
@@ -169,8 +161,7 @@ test('a link contains the robot, survives a reload, and equals the text of the Q
   await page.waitForFunction(() => document.querySelector('#robot-drawn svg') === null);
 });
 
-test('a link contains everything except comments', async () => {
-  const page = await openTextEditor();
+testPage('a link contains everything except comments', openTextEditor, async (page) => {
   const toml = `# one\n${(await readToml(page)).replace('name = "paper"', 'name = "paper" # "two"')}\n  # three # "four"\n`;
   await applyText(page, toml);
   await waitForRobot(page, toml);
@@ -181,8 +172,7 @@ test('a link contains everything except comments', async () => {
   assert.doesNotMatch(await readToml(otherPage), /one|three/);
 });
 
-test('after every change the address contains the shown robot', async () => {
-  const page = await openTextEditor();
+testPage('after every change the address contains the shown robot', openTextEditor, async (page) => {
   const firstToml = await readToml(page);
   assert.equal(page.url(), `${address()}#room=build`, 'the page\'s own robot is not in the address');
   const changedToml = firstToml.replace('amplitude = 15.0', 'amplitude = 14.0');
@@ -207,8 +197,7 @@ test('after every change the address contains the shown robot', async () => {
   await otherPage.locator('#problems', { hasText: 'The page has no robot nothing.toml' }).waitFor();
 });
 
-test('a hostile file runs no script', async () => {
-  const page = await openTextEditor();
+testPage('a hostile file runs no script', openTextEditor, async (page) => {
   const dialogs = [];
   page.on('dialog', (dialog) => dialog.dismiss().then(() => dialogs.push(dialog.message())));
   const hostileGait = '[gait."<img src=x onerror=alert(1)>"]\nperiod = 1.0\nwaveform = "still"\n';
@@ -219,8 +208,7 @@ test('a hostile file runs no script', async () => {
   assert.deepEqual(dialogs, []);
 });
 
-test('a button restores the user\'s own robot after a link or another robot was opened', async () => {
-  const page = await openTextEditor();
+testPage('a button restores the user\'s own robot after a link or another robot was opened', openTextEditor, async (page) => {
   const ownToml = (await readToml(page)).replace('amplitude = 15.0', 'amplitude = 14.0');
   await applyText(page, ownToml);
   await waitForRobot(page, ownToml);
@@ -246,8 +234,7 @@ test('a button restores the user\'s own robot after a link or another robot was 
   assert.equal(await page.locator('#robot optgroup[label="your own"]').count(), 0, 'no stored robot is left');
 });
 
-test('the list has the names of the user\'s own robots, and restores each unchanged', async () => {
-  const page = await openTextEditor();
+testPage('the list has the names of the user\'s own robots, and restores each unchanged', openTextEditor, async (page) => {
   const firstToml = await readToml(page);
   const makeToml = (name) => firstToml.replace('name = "paper"', `name = "${name}"`);
   const list = page.locator('#robot');

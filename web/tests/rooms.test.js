@@ -1,10 +1,9 @@
 // The rooms of the page: each has an address, fits its screen, keeps Stop within reach, and renders only while it
 // is open.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
 
 import { findViolations } from './axe.js';
-import { address, openPage, measureOverflow, openStanding, readBox, unfold, useBrowser, typeLength } from './browser.js';
+import { address, openPage, measureOverflow, openStanding, readBox, unfold, useBrowser, typeLength, testPage, readToml } from './browser.js';
 
 useBrowser();
 
@@ -28,8 +27,7 @@ const waitForRoom = (page, room) => page.waitForFunction((room) => [...document.
 // Colours do not change the layout, so each size is tested with only one theme.
 for (const options of SIZES.map((size, n) => ({ ...size, colorScheme: THEMES[n % 2] }))) {
   const { width, height } = options.viewport;
-  test(`every room fits ${width} x ${height} pixels in ${options.colorScheme} colours, shows its main element and Stop, and has no violations for axe-core`, async () => {
-    const page = await openStanding({ ...options, bypassCSP: true });
+  testPage(`every room fits ${width} x ${height} pixels in ${options.colorScheme} colours, shows its main element and Stop, and has no violations for axe-core`, () => openStanding({ ...options, bypassCSP: true }), async (page) => {
     for (const room of ROOMS) {
       await page.evaluate((room) => (location.hash = `room=${room}`), room);
       await waitForRoom(page, room);
@@ -48,8 +46,7 @@ for (const options of SIZES.map((size, n) => ({ ...size, colorScheme: THEMES[n %
   });
 }
 
-test('an address opens its room and its robot, and the tabs, the title and Back follow', async () => {
-  const page = await openPage();
+testPage('an address opens its room and its robot, and the tabs, the title and Back follow', openPage, async (page) => {
   await waitForRoom(page, 'start');
   await page.goto(`${address()}#room=build&file=large`);
   await waitForRoom(page, 'build');
@@ -71,8 +68,7 @@ test('an address opens its room and its robot, and the tabs, the title and Back 
   await waitForRoom(page, 'start');
 });
 
-test('a changed robot stays when the browser goes back to the previous room', async () => {
-  const page = await openPage();
+testPage('a changed robot stays when the browser goes back to the previous room', openPage, async (page) => {
   await findTab(page, 'build').click();
   await typeLength(page, 'links.l12', 46);
   await page.waitForFunction(() => location.hash.startsWith('#room=build&robot='));
@@ -81,17 +77,16 @@ test('a changed robot stays when the browser goes back to the previous room', as
   await waitForRoom(page, 'drive');
   await typeLength(page, 'links.l12', 47);
   await page.waitForFunction((firstHash) => location.hash.startsWith('#room=build&robot=') && location.hash !== firstHash, firstHash);
-  const toml = await page.evaluate(() => window.lizard.toml);
+  const toml = await readToml(page);
   await page.goBack();
   await waitForRoom(page, 'drive');
   await page.goBack();
   await waitForRoom(page, 'build');
   await page.waitForTimeout(500);
-  assert.equal(await page.evaluate(() => window.lizard.toml), toml);
+  assert.equal(await readToml(page), toml);
 });
 
-test('the three doors of the first screen lead to rooms', async () => {
-  const page = await openPage();
+testPage('the three doors of the first screen lead to rooms', openPage, async (page) => {
   for (const [door, room] of [['Play', 'drive'], ['Build', 'build'], ['Connect', 'board']]) {
     await page.locator('.doors a', { hasText: door }).click();
     await waitForRoom(page, room);
@@ -100,8 +95,7 @@ test('the three doors of the first screen lead to rooms', async () => {
   }
 });
 
-test('a closed room renders nothing, even if its panels are unfolded', async () => {
-  const page = await openStanding();
+testPage('a closed room renders nothing, even if its panels are unfolded', openStanding, async (page) => {
   for (const panel of ['#maps', '#margins-panel', '#pulses', '#keep', '#power', '#routines', '#gesture-editor', '#parts']) await unfold(page, panel);
   await page.locator('#button-3d').click();
   // The parts fill their lists when they are loaded.
@@ -129,9 +123,8 @@ test('a closed room renders nothing, even if its panels are unfolded', async () 
   assert.deepEqual(drawnNames, []);
 });
 
-test('one press switches between 3D and the plan view, and three.js is loaded only for 3D', async () => {
+testPage('one press switches between 3D and the plan view, and three.js is loaded only for 3D', openStanding, async (page) => {
   const loadedPaths = [];
-  const page = await openStanding();
   page.on('request', (request) => loadedPaths.push(new URL(request.url()).pathname));
   for (const room of ROOMS.slice(1)) await findTab(page, room).click();
   assert.deepEqual(loadedPaths.filter((path) => /robot-view|parts/.test(path)), []);

@@ -3,17 +3,20 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { openWithBoard, runUntil, reconnect, waitForText } from './board.js';
-import { address, advance, openStanding, readText, unfold, useBrowser, hidePage } from './browser.js';
+import { address, advance, openStanding, readText, unfold, useBrowser, hidePage, testPage, findGaitButton, readGait, readPlace, readToml, waitForGait } from './browser.js';
 
 useBrowser();
 
 const PATROL = ['stand 1 s', 'walk 2', 'left 3', 'look 1'];
 
-const readGait = (page) => page.evaluate(() => window.lizard.gait);
 /** Waits until the robot on a board walks with a gait. */
 const waitForBoardGait = (page, name) => runUntil(page, `the robot does ${name}`, async () => (await readGait(page)) === name, 20);
-const readToml = (page) => page.evaluate(() => window.lizard.toml);
-const findGaitButton = (page, name) => page.locator(`#gaits button[data-command="${name}"]`);
+/** Starts a gait of the robot on a board, and lets it run for `ms`. */
+async function runBoardGait(page, name, ms) {
+  await findGaitButton(page, name).click();
+  await waitForBoardGait(page, name);
+  await page.clock.runFor(ms);
+}
 const readShownSteps = (page) => page.locator('#routine-steps input').evaluateAll((inputs) => inputs.map(({ value }) => value));
 const findStepInput = (page, number) => page.getByLabel(`Step ${number}`, { exact: true });
 const press = async (page, name) => {
@@ -28,7 +31,7 @@ const waitForSteps = (page, expected) =>
   );
 /** Reads the steps in the text of the robot. */
 const readSteps = (page) => page.evaluate(() => window.lizard.robot.constructor.routines(window.lizard.toml).at(-1)?.steps);
-const waitForPrediction = (page) => page.waitForFunction(() => document.querySelector('#routine-round').textContent !== '');
+const waitForRoundPrediction = (page) => page.waitForFunction(() => document.querySelector('#routine-round').textContent !== '');
 const readTrackPath = (page) => page.locator('#routine-path .track').getAttribute('d');
 
 /** Puts a routine into the page's robot, at the end of its text. */
@@ -51,7 +54,7 @@ async function showRoutine(page, routine) {
 /** Opens the panel with a routine, for a robot that stands. */
 const openRoutine = async (routine = PATROL, options = {}) => showRoutine(await openStanding(options), routine);
 /** Opens the panel with a routine that the connected board does not have. */
-const openBoardWithRoutine = async (routine) => showRoutine(await openWithBoard('robot', 8000), routine);
+const openBoardWithRoutine = async (routine) => showRoutine(await openWithBoard(), routine);
 
 /** Runs the simulation for some seconds of its own time. */
 async function runSeconds(page, seconds) {
@@ -64,24 +67,22 @@ async function runSeconds(page, seconds) {
   }
 }
 
-test('a recorded drive has the robot\'s motions, and its replay ends at the predicted place', async () => {
-  const page = await openRoutine(null);
+testPage('a recorded drive has the robot\'s motions, and its replay ends at the predicted place', () => openRoutine(null), async (page) => {
   await page.waitForFunction(() => ['walk', 'left'].every((name) => document.querySelector(`#gaits button[data-command="${name}"] small`).textContent));
   await page.getByText('This robot has no routine yet.').waitFor();
   await press(page, 'Record a drive');
   await page.getByText('Recording: drive the robot now').waitFor();
-  const readPlace = () => page.evaluate(() => window.lizard.last.place);
-  const startPlace = await readPlace();
+  const startPlace = await readPlace(page);
   const driveFor = async (key, gait, seconds) => {
     await page.keyboard.down(key);
-    await page.waitForFunction((gait) => window.lizard.gait === gait, gait);
+    await waitForGait(page, gait);
     await runSeconds(page, seconds);
     await page.keyboard.up(key);
-    await page.waitForFunction(() => window.lizard.gait === 'stop');
+    await waitForGait(page, 'stop');
   };
   await driveFor('ArrowUp', 'walk', 3.6);
   // The body's displacement shows how many cycles have passed.
-  const cycles = ((await readPlace()).y - startPlace.y) / 33.2;
+  const cycles = ((await readPlace(page)).y - startPlace.y) / 33.2;
   await runSeconds(page, 2);
   await driveFor('ArrowLeft', 'left', 2.6);
   await runSeconds(page, 1);
@@ -96,25 +97,24 @@ test('a recorded drive has the robot\'s motions, and its replay ends at the pred
   const recordedSteps = [`walk ${walkCycles}`, `stand ${pauseSeconds} s`, `left ${turnCycles}`];
   await waitForSteps(page, recordedSteps);
   assert.ok((await readToml(page)).endsWith(`\n[routine.patrol]\nsteps = ["${recordedSteps.join('", "')}"]\n`));
-  await waitForPrediction(page);
+  await waitForRoundPrediction(page);
   const [, seconds, forwardMm, , , turnedDeg] = /^A round takes ([\d.]+) s and ends (-?\d+) mm ahead and (\d+) mm to the (right|left) of its start, turned by (-?\d+)°\.$/
     .exec(await readText(page, '#routine-round'));
   assert.ok(Math.abs(forwardMm - 33.2 * walkCycles) < 15 && Math.abs(turnedDeg - 14.1 * turnCycles) < 10, `${forwardMm} mm ahead, turned by ${turnedDeg} deg`);
   await advance(page, 2500);
   await press(page, 'Start it');
   await advance(page, 100);
-  await page.waitForFunction(() => window.lizard.gait === 'patrol');
+  await waitForGait(page, 'patrol');
   assert.equal(await findGaitButton(page, 'patrol').getAttribute('aria-pressed'), 'true');
   await advance(page, seconds * 1000 + 200);
   await page.locator('#log div', { hasText: '# done' }).waitFor();
   assert.equal(await readGait(page), 'stop');
-  const { y, heading } = await readPlace();
+  const { y, heading } = await readPlace(page);
   assert.ok(Math.abs(y - forwardMm) < 0.03 * forwardMm + 1, `${y} mm ahead, predicted ${forwardMm}`);
   assert.ok(Math.abs(heading - turnedDeg) < 0.03 * turnedDeg + 1, `turned by ${heading} deg, predicted ${turnedDeg}`);
 });
 
-test('the recording follows the robot\'s reports, not the pressed buttons', async () => {
-  const page = await openRoutine(null);
+testPage('the recording follows the robot\'s reports, not the pressed buttons', () => openRoutine(null), async (page) => {
   await press(page, 'Record a drive');
   // A line with three cycles ends by itself; a refused line starts no gait.
   for (const [line, seconds] of [['walk 3', 5], ['rest', 2], ['walk', 1], ['stand', 1.5], ['look', 0.8], ['center', 1]]) {
@@ -134,8 +134,7 @@ test('the recording follows the robot\'s reports, not the pressed buttons', asyn
   await page.getByText('Nothing was recorded, because the robot did not walk.').waitFor();
 });
 
-test('the recorded number of cycles does not depend on the phase of the previous gait', async () => {
-  const page = await openRoutine(null);
+testPage('the recorded number of cycles does not depend on the phase of the previous gait', () => openRoutine(null), async (page) => {
   for (let tenth = 0; tenth < 10; tenth++) {
     await press(page, 'Record a drive');
     await page.evaluate(() => void window.lizard.ask('stand'));
@@ -150,17 +149,11 @@ test('the recorded number of cycles does not depend on the phase of the previous
   }
 });
 
-test('the recording uses the board\'s own phase, even after its link was cut', async () => {
-  const page = await openWithBoard('robot', 8000);
-  await unfold(page, '#routines');
+testPage('the recording uses the board\'s own phase, even after its link was cut', openWithBoard, async (page) => {
   await press(page, 'Record a drive');
-  await findGaitButton(page, 'walk').click();
-  await waitForBoardGait(page, 'walk');
   // A walk begins with 0.25 s to its first pose, so less than four cycles have passed.
-  await page.clock.runFor(4100);
-  await findGaitButton(page, 'back').click();
-  await waitForBoardGait(page, 'back');
-  await page.clock.runFor(2600);
+  await runBoardGait(page, 'walk', 4100);
+  await runBoardGait(page, 'back', 2600);
   // The link is lost: the robot stops by itself after 0.9 s.
   await page.evaluate(() => {
     const board = window.attachedBoard;
@@ -175,8 +168,7 @@ test('the recording uses the board\'s own phase, even after its link was cut', a
   assert.match(await readText(page, '#routine-message'), /^Recorded: walk 3, back [23]$/);
 });
 
-test('keys alone can change, move, copy and delete steps, and undo each change', async () => {
-  const page = await openRoutine();
+testPage('keys alone can change, move, copy and delete steps, and undo each change', openRoutine, async (page) => {
   const history = [PATROL];
   const assertSteps = async (edit, expected) => {
     await edit();
@@ -184,23 +176,22 @@ test('keys alone can change, move, copy and delete steps, and undo each change',
     await page.waitForFunction((expected) => window.lizard.toml.includes(`steps = ${expected}`), `["${expected.join('", "')}"]`);
     history.push(expected);
   };
-  const readFocus = () => page.evaluate(() => document.activeElement?.getAttribute('aria-label'));
   await assertSteps(async () => {
     await findStepInput(page, 2).fill(' walk 5 ');
     await page.keyboard.press('Enter');
   }, ['stand 1 s', 'walk 5', 'left 3', 'look 1']);
+  const waitForFocus = (label) => page.waitForFunction((label) => document.activeElement?.getAttribute('aria-label') === label, label);
   const pressButton = async (label) => {
     await page.getByLabel(label, { exact: true }).focus();
     await page.keyboard.press('Enter');
   };
   await assertSteps(() => pressButton('Move down step 2'), ['stand 1 s', 'left 3', 'walk 5', 'look 1']);
-  await page.waitForFunction(() => document.activeElement?.getAttribute('aria-label') === 'Move down step 3');
+  await waitForFocus('Move down step 3');
   await assertSteps(() => page.keyboard.press('Enter'), ['stand 1 s', 'left 3', 'look 1', 'walk 5']);
   await assertSteps(() => pressButton('Copy step 2'), ['stand 1 s', 'left 3', 'left 3', 'look 1', 'walk 5']);
   await assertSteps(() => pressButton('Delete step 1'), ['left 3', 'left 3', 'look 1', 'walk 5']);
   await assertSteps(() => pressButton('Move up step 4'), ['left 3', 'left 3', 'walk 5', 'look 1']);
-  await page.waitForFunction(() => document.activeElement?.getAttribute('aria-label') === 'Move up step 3');
-  assert.equal(await readFocus(), 'Move up step 3');
+  await waitForFocus('Move up step 3');
   await assertSteps(() => press(page, 'Add a step'), ['left 3', 'left 3', 'walk 5', 'look 1', 'look 1']);
   for (const expected of history.slice(0, -1).reverse()) {
     await page.locator('#routine-undo').click();
@@ -209,8 +200,7 @@ test('keys alone can change, move, copy and delete steps, and undo each change',
   assert.deepEqual(await readSteps(page), PATROL);
 });
 
-test('the list of steps follows the text, and the text follows the list and keeps its other lines', async () => {
-  const page = await openRoutine();
+testPage('the list of steps follows the text, and the text follows the list and keeps its other lines', openRoutine, async (page) => {
   await unfold(page, '#robot-editor');
   const editedToml = `${await readToml(page)}repeat = 3 # rounds\n\n[routine.about]\nsteps = [\n  "left 12", # half a turn\n]\n`;
   await page.locator('#robot-text').fill(editedToml);
@@ -226,9 +216,8 @@ test('the list of steps follows the text, and the text follows the list and keep
   assert.deepEqual(await page.locator('#gaits button').allInnerTexts().then((names) => names.slice(-2).map((name) => name.trim())), ['patrol', 'about']);
 });
 
-test('the page draws the new path while a step is dragged, and changes the text when it is released', async () => {
-  const page = await openRoutine(['walk 3', 'left 6', 'walk 1']);
-  await waitForPrediction(page);
+testPage('the page draws the new path while a step is dragged, and changes the text when it is released', () => openRoutine(['walk 3', 'left 6', 'walk 1']), async (page) => {
+  await waitForRoundPrediction(page);
   const [previousToml, firstTrack] = [await readToml(page), await readTrackPath(page)];
   const waitForOtherTrack = () => page.waitForFunction((firstTrack) => document.querySelector('#routine-path .track').getAttribute('d') !== firstTrack, firstTrack);
   const findGrip = (number) => page.locator('#routine-steps .grip').nth(number - 1);
@@ -268,8 +257,7 @@ test('a finger drags a step, too', async () => {
   await page.waitForFunction(() => window.lizard.toml.includes('steps = ["left 6", "walk 3"]'));
 });
 
-test('a mistake is shown at its step with its line, and the previous robot stays in use', async () => {
-  const page = await openRoutine();
+testPage('a mistake is shown at its step with its line, and the previous robot stays in use', openRoutine, async (page) => {
   const previousToml = await readToml(page);
   const line = previousToml.split('\n').findIndex((text) => text.startsWith('steps = ')) + 1;
   await findStepInput(page, 2).fill('wolk 4');
@@ -297,8 +285,7 @@ test('a mistake is shown at its step with its line, and the previous robot stays
   await waitForSteps(page, ['stand 1 s']);
 });
 
-test('an invalid or existing name is refused, and the recorded steps stay', async () => {
-  const page = await openRoutine();
+testPage('an invalid or existing name is refused, and the recorded steps stay', openRoutine, async (page) => {
   await press(page, 'Record a drive');
   await page.evaluate(() => void window.lizard.ask('walk 2'));
   await runSeconds(page, 3);
@@ -326,8 +313,7 @@ test('a step that waits forever, or a large number of steps, does not block the 
   await page.locator('#routine-steps li').nth(98).waitFor();
 });
 
-test('a routine is written to a board, started by its name, and reports its end', async () => {
-  const page = await openBoardWithRoutine(['walk 2', 'rest 2 s', 'left 1']);
+testPage('a routine is written to a board, started by its name, and reports its end', () => openBoardWithRoutine(['walk 2', 'rest 2 s', 'left 1']), async (page) => {
   // Until the routine is written, the board's robot does not have it.
   await press(page, 'Start it');
   await runUntil(page, 'the command is refused', async () => (await readText(page, '#drive-message')) === 'patrol: unknown command; send help for the list');
@@ -335,10 +321,8 @@ test('a routine is written to a board, started by its name, and reports its end'
   await waitForText(page, '#routine-message', /^written and verified in [\d.]+ s$/);
   await page.clock.runFor(6000);
   await page.evaluate(() => (window.receivedText = ''));
-  await findGaitButton(page, 'patrol').click();
-  await waitForBoardGait(page, 'patrol');
   // The routine is not over while the robot rests, so the page keeps sending lines.
-  await page.clock.runFor(3500);
+  await runBoardGait(page, 'patrol', 3500);
   assert.equal(await readGait(page), 'patrol');
   assert.ok(!(await page.evaluate(() => window.receivedText)).includes('deadman 0'));
   await runUntil(page, 'the routine is done', async () => (await page.locator('#log div', { hasText: /^# done$/ }).count()) === 1, 20);
@@ -347,23 +331,19 @@ test('a routine is written to a board, started by its name, and reports its end'
   assert.match(await page.evaluate(() => window.receivedText), /deadman 901\n[^]*patrol\n[^]*deadman 0\n/);
 });
 
-test('a resting routine is stopped when the page is hidden', async () => {
-  const page = await openWithBoard('robot', 8000);
+testPage('a resting routine is stopped when the page is hidden', openWithBoard, async (page) => {
   await putRoutine(page, ['walk 1', 'rest 9 s', 'walk 99']);
   await page.locator('#flash-robot').evaluate((button) => button.click());
   await runUntil(page, 'the robot is written', async () => /^written and verified/.test(await page.locator('#flash-message').textContent()));
   await page.clock.runFor(6000);
-  await findGaitButton(page, 'patrol').click();
-  await waitForBoardGait(page, 'patrol');
-  await page.clock.runFor(3500);
+  await runBoardGait(page, 'patrol', 3500);
   await page.evaluate(() => (window.receivedText = ''));
   await hidePage(page);
   await page.clock.runFor(500);
   assert.match(await page.evaluate(() => window.receivedText), /^stop\n/);
 });
 
-test('the page reports a board that is unplugged while a routine is written, and writes the routine later', async () => {
-  const page = await openBoardWithRoutine(['walk 1']);
+testPage('the page reports a board that is unplugged while a routine is written, and writes the routine later', () => openBoardWithRoutine(['walk 1']), async (page) => {
   await press(page, 'Write it to the board');
   await waitForText(page, '#routine-message', /^writing/, 20);
   await page.clock.runFor(60);
@@ -376,8 +356,7 @@ test('the page reports a board that is unplugged while a routine is written, and
   await waitForText(page, '#routine-message', /^written and verified/);
 });
 
-test('a robot whose format the firmware does not read is reported as missing', async () => {
-  const page = await openWithBoard('robot', 8000);
+testPage('a robot whose format the firmware does not read is reported as missing', openWithBoard, async (page) => {
   await page.evaluate(() => {
     const { start } = window.lizard.description;
     window.attachedBoard.flash[start + 4] ^= 1;

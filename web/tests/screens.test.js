@@ -3,11 +3,10 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 
-import { address, advance, openBlankPage, browserErrors, openPage, measureOverflow, openStanding, readBox, unfold, withTimeout, useBrowser, chooseRobot } from './browser.js';
+import { address, advance, openBlankPage, browserErrors, openPage, measureOverflow, openStanding, readBox, unfold, withTimeout, useBrowser, chooseRobot, testPage, clickAndAdvance, PHONE, findGaitButton, readGait } from './browser.js';
 
 useBrowser();
 
-const PORTRAIT = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const LANDSCAPE = { viewport: { width: 844, height: 390 }, hasTouch: true, isMobile: true };
 
 async function isOnScreen(page, selector) {
@@ -26,24 +25,22 @@ async function swipe(page, selector, rightPx, downPx) {
   await sendTouch('touchEnd', []);
 }
 
-for (const [name, options] of [['held upright', PORTRAIT], ['held sideways', LANDSCAPE]]) {
-  test(`Stop stays on the screen of a phone ${name} while the page scrolls`, async () => {
-    const page = await openStanding(options);
+for (const [name, options] of [['held upright', PHONE], ['held sideways', LANDSCAPE]]) {
+  testPage(`Stop stays on the screen of a phone ${name} while the page scrolls`, () => openStanding(options), async (page) => {
     for (const panel of ['#world', '#power', '#keep']) await unfold(page, panel);
     await page.evaluate(() => scrollTo(0, 0));
     assert.ok(await isOnScreen(page, '.stop'), 'at the top');
     await page.evaluate(() => scrollTo(0, document.documentElement.scrollHeight));
     assert.ok((await page.evaluate(() => scrollY)) > 500);
     assert.ok(await isOnScreen(page, '.stop'), 'at the bottom');
-    await page.locator('#gaits button[data-command="walk"]').evaluate((button) => button.click());
+    await findGaitButton(page, 'walk').evaluate((button) => button.click());
     await advance(page, 500);
     await page.locator('.stop').tap();
     await advance(page, 300);
-    assert.equal(await page.evaluate(() => window.lizard.gait), 'stop', 'nothing covers Stop');
+    assert.equal(await readGait(page), 'stop', 'nothing covers Stop');
   });
 
-  test(`a phone ${name} shows the robot and its buttons on one screen`, async () => {
-    const page = await openStanding(options);
+  testPage(`a phone ${name} shows the robot and its buttons on one screen`, () => openStanding(options), async (page) => {
     await page.goto(`${address()}#room=drive`);
     for (const selector of ['#floor', '#gaits', '#reset', '#speed']) {
       assert.ok(await isOnScreen(page, selector), selector);
@@ -53,8 +50,7 @@ for (const [name, options] of [['held upright', PORTRAIT], ['held sideways', LAN
   });
 }
 
-test('a finger that moves up over the floor scrolls the page', async () => {
-  const page = await openStanding(PORTRAIT);
+testPage('a finger that moves up over the floor scrolls the page', () => openStanding(PHONE), async (page) => {
   await page.goto(`${address()}#room=gaits`);
   const follow = page.getByRole('button', { name: 'Follow' });
   await swipe(page, '#floor', 120, 0);
@@ -93,10 +89,8 @@ test('the wheel scrolls the page, and zooms with Ctrl as long as the robot stays
   await page.waitForFunction((firstZoom) => Number(document.querySelector('#floor').dataset.zoom) === firstZoom, firstZoom);
 });
 
-test('forced colours show which button is pressed and how long a bar is', async () => {
-  const page = await openStanding({ forcedColors: 'active' });
-  await page.locator('#gaits button[data-command="walk"]').click();
-  await advance(page, 300);
+testPage('forced colours show which button is pressed and how long a bar is', () => openStanding({ forcedColors: 'active' }), async (page) => {
+  await clickAndAdvance(page, '#gaits button[data-command="walk"]', 300);
   const readColour = (selector) =>
     page.evaluate((selector) => getComputedStyle(document.querySelector(selector)).backgroundColor, selector);
   const [pressedColour, otherColour] = ['walk', 'trot'].map((name) => readColour(`#gaits button[data-command="${name}"]`));
@@ -110,8 +104,7 @@ for (const [name, viewport] of [
   ['a tablet', { width: 768, height: 1024 }],
   ['a large desktop', { width: 3840, height: 2160 }],
 ]) {
-  test(`with every panel open, everything fits the width of ${name}`, async () => {
-    const page = await openStanding({ viewport });
+  testPage(`with every panel open, everything fits the width of ${name}`, () => openStanding({ viewport }), async (page) => {
     for (const panel of ['#lengths-panel', '#calibrate', '#flash', '#world', '#gait-editor', '#maps']) {
       await unfold(page, panel);
       await advance(page, 500);
@@ -147,22 +140,20 @@ test('a touch screen shows no keys, and the list of robots shows full names', as
   }
 });
 
-test('without JavaScript the page states its requirements', async () => {
-  const page = await openBlankPage({ javaScriptEnabled: false });
+testPage('without JavaScript the page states its requirements', () => openBlankPage({ javaScriptEnabled: false }), async (page) => {
   await page.goto(address());
   const message = page.locator('noscript p');
   await message.waitFor();
   assert.match(await message.innerText(), /which are switched off here/);
 });
 
-test('a page that was opened as a file states its requirement', async () => {
-  const page = await openBlankPage();
+testPage('a page that was opened as a file states its requirement', openBlankPage, async (page) => {
   await page.goto(new URL('../dist/index.html', import.meta.url).href);
   await page.locator('#where', { hasText: 'it needs a web server' }).waitFor();
 });
 
 test('long names of gaits fit on their buttons', async () => {
-  for (const options of [PORTRAIT, { viewport: { width: 1400, height: 1000 } }]) {
+  for (const options of [PHONE, { viewport: { width: 1400, height: 1000 } }]) {
     const page = await openStanding(options);
     await chooseRobot(page, 'own-gaits');
     const buttons = await page.locator('#gaits button').evaluateAll((buttons) =>
@@ -176,8 +167,7 @@ test('long names of gaits fit on their buttons', async () => {
   }
 });
 
-test('the list of robots ends with the robots for tests, under a heading', async () => {
-  const page = await openPage();
+testPage('the list of robots ends with the robots for tests, under a heading', openPage, async (page) => {
   const [plainNames, testNames] = await page.evaluate(() =>
     ['#robot > option', '#robot > optgroup[label="for tests"] > option'].map((selector) =>
       [...document.querySelectorAll(selector)].map(({ value }) => value),
@@ -187,8 +177,7 @@ test('the list of robots ends with the robots for tests, under a heading', async
   assert.deepEqual(testNames, ['own-gaits', 'unequal']);
 });
 
-test('the page reports a word that the core does not have', async () => {
-  const page = await openBlankPage();
+testPage('the page reports a word that the core does not have', openBlankPage, async (page) => {
   const wasm = await readFile(new URL('../dist/files/lizard.wasm', import.meta.url), 'latin1');
   assert.ok(wasm.includes('factory'));
   const body = Buffer.from(wasm.replaceAll('factory', 'faktory'), 'latin1');
@@ -197,8 +186,7 @@ test('the page reports a word that the core does not have', async () => {
   await page.locator('#problems', { hasText: 'The page sends words that the core does not have: factory.' }).waitFor();
 });
 
-test('the core has every word that a button sends', async () => {
-  const page = await openStanding();
+testPage('the core has every word that a button sends', openStanding, async (page) => {
   assert.equal(await page.locator('#problems').isVisible(), false);
   const sentCommands = await page.locator('[data-command]').evaluateAll((buttons) => buttons.map(({ dataset }) => dataset.command));
   const { words, gaits } = await page.evaluate(() => window.lizard.description);
@@ -207,8 +195,7 @@ test('the core has every word that a button sends', async () => {
   assert.ok(sentCommands.length >= 10);
 });
 
-test('a script that is not the page\'s own does not run', async () => {
-  const page = await openPage();
+testPage('a script that is not the page\'s own does not run', openPage, async (page) => {
   const blockedMessage = page.waitForEvent('console', (message) => /Content Security Policy/.test(message.text()));
   await page.evaluate(() => {
     const script = document.createElement('script');

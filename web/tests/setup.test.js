@@ -4,11 +4,10 @@ import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
 import { writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
-import { test } from 'node:test';
 import { promisify } from 'node:util';
 
 import { openWithBoard, openWithDeafBoard, openWithErasedBoard, runUntil, connect, waitForText, sendToBoard } from './board.js';
-import { advance, openStanding, measureOverflow, openPage, TIMEOUT_MS, readText, unfold, useBrowser, download } from './browser.js';
+import { advance, openStanding, measureOverflow, openPage, TIMEOUT_MS, readText, unfold, useBrowser, download, testPage, PHONE, findGaitButton, readGait } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 import { makeFolder } from './temporary-folder.js';
 
@@ -60,8 +59,7 @@ async function readCalibration(page) {
   return (await page.locator('#log div', { hasText: /^# A\d trim/ }).allInnerTexts()).slice(-4);
 }
 
-test('the first connection turns a new UNO into a calibrated robot, and lizard calibrate restore accepts its file', async () => {
-  const page = await openWithErasedBoard();
+testPage('the first connection turns a new UNO into a calibrated robot, and lizard calibrate restore accepts its file', openWithErasedBoard, async (page) => {
   await findDialog(page).getByText('2 of 9: Write the firmware').waitFor();
   await findDialog(page).getByText('The board on USB is a UNO according to its boot loader, without this firmware.').waitFor();
   await pressAndWait(page, 'Write firmware and robot', /^written and verified in [\d.]+ s$/);
@@ -150,15 +148,13 @@ test('the first connection turns a new UNO into a calibrated robot, and lizard c
   assert.match(stdout, /has accepted and saved the calibration from .*/);
 });
 
-test('a board with another robot is recognised, and gets only the page\'s robot', async () => {
-  const page = await openWithBoard('large', 5000);
+testPage('a board with another robot is recognised, and gets only the page\'s robot', () => openWithBoard('large', 5000), async (page) => {
   await findDialog(page).getByText('has this firmware and another robot, large ').waitFor();
   await pressAndWait(page, 'Write this robot alone', /^written and verified in [\d.]+ s$/);
   await waitForThisRobot(page);
 });
 
-test('the dialog reports a board that does not answer, and every step leads back to the board', async () => {
-  const page = await openWithDeafBoard();
+testPage('the dialog reports a board that does not answer, and every step leads back to the board', openWithDeafBoard, async (page) => {
   await runUntil(page, 'the dialog reports it', () => findDialog(page).getByText('answers neither like this firmware nor like a boot loader').isVisible());
   await pressAndWait(page, 'Write firmware and robot', /^not written: no boot loader answers/);
   await goToStep(page, 'Horns');
@@ -168,16 +164,14 @@ test('the dialog reports a board that does not answer, and every step leads back
   await waitForText(page, '#where', /simulated UNO/);
 });
 
-test('the page does not mistake a board that sends random bytes for a robot', async () => {
-  const page = await openWithBoard('robot', 0, { boardSendsGarbage: true });
+testPage('the page does not mistake a board that sends random bytes for a robot', () => openWithBoard('robot', 0, { boardSendsGarbage: true }), async (page) => {
   await runUntil(page, 'the page asks about the board', async () => findDialog(page).getByText('answers neither like this firmware nor like a boot loader').isVisible());
   await pressAndWait(page, 'Write firmware and robot', /^not written: /);
   const lengths = await page.locator('#log div').evaluateAll((lines) => lines.map(({ textContent }) => textContent.length));
   assert.ok(Math.max(0, ...lengths) < 1000, 'an endless line is truncated');
 });
 
-test('the dialog reports an unplugged board at any step, and keeps the step', async () => {
-  const page = await openPage({}, installFakeSerial);
+testPage('the dialog reports an unplugged board at any step, and keeps the step', () => openPage({}, installFakeSerial), async (page) => {
   const names = await page.locator('#setup-steps button').allTextContents();
   assert.equal(names.length, 9);
   for (const name of names) {
@@ -196,8 +190,7 @@ test('the dialog reports an unplugged board at any step, and keeps the step', as
   }
 });
 
-test('a board that was unplugged during writing can be written after it is connected again', async () => {
-  const page = await openWithErasedBoard();
+testPage('a board that was unplugged during writing can be written after it is connected again', openWithErasedBoard, async (page) => {
   await press(page, 'Write firmware and robot');
   await page.clock.runFor(1500);
   await page.evaluate(() => window.unplug());
@@ -208,8 +201,7 @@ test('a board that was unplugged during writing can be written after it is conne
   await pressAndWait(page, 'Write firmware and robot', /^written and verified/);
 });
 
-test('an action on a board does not continue in the simulation after the board is unplugged', async () => {
-  const page = await openWithBoard('robot', 4500);
+testPage('an action on a board does not continue in the simulation after the board is unplugged', () => openWithBoard('robot', 4500), async (page) => {
   await goToStep(page, 'Trims', 500);
   await page.evaluate(() => window.unplug());
   for (const name of ['Trims', 'Keep', 'Firmware']) {
@@ -221,8 +213,7 @@ test('an action on a board does not continue in the simulation after the board i
   await findDialog(page).getByText('to the simulated UNO').waitFor();
 });
 
-test('the robot does not walk while it is being assembled', async () => {
-  const page = await openWithBoard('robot', 8000);
+testPage('the robot does not walk while it is being assembled', openWithBoard, async (page) => {
   await runUntil(page, 'the gaits are predicted', async () => (await readText(page, '#gaits button[data-command="walk"] small')) !== '');
   await goToStep(page, 'Trims', 500);
   const previousLength = (await page.evaluate(() => window.receivedText)).length;
@@ -237,14 +228,13 @@ test('the robot does not walk while it is being assembled', async () => {
   assert.ok(!(await page.evaluate(() => window.receivedText)).slice(previousLength).includes('walk'));
   await page.evaluate(() => delete navigator.getGamepads);
   await leave(page);
-  await page.locator('#gaits button[data-command="walk"]').click();
-  await runUntil(page, 'the robot walks', async () => (await page.evaluate(() => window.lizard.gait)) === 'walk');
+  await findGaitButton(page, 'walk').click();
+  await runUntil(page, 'the robot walks', async () => (await readGait(page)) === 'walk');
   await page.locator('#setup-open').click();
-  await runUntil(page, 'the robot is stopped', async () => (await page.evaluate(() => window.lizard.gait)) !== 'walk');
+  await runUntil(page, 'the robot is stopped', async () => (await readGait(page)) !== 'walk');
 });
 
-test('the dialog reports a restarted board and the loss of unsaved settings', async () => {
-  const page = await openWithBoard('robot', 4500);
+testPage('the dialog reports a restarted board and the loss of unsaved settings', () => openWithBoard('robot', 4500), async (page) => {
   await findDialog(page).getByText('3 of 9: Fit the horns').waitFor();
   await goToStep(page, 'Trims', 500);
   await pressAndWait(page, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
@@ -253,8 +243,7 @@ test('the dialog reports a restarted board and the loss of unsaved settings', as
   await pressAndWait(page, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
 });
 
-test('leaving restores the calibration, and the dialog opens again at the same step', async () => {
-  const page = await openWithBoard('robot', 4500);
+testPage('leaving restores the calibration, and the dialog opens again at the same step', () => openWithBoard('robot', 4500), async (page) => {
   const previousCalibration = await readCalibration(page);
   await goToStep(page, 'Trims', 500);
   await pressAndWait(page, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
@@ -274,8 +263,7 @@ test('leaving restores the calibration, and the dialog opens again at the same s
   await findDialog(page).getByText('Not checked yet: the sign of A2, A3, A4.').waitFor();
 });
 
-test('leaving reverts a setting whose answer was lost, and saving stores the shown settings', async () => {
-  const page = await openWithBoard('robot', 4500);
+testPage('leaving reverts a setting whose answer was lost, and saving stores the shown settings', () => openWithBoard('robot', 4500), async (page) => {
   const previousCalibration = await readCalibration(page);
   const setTrimWithoutAnswer = async () => {
     await goToStep(page, 'Trims', 1500);
@@ -299,8 +287,7 @@ test('leaving reverts a setting whose answer was lost, and saving stores the sho
   assert.match((await readCalibration(page))[0], /^# A1 trim 0\.50 /);
 });
 
-test('the dialog quotes a refusal by the robot and keeps the calibration', async () => {
-  const page = await openWithBoard('robot', 4500);
+testPage('the dialog quotes a refusal by the robot and keeps the calibration', () => openWithBoard('robot', 4500), async (page) => {
   const previousCalibration = await readCalibration(page);
   await goToStep(page, 'Limits', 1000);
   await typeNumber(page, 'From, degrees', '125', /^The robot refuses "limit 1 125\.00 228\.59": A1's travel must cover the gaits' range/);
@@ -313,8 +300,7 @@ boot = "stand"
 deadman = 0
 ${[1, 2, 3, 4].map((n) => `[servo.A${n}]\ntrim = ${n}.25\nlimit = [${[48.59, 311.41, 228.59, 131.41][n - 1]}, ${[228.59, 131.41, 48.59, 311.41][n - 1]}]\ndir = "+"\nscale = 10.0\n`).join('')}`;
 
-test('the page sends a valid calibration file to the robot and reports the error in an invalid file', async () => {
-  const page = await openWithBoard('robot', 4500);
+testPage('the page sends a valid calibration file to the robot and reports the error in an invalid file', () => openWithBoard('robot', 4500), async (page) => {
   await goToStep(page, 'Keep', 1500);
   const openFile = (name, body) =>
     findDialog(page).getByLabel('Open a saved file').setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(body) });
@@ -337,8 +323,7 @@ test('the page sends a valid calibration file to the robot and reports the error
   assert.equal(await page.evaluate(() => window.foreignScriptRan), undefined);
 });
 
-test('the keyboard alone can try every step without a board', async () => {
-  const page = await openStanding();
+testPage('the keyboard alone can try every step without a board', openStanding, async (page) => {
   await page.locator('#setup-open').focus();
   await page.keyboard.press('Enter');
   assert.equal(await page.evaluate(() => document.activeElement.id), 'setup-step');
@@ -370,11 +355,10 @@ test('the keyboard alone can try every step without a board', async () => {
 });
 
 for (const [name, options] of [
-  ['a phone', { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }],
+  ['a phone', PHONE],
   ['the narrowest screen', { viewport: { width: 320, height: 640 }, hasTouch: true, isMobile: true }],
 ]) {
-  test(`every step fits on ${name} without scrolling sideways`, async () => {
-    const page = await openStanding(options);
+  testPage(`every step fits on ${name} without scrolling sideways`, () => openStanding(options), async (page) => {
     await page.locator('#setup-open').tap();
     for (const button of await page.locator('#setup-steps button').all()) {
       await button.tap();

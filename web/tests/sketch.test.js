@@ -1,9 +1,8 @@
 // Dragging joints on the drawing of the robot: its lengths follow, and a robot that cannot walk is refused during the
 // drag.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
 
-import { advance, measureOverflow, openUnfolded, unfold, useBrowser, readLength, waitForLength } from './browser.js';
+import { advance, measureOverflow, openUnfolded, startDrag, useBrowser, readLength, waitForLength, testPage, clickAndAdvance, PHONE, readToml } from './browser.js';
 
 useBrowser();
 
@@ -30,16 +29,13 @@ async function drag(page, name, [rightMm, forwardMm]) {
     },
     { name, rightMm, forwardMm },
   );
-  await page.mouse.move(...from);
-  await page.mouse.down();
-  for (let step = 1; step <= 10; step++) await page.mouse.move(from[0] + ((to[0] - from[0]) * step) / 10, from[1] + ((to[1] - from[1]) * step) / 10);
+  await startDrag(page, from, to, 10);
 }
 
 const readMessage = (page) => page.locator('#sketch-message').innerText();
 const waitForMessage = (page, pattern) => page.waitForFunction((pattern) => new RegExp(pattern).test(document.querySelector('#sketch-message').textContent), pattern.source);
 
-test('both couplers follow the dragged point of the head', async () => {
-  const page = await openSketch();
+testPage('both couplers follow the dragged point of the head', openSketch, async (page) => {
   const previousLengths = [await readLength(page, 'links.l2'), await readLength(page, 'links.l3')];
   assert.deepEqual(previousLengths, [50, 50]);
   // From the tip of a crank the coupler leads inward and ahead.
@@ -55,16 +51,13 @@ test('both couplers follow the dragged point of the head', async () => {
   assert.equal(await page.locator('#lengths input[name="links.l2"]').inputValue(), String(expectedMm));
   // The simulated UNO walks with the new robot.
   await advance(page, 3000);
-  await page.locator('#gaits button[data-command="walk"]').click();
-  await advance(page, 2000);
+  await clickAndAdvance(page, '#gaits button[data-command="walk"]', 2000);
   assert.equal(await page.locator('#doing').innerText(), 'walk');
-  await unfold(page, '#robot-editor');
   await page.locator('#robot-undo').click();
   await waitForLength(page, 'links.l2', 50);
 });
 
-test('a joint released at an invalid place goes to the nearest valid place', async () => {
-  const page = await openSketch();
+testPage('a joint released at an invalid place goes to the nearest valid place', openSketch, async (page) => {
   await drag(page, 'point of the head', [0, -40]);
   await waitForMessage(page, /^l2 = l3 = [0-9.]+ mm is too short: /);
   await page.mouse.up();
@@ -73,8 +66,7 @@ test('a joint released at an invalid place goes to the nearest valid place', asy
   await waitForLength(page, 'links.l2', expectedMm);
 });
 
-test('a crank becomes longer only on its own side if the sides need not be equal', async () => {
-  const page = await openSketch();
+testPage('a crank becomes longer only on its own side if the sides need not be equal', openSketch, async (page) => {
   await page.locator('#alike').uncheck();
   const [from, to] = await page.evaluate(() => {
     const bar = document.querySelector('#sketch line[data-key="links.l1"]');
@@ -88,18 +80,16 @@ test('a crank becomes longer only on its own side if the sides need not be equal
   assert.equal(await readLength(page, 'links.l4'), 30);
 });
 
-test('a pressed bar selects its number', async () => {
-  const page = await openSketch();
+testPage('a pressed bar selects its number', openSketch, async (page) => {
   await page.locator('#sketch line[data-key="links.l2"]').click({ force: true });
   assert.equal(await page.evaluate(() => document.activeElement.name), 'links.l2');
 });
 
-test('the drawing has every joint and bar, also on a phone, and a tap changes nothing', async () => {
-  const page = await openSketch({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+testPage('the drawing has every joint and bar, also on a phone, and a tap changes nothing', () => openSketch(PHONE), async (page) => {
   assert.equal(await page.locator('#sketch circle').count(), 18);
   assert.equal(await page.locator('#sketch line').count(), 36);
-  const toml = await page.evaluate(() => window.lizard.toml);
+  const toml = await readToml(page);
   await findJoint(page, 'point of the tail').tap();
-  assert.equal(await page.evaluate(() => window.lizard.toml), toml);
+  assert.equal(await readToml(page), toml);
   assert.equal(await measureOverflow(page), 0);
 });

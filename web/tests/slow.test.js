@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { address, openBlankPage, withTimeout, useBrowser } from './browser.js';
+import { address, openBlankPage, withTimeout, useBrowser, PHONE, testPage } from './browser.js';
 
 useBrowser();
 
@@ -38,9 +38,7 @@ test('the robot takes its first step within 1.5 s of the request for the page', 
   assert.ok(timeMs <= FIRST_STEP_LIMIT_MS, `${timeMs} ms`);
 });
 
-test('on a slow phone Stop stops the opening walk within 0.3 s', async (t) => {
-  const phone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, ...WITH_MOTION };
-  const page = await openBlankPage(phone);
+testPage('on a slow phone Stop stops the opening walk within 0.3 s', () => openBlankPage({ ...PHONE, ...WITH_MOTION }), async (page, t) => {
   await (await openDevToolsFor(page)).send('Emulation.setCPUThrottlingRate', { rate: CPU_SLOWDOWN });
   await page.goto(address());
   await page.waitForFunction(isWalking);

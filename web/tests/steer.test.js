@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { advance, openPage, useBrowser } from './browser.js';
+import { advance, openPage, startDrag, useBrowser, testPage, findGaitButton } from './browser.js';
 
 useBrowser();
 
@@ -39,8 +39,7 @@ async function steer(page, gait, ...gamepads) {
   await waitForGait(page, gait);
 }
 
-test('arrow keys make the robot walk, bend and turn while they are held, and stop it when released', async () => {
-  const page = await openPredicted();
+testPage('arrow keys make the robot walk, bend and turn while they are held, and stop it when released', openPredicted, async (page) => {
   await moveKey(page, 'down', 'ArrowUp', 'walk');
   await moveKey(page, 'down', 'ArrowLeft', 'arc left');
   await moveKey(page, 'up', 'ArrowUp', 'left');
@@ -49,8 +48,7 @@ test('arrow keys make the robot walk, bend and turn while they are held, and sto
   await moveKey(page, 'up', 'ArrowDown', 'stop');
 });
 
-test('letter keys drive as arrows do, except in a text field', async () => {
-  const page = await openPredicted();
+testPage('letter keys drive as arrows do, except in a text field', openPredicted, async (page) => {
   await moveKey(page, 'down', 'd', 'right');
   await moveKey(page, 'up', 'd', 'stop');
   const lineInput = page.locator('#typed');
@@ -61,15 +59,12 @@ test('letter keys drive as arrows do, except in a text field', async () => {
   assert.equal(await page.locator('#doing').textContent(), 'stop');
 });
 
-test('the robot walks in the direction of the stick on the screen', async () => {
-  const page = await openPredicted();
+testPage('the robot walks in the direction of the stick on the screen', openPredicted, async (page) => {
   const stick = page.locator('#stick');
   await stick.scrollIntoViewIfNeeded();
   const { x, y, width, height } = await stick.boundingBox();
   const [middleX, middleY] = [x + width / 2, y + height / 2];
-  await page.mouse.move(middleX, middleY);
-  await page.mouse.down();
-  await page.mouse.move(middleX, y + 2);
+  await startDrag(page, [middleX, middleY], [middleX, y + 2]);
   await waitForGait(page, 'walk');
   await page.mouse.move(x + width - 2, middleY);
   await waitForGait(page, 'right');
@@ -77,8 +72,7 @@ test('the robot walks in the direction of the stick on the screen', async () => 
   await waitForGait(page, 'stop');
 });
 
-test('a stick held half way halves the pace, and its release restores the pace', async () => {
-  const page = await openPredicted();
+testPage('a stick held half way halves the pace, and its release restores the pace', openPredicted, async (page) => {
   await page.evaluate(() => window.lizard.ask('speed 80').then(() => null));
   const waitForPace = async (percent) => page.waitForFunction((text) => document.querySelector('#speed-out').textContent === text, `${percent} %`);
   const deflectStick = (forward, pressed = false) => setGamepads(page, { axes: [0, -forward], buttons: [{ pressed }] });
@@ -124,22 +118,19 @@ test('a stick held half way halves the pace, and its release restores the pace',
   await waitForPace(60);
 });
 
-test('the robot stops when the window loses the focus', async () => {
-  const page = await openPredicted();
+testPage('the robot stops when the window loses the focus', openPredicted, async (page) => {
   await moveKey(page, 'down', 'w', 'walk');
   await page.evaluate(() => void window.dispatchEvent(new Event('blur')));
   await waitForGait(page, 'stop');
 });
 
-test('a gamepad drives', async () => {
-  const page = await openPredicted();
+testPage('a gamepad drives', openPredicted, async (page) => {
   await steer(page, 'walk', null, { axes: [0, -1], buttons: [] });
   await steer(page, 'arc left', null, { axes: [-0.8, -0.8], buttons: [] });
   await steer(page, 'stop', null, { axes: [0.1, 0], buttons: [] });
 });
 
-test('a gamepad button stops the robot once, and the stick drives again only after its release', async () => {
-  const page = await openPredicted();
+testPage('a gamepad button stops the robot once, and the stick drives again only after its release', openPredicted, async (page) => {
   await page.evaluate(() => {
     window.sentLines = [];
     const { ask } = window.lizard;
@@ -154,21 +145,18 @@ test('a gamepad button stops the robot once, and the stick drives again only aft
   await steer(page, 'walk', null, { axes: [0, -1], buttons: [] });
 });
 
-test('a gamepad button stops a gait that a button of the page has started', async () => {
-  const page = await openPredicted();
-  await page.locator('#gaits button[data-command="walk"]').click();
+testPage('a gamepad button stops a gait that a button of the page has started', openPredicted, async (page) => {
+  await findGaitButton(page, 'walk').click();
   await waitForGait(page, 'walk');
   await steer(page, 'stop', { axes: [0, 0], buttons: [{ pressed: true }] });
 });
 
-test('a second gamepad and the direction pad drive, too', async () => {
-  const page = await openPredicted();
+testPage('a second gamepad and the direction pad drive, too', openPredicted, async (page) => {
   const buttons = Array.from({ length: 16 }, (_, n) => ({ pressed: n === 12 }));
   await steer(page, 'walk', { axes: [0, 0], buttons: [] }, { axes: [0, 0], buttons });
 });
 
-test('a held gamepad does not keep the robot walking when another window gets the focus', async () => {
-  const page = await openPredicted();
+testPage('a held gamepad does not keep the robot walking when another window gets the focus', openPredicted, async (page) => {
   await steer(page, 'walk', { axes: [0, -1], buttons: [] });
   await page.evaluate(() => void window.dispatchEvent(new Event('blur')));
   await waitForGait(page, 'stop');
@@ -206,8 +194,7 @@ test('the robot walks at the start even if walk and trot are predicted before th
   await waitForGait(page, 'walk');
 });
 
-test('a robot with other gaits is driven by its own gaits', async () => {
-  const page = await openPredicted();
+testPage('a robot with other gaits is driven by its own gaits', openPredicted, async (page) => {
   await page.locator('#robot').selectOption('own-gaits');
   await page.waitForFunction(() => {
     const buttons = [...document.querySelectorAll('#gaits button[data-command]')];
@@ -218,8 +205,7 @@ test('a robot with other gaits is driven by its own gaits', async () => {
   await moveKey(page, 'up', 'ArrowUp', 'stop');
 });
 
-test('arrow keys drive after a click on the pace, the list of robots or the floor, but not after Tab', async () => {
-  const page = await openPredicted();
+testPage('arrow keys drive after a click on the pace, the list of robots or the floor, but not after Tab', openPredicted, async (page) => {
   const pace = page.locator('#speed');
   for (const selector of ['#speed', '#floor', '#robot']) {
     await page.locator(selector).click();

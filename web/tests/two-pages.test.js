@@ -1,14 +1,13 @@
 // Two pages connected to one robot: through the board's cable, and through a Bluetooth module at the same serial line.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
 
 import { openWithBoard } from './board.js';
-import { openPage, readText, useBrowser, repeatUntil } from './browser.js';
+import { openPage, readText, useBrowser, repeatUntil, findGaitButton, testPage } from './browser.js';
 
 useBrowser();
 
 const readActivity = (page) => readText(page, '#doing');
-const startWalk = (page) => page.locator('#gaits button[data-command="walk"]').click();
+const startWalk = (page) => findGaitButton(page, 'walk').click();
 
 /** Replaces Web Serial with a port whose bytes the test transfers; runs in the page before any other script. */
 function installRelayedSerial() {
@@ -29,7 +28,7 @@ function installRelayedSerial() {
 
 /** Opens both pages; returns them, and a function that advances both clocks until a condition is true. */
 async function openTwoPages() {
-  const cablePage = await openWithBoard('robot', 8000);
+  const cablePage = await openWithBoard();
   await cablePage.evaluate(() => {
     const { attachedBoard } = window;
     const { onByte } = attachedBoard;
@@ -54,8 +53,7 @@ async function openTwoPages() {
   return { cablePage, radioPage, runUntil };
 }
 
-test('each of two pages shows the robot\'s activity, and stops a gait that the other has started', async () => {
-  const { cablePage, radioPage, runUntil } = await openTwoPages();
+testPage('each of two pages shows the robot\'s activity, and stops a gait that the other has started', openTwoPages, async ({ cablePage, radioPage, runUntil }) => {
   for (const [driver, watcher] of [[cablePage, radioPage], [radioPage, cablePage]]) {
     await startWalk(driver);
     for (const page of [driver, watcher]) await runUntil('both pages show the walk', async () => (await readActivity(page)) === 'walk');

@@ -3,15 +3,15 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { openWithBoard, openWithErasedBoard, readFlash, runUntil, reconnect, waitForText } from './board.js';
-import { openUnfolded, openPage, readText, unfold, useBrowser } from './browser.js';
+import { openUnfolded, openPage, readText, unfold, useBrowser, chooseRobot, testPage, readPlace, findGaitButton } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 import { makeImage, SECTION_START } from './flash-image.js';
 
 useBrowser();
 
 const makeSection = async (name) => Buffer.from((await makeImage(name)).subarray(SECTION_START));
-/** Waits until a message is shown below a panel's buttons. */
-const waitForMessage = (page, pattern, selector = '#flash-message', stepMs = 100) => waitForText(page, selector, pattern, stepMs);
+/** Waits until a message is shown below the panel's buttons. */
+const waitForMessage = (page, pattern) => waitForText(page, '#flash-message', pattern);
 
 /** Presses a button of the panel, and waits until a message is shown. */
 async function pressAndWait(page, button, pattern) {
@@ -22,14 +22,9 @@ async function pressAndWait(page, button, pattern) {
 /** Returns the servo pins that had a pulse; the LED's pin does not count. */
 const listPulsedPins = (page) => page.evaluate(() => window.lizard.description.servos.map(({ pin }) => pin).filter((pin) => pin in window.pulseWidthsUs));
 
-async function unfoldFlashPanel(page) {
-  await unfold(page, '#flash');
-  return page;
-}
-
 /** Waits until a write has begun, and then for some pages of the flash, which take 17 ms each. */
 async function waitUntilPartIsWritten(page) {
-  await waitForMessage(page, /^writing/, '#flash-message', 20);
+  await waitForText(page, '#flash-message', /^writing/, 20);
   await page.clock.runFor(60);
 }
 
@@ -37,8 +32,7 @@ async function assertFlash(page, start, expected) {
   assert.deepEqual(await readFlash(page, start, start + expected.length), expected);
 }
 
-test('a robot is written within 2.5 s, and firmware and saved settings stay unchanged', async () => {
-  const page = await unfoldFlashPanel(await openWithBoard('large', 8000));
+testPage('a robot is written within 2.5 s, and firmware and saved settings stay unchanged', () => openWithBoard('large'), async (page) => {
   await page.evaluate(() => window.lizard.ask('trim 1 2').then(() => window.lizard.ask('save')) && null);
   await page.clock.runFor(1500);
   const codeBytes = await readFlash(page, 0, SECTION_START);
@@ -53,42 +47,37 @@ test('a robot is written within 2.5 s, and firmware and saved settings stay unch
   assert.deepEqual(await page.evaluate(() => Array.from(window.attachedBoard.eeprom)), savedEeprom);
 });
 
-test('a board walks with an edited gait after it was written', async () => {
-  const page = await openWithBoard('robot', 8000);
+testPage('a board walks with an edited gait after it was written', openWithBoard, async (page) => {
   await unfold(page, '#gait-editor');
   await page.waitForFunction(() => /mm$/.test(document.querySelector('#gait-distance').textContent));
   await page.locator('#gait-name').fill('stride');
   await page.waitForFunction(() => document.querySelector('#gait-table').textContent.startsWith('[gait.stride]'));
   await page.locator('#gait-write').click();
-  await waitForMessage(page, /^written and verified in [\d.]+ s\. The board has restarted; stride has a button in Drive\.$/, '#gait-message');
+  await waitForText(page, '#gait-message', /^written and verified in [\d.]+ s\. The board has restarted; stride has a button in Drive\.$/);
   await page.clock.runFor(3000);
   assert.equal(await readText(page, '#doing'), 'stand', 'a board does not walk by itself');
   await page.evaluate(() => (window.pulseWidthsUs = {}));
-  await page.locator('#gaits button[data-command="stride"]').click();
-  const readY = () => page.evaluate(() => window.lizard.last.place.y);
-  const startY = await readY();
-  await runUntil(page, 'the page\'s robot has walked 5 mm', async () => (await readY()) - startY > 5);
+  await findGaitButton(page, 'stride').click();
+  const { y: startY } = await readPlace(page);
+  await runUntil(page, 'the page\'s robot has walked 5 mm', async () => (await readPlace(page)).y - startY > 5);
   assert.ok(await page.evaluate(() => window.receivedText.includes('stride\n')));
 });
 
-test('one button writes an edited text to the board', async () => {
-  const page = await openWithBoard('robot', 8000);
+testPage('one button writes an edited text to the board', openWithBoard, async (page) => {
   await unfold(page, '#robot-editor');
   const toml = (await page.locator('#robot-text').inputValue()).replace('name = "paper"', 'name = "mine"').replace('period = 1.25', 'period = 1.5');
   await page.locator('#robot-text').fill(toml);
   await page.locator('#robot-write').click();
-  await waitForMessage(page, /^written and verified in [\d.]+ s$/, '#robot-message');
+  await waitForText(page, '#robot-message', /^written and verified in [\d.]+ s$/);
   await waitForText(page, '#where', /^on a board on USB, robot mine [0-9a-f]{8}$/);
 });
 
-test('without a board, Write it to the board asks for a connection', async () => {
-  const page = await openUnfolded('#robot-editor');
+testPage('without a board, Write it to the board asks for a connection', () => openUnfolded('#robot-editor'), async (page) => {
   await page.locator('#robot-write').click();
   await page.locator('#robot-message', { hasText: 'No board is connected: press Connect a board…' }).waitFor();
 });
 
-test('a robot whose format the firmware does not read is refused, and the firmware keeps running', async () => {
-  const page = await unfoldFlashPanel(await openWithBoard('large', 8000));
+testPage('a robot whose format the firmware does not read is refused, and the firmware keeps running', () => openWithBoard('large'), async (page) => {
   // Changes the format in the mark after the 26 interrupt vectors.
   await page.evaluate(() => (window.attachedBoard.flash[26 * 4 + 4] ^= 0x40));
   const previousFlash = await readFlash(page, 0, 0x7e00);
@@ -97,17 +86,14 @@ test('a robot whose format the firmware does not read is refused, and the firmwa
   await waitForText(page, '#where', /^on a board on USB with another robot/);
 });
 
-test('the robot alone is written to a board that has not restarted', async () => {
-  const page = await openWithBoard('large', 5000, { boardKeepsRunning: true });
+testPage('the robot alone is written to a board that has not restarted', () => openWithBoard('large', 5000, { boardKeepsRunning: true }), async (page) => {
   assert.match(await readText(page, '#where'), /that has not restarted/);
   await page.evaluate(() => (window.boardKeepsRunning = false));
-  await unfoldFlashPanel(page);
   await pressAndWait(page, '#flash-robot', /^written and verified in [\d.]+ s$/);
   await assertFlash(page, SECTION_START, await makeSection('robot'));
 });
 
-test('a board unplugged during a write has no robot, reports that, moves nothing, and can be written again', async () => {
-  const page = await unfoldFlashPanel(await openWithBoard('large', 8000));
+testPage('a board unplugged during a write has no robot, reports that, moves nothing, and can be written again', () => openWithBoard('large'), async (page) => {
   await page.locator('#flash-robot').click();
   await waitUntilPartIsWritten(page);
   await page.evaluate(() => window.unplug());
@@ -122,8 +108,7 @@ test('a board unplugged during a write has no robot, reports that, moves nothing
   await runUntil(page, 'the robot stands', async () => (await listPulsedPins(page)).length === 4);
 });
 
-test('the page does not disturb a write right after the banner', async () => {
-  const page = await unfoldFlashPanel(await openWithBoard('robot', 2000));
+testPage('the page does not disturb a write right after the banner', () => openWithBoard('robot', 2000), async (page) => {
   assert.match(await readText(page, '#where'), /^on a board on USB, robot paper /);
   await page.locator('#flash-write').click();
   await page.clock.runFor(4000);
@@ -131,8 +116,7 @@ test('the page does not disturb a write right after the banner', async () => {
   assert.equal(await page.locator('#problems').innerText(), '');
 });
 
-test('a board unplugged while the firmware is written does nothing, and can be written again', async () => {
-  const page = await unfoldFlashPanel(await openWithBoard('large', 8000));
+testPage('a board unplugged while the firmware is written does nothing, and can be written again', () => openWithBoard('large'), async (page) => {
   assert.equal((await listPulsedPins(page)).length, 4, 'the robot stands');
   await page.locator('#flash-write').click();
   await waitUntilPartIsWritten(page);
@@ -154,23 +138,20 @@ test('a board unplugged while the firmware is written does nothing, and can be w
   await assertFlash(page, 0, Buffer.from(await makeImage('robot')));
 });
 
-test('a robot alone is refused for a board without this firmware', async () => {
-  const page = await unfoldFlashPanel(await openWithErasedBoard());
+testPage('a robot alone is refused for a board without this firmware', openWithErasedBoard, async (page) => {
   await pressAndWait(page, '#flash-robot', /^not written: the board has no program, and a robot alone moves nothing: write the firmware, too\. Nothing was written$/);
 });
 
 test('an older Nano, whose boot loader has another baud rate, is found, written and started', async () => {
   const page = await openWithBoard(null, 0, { loaderBaud: 57_600, usbVendor: 0x1a86 });
   await runUntil(page, 'the board is identified', async () => (await readText(page, '#problems')).startsWith('The board is an Arduino Nano, an ATmega328P according to its boot loader'));
-  await unfoldFlashPanel(page);
   await pressAndWait(page, '#flash-write', /^no answer; calling the board again/);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
   await assertFlash(page, 0, Buffer.from(await makeImage('robot')));
   await waitForText(page, '#where', /^on a board on USB, robot paper [0-9a-f]{8}$/);
 });
 
-test('the page reports an older Nano that is unplugged while its baud rate is set', async () => {
-  const page = await openPage({}, installFakeSerial);
+testPage('the page reports an older Nano that is unplugged while its baud rate is set', () => openPage({}, installFakeSerial), async (page) => {
   await page.evaluate(() => {
     let openCount = 0;
     const onPortOpen = () => {
@@ -184,8 +165,7 @@ test('the page reports an older Nano that is unplugged while its baud rate is se
   assert.match(await readText(page, '#where'), /simulated UNO/);
 });
 
-test('flash pages that already have the right bytes are not written', async () => {
-  const page = await unfoldFlashPanel(await openWithBoard('robot', 8000));
+testPage('flash pages that already have the right bytes are not written', openWithBoard, async (page) => {
   const measureWrite = async () => {
     await pressAndWait(page, '#flash-write', /^reading/);
     await waitForMessage(page, /^written and verified in [\d.]+ s$/);
@@ -198,11 +178,9 @@ test('flash pages that already have the right bytes are not written', async () =
   assert.ok(unchangedSeconds < 6 && fullSeconds > unchangedSeconds + 5, `unchanged: ${unchangedSeconds} s, full: ${fullSeconds} s`);
 });
 
-test('an image that would overwrite a Nano\'s boot loader is written only after the user confirms a UNO', async () => {
-  const page = await openWithBoard('robot', 8000);
+testPage('an image that would overwrite a Nano\'s boot loader is written only after the user confirms a UNO', openWithBoard, async (page) => {
   await page.evaluate(() => (window.usbVendor = 0x1a86));
-  await page.locator('#robot').selectOption('own-gaits');
-  await unfoldFlashPanel(page);
+  await chooseRobot(page, 'own-gaits');
   const previousFlash = await readFlash(page, 0, 0x7e00);
   const dialogMessages = [];
   let reply = 'dismiss';
@@ -218,7 +196,7 @@ test('an image that would overwrite a Nano\'s boot loader is written only after 
   await assertFlash(page, SECTION_START, await makeSection('own-gaits'));
   assert.equal(dialogMessages.length, 2);
   // The section of a small robot ends below the Nano's boot loader, so no dialog opens.
-  await page.locator('#robot').selectOption('robot');
+  await chooseRobot(page, 'robot');
   await page.clock.runFor(3000);
   await pressAndWait(page, '#flash-robot', /^written and verified in [\d.]+ s$/);
   assert.equal(dialogMessages.length, 2);

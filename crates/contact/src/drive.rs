@@ -73,15 +73,13 @@ impl Drive {
         force_unit: f64,
         max_pad_torque: f64,
     ) -> LagEnergy {
-        let [lower_resistance, upper_resistance] = match &self.kind {
-            DriveKind::Rigid => [Resistance::Stop; 2],
-            DriveKind::Strut(strut) => strut.resistances(leg, sweep, force_unit),
-        };
         LagEnergy {
             play: self.play.to_radians(),
             stop_torque: 1.25 * max_pad_torque,
-            lower_resistance,
-            upper_resistance,
+            resistances: match &self.kind {
+                DriveKind::Rigid => [Resistance::Stop; 2],
+                DriveKind::Strut(strut) => strut.resistances(leg, sweep, force_unit),
+            },
             motor: None,
         }
     }

@@ -119,25 +119,17 @@ struct Units {
 }
 
 impl Pads {
-    /// Finds the displacement of body and legs with the smallest cost.
-    pub fn minimise_cost(&self) -> Displacement {
-        self.minimise_cost_from(None)
-    }
-
-    /// Finds the displacement of body and legs with the smallest cost, starting from a guess.
-    pub fn minimise_cost_from(&self, guess: Option<&Displacement>) -> Displacement {
+    /// Finds the displacement of body and legs with the smallest cost, starting from a guess if there is one.
+    pub fn minimise_cost(&self, guess: Option<&Displacement>) -> Displacement {
         let slide_size = max_abs_component(&self.swings).max(self.max_unswept_distance());
         if slide_size < MAX_ZERO_DISTANCE {
             return self.build_displacement([0.0; 3], [0.0; 4]);
         }
         // A turn of one unit moves the farthest pad by about one unit of length.
+        let turn_unit = slide_size / max_abs_component(&self.positions);
         let units = Units {
             slide_size,
-            twist: [
-                slide_size,
-                slide_size,
-                slide_size / max_abs_component(&self.positions),
-            ],
+            twist: [slide_size, slide_size, turn_unit],
             lags: self.compliance.map_or([0.0; 4], |compliance| {
                 compliance
                     .sweep_derivatives

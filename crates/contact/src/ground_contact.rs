@@ -51,11 +51,6 @@ impl GroundContact {
         }
     }
 
-    /// Loads of feet at these positions (forward, left in mm, servo order), divided by the mean load.
-    pub fn loads(&self, feet: [[f64; 2]; 4]) -> [f64; 4] {
-        self.stance.relative_loads(&self.body, feet)
-    }
-
     /// Friction of a pad under the mean load, N: the force that a leg's spring or motor has to overcome.
     pub fn mean_pad_friction(&self) -> f64 {
         self.friction_coefficient * self.body.mean_load()

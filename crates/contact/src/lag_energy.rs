@@ -14,10 +14,8 @@ pub(crate) struct LagEnergy {
     pub play: f64,
     /// Torque of a stop, slightly larger than a pad's largest torque; a much larger one would impede the minimisation.
     pub stop_torque: f64,
-    /// Resistance to a negative lag.
-    pub lower_resistance: Resistance,
-    /// Resistance to a positive lag.
-    pub upper_resistance: Resistance,
+    /// Resistances to a negative and to a positive lag.
+    pub resistances: [Resistance; 2],
     /// The servo's motor, if the servo may lag behind its pulses; lags then include the servo's.
     pub motor: Option<MotorStep>,
 }
@@ -244,16 +242,15 @@ impl LagEnergy {
 
     /// True if the leg moves exactly with its servo.
     fn is_rigid(&self) -> bool {
-        self.play == 0.0
-            && self.lower_resistance == Resistance::Stop
-            && self.upper_resistance == Resistance::Stop
+        self.play == 0.0 && self.resistances == [Resistance::Stop; 2]
     }
 
     /// Energy, torque and stiffness at a lag (rad) of the leg behind its servo.
     fn expand_leg(&self, lag: f64, eps: f64) -> Expansion {
         let (play, stop_torque) = (self.play, self.stop_torque);
-        let upper = self.upper_resistance.expand(lag - play, eps, stop_torque);
-        let lower = self.lower_resistance.expand(-lag - play, eps, stop_torque);
+        let [lower, upper] = self.resistances;
+        let upper = upper.expand(lag - play, eps, stop_torque);
+        let lower = lower.expand(-lag - play, eps, stop_torque);
         Expansion {
             energy: upper.energy + lower.energy,
             torque: upper.torque - lower.torque,
@@ -263,26 +260,22 @@ impl LagEnergy {
 
     /// Magnitude of the torque with which the spring pulls the leg back at `lag` (rad).
     pub fn spring_torque(&self, lag: f64) -> f64 {
-        self.upper_resistance.spring_torque(lag - self.play)
-            + self.lower_resistance.spring_torque(-lag - self.play)
+        let [lower, upper] = self.resistances;
+        upper.spring_torque(lag - self.play) + lower.spring_torque(-lag - self.play)
     }
 
     /// The smallest and the largest lag that the stops allow, rad.
     pub fn stops(&self) -> [f64; 2] {
-        [
-            -self.play - self.lower_resistance.max_excess_lag(),
-            self.play + self.upper_resistance.max_excess_lag(),
-        ]
+        let [lower, upper] = self.resistances.map(|side| side.max_excess_lag());
+        [-self.play - lower, self.play + upper]
     }
 
     /// The convex conjugate of the energy at a torque, for the dual problem: the maximum of torque times lag minus
     /// energy; infinite if the torque exceeds a stop's torque.
     #[cfg(test)]
     pub fn conjugate(&self, torque: f64) -> f64 {
-        let resistance = match torque > 0.0 {
-            true => self.upper_resistance,
-            false => self.lower_resistance,
-        };
+        let [lower, upper] = self.resistances;
+        let resistance = if torque > 0.0 { upper } else { lower };
         let torque = torque.abs();
         let gain_beyond_play = match resistance {
             Resistance::Stop if torque <= self.stop_torque => 0.0,
@@ -324,12 +317,10 @@ mod tests {
 
     /// The energy of a leg without a motor.
     fn lag_energy_with(play: f64, resistances: [Resistance; 2]) -> LagEnergy {
-        let [lower_resistance, upper_resistance] = resistances;
         LagEnergy {
             play,
             stop_torque: STOP_TORQUE,
-            lower_resistance,
-            upper_resistance,
+            resistances,
             motor: None,
         }
     }

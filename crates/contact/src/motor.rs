@@ -116,8 +116,11 @@ mod tests {
         shaft_distance: 135.0,
     };
 
-    /// Creates the contact of a robot of `mass` (g). The feet of a light robot hardly load its servos.
-    fn ground_with(mass: f64, friction_coefficient: f64) -> GroundContact {
+    /// A light robot, whose feet hardly load its servos.
+    const LIGHT_GROUND: GroundContact = ground_with(0.1, 0.001);
+
+    /// Creates the contact of a robot of `mass` (g).
+    const fn ground_with(mass: f64, friction_coefficient: f64) -> GroundContact {
         GroundContact {
             body: Body {
                 mass,
@@ -144,9 +147,8 @@ mod tests {
 
     #[test]
     fn an_unloaded_servo_spins_up_with_its_rotor_time_constant() {
-        let light_ground = ground_with(0.1, 0.001);
         for seconds in [0.02, 0.04, 0.1] {
-            let walker = turn_servos(light_ground, &motors_with(SG90, JOINTS), 1000.0, seconds);
+            let walker = turn_servos(LIGHT_GROUND, &motors_with(SG90, JOINTS), 1000.0, seconds);
             // The solution of J w' = stall - b w from rest.
             let tau = SG90.rotor_time_constant;
             let exact_angle = SG90.no_load_speed * (seconds - tau * (1.0 - (-seconds / tau).exp()));
@@ -192,13 +194,12 @@ mod tests {
 
     #[test]
     fn pin_friction_slows_a_servo_and_stops_it_if_it_exceeds_the_stall_torque() {
-        let light_ground = ground_with(0.1, 0.001);
         let joints_with_pin_torque = |pin_torque| JointFriction {
             pin_torque,
             ..JOINTS
         };
         let final_angle = |joints| {
-            turn_servos(light_ground, &motors_with(SG90, joints), 1000.0, 0.4).servo_sweeps()[0]
+            turn_servos(LIGHT_GROUND, &motors_with(SG90, joints), 1000.0, 0.4).servo_sweeps()[0]
         };
         let rate_ratio =
             final_angle(joints_with_pin_torque(SG90.stall_torque / 2.0)) / final_angle(JOINTS);
@@ -209,13 +210,12 @@ mod tests {
 
     #[test]
     fn a_slider_resists_only_the_servos_that_change_its_length() {
-        let light_ground = ground_with(0.1, 0.001);
         let joints = JointFriction {
             slider_force: 3.0,
             ..JOINTS
         };
         let final_angles = |directions: [f64; 4], joints| {
-            let mut walker = Walker::new(light_ground, [0.0; 4]);
+            let mut walker = Walker::new(LIGHT_GROUND, [0.0; 4]);
             let targets = directions.map(|direction| Some(1000.0 * direction));
             walker.drive(targets, 0.04, &motors_with(SG90, joints));
             walker.servo_sweeps()
@@ -234,14 +234,13 @@ mod tests {
 
     #[test]
     fn an_unloaded_servo_settles_within_its_dead_band() {
-        let light_ground = ground_with(0.1, 0.001);
         let dead_band_motor = Motor {
             half_dead_band: 0.5,
             ..SG90
         };
         for (motor, max_error) in [(dead_band_motor, 0.51), (SG90, 0.02)] {
             let motors = motors_with(motor, JOINTS);
-            let [angle, ..] = turn_servos(light_ground, &motors, 10.0, 1.0).servo_sweeps();
+            let [angle, ..] = turn_servos(LIGHT_GROUND, &motors, 10.0, 1.0).servo_sweeps();
             assert_near(angle, 10.0, max_error);
         }
     }

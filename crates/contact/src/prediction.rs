@@ -30,18 +30,17 @@ struct UnevenWalk {
 impl UnevenWalk {
     /// Creates six walks: four with a larger load on one pad, and two with a larger or smaller friction ratio.
     fn create_variants(ground: &GroundContact, sweeps: [f64; 4]) -> [Self; 6] {
-        let walk_with = |load_factors, ratio_factor| Self {
-            walker: Walker::with_unevenness(*ground, sweeps, load_factors, ratio_factor),
-            total_differences: [0.0; 3],
-        };
-        let even_loads = [1.0; 4];
-        std::array::from_fn(|i| match i {
-            4 => walk_with(even_loads, 1.0 + UNEVENNESS),
-            5 => walk_with(even_loads, 1.0 - UNEVENNESS),
-            pad => {
-                let mut load_factors = even_loads;
-                load_factors[pad] += UNEVENNESS;
-                walk_with(load_factors, 1.0)
+        std::array::from_fn(|i| {
+            let mut load_factors = [1.0; 4];
+            let mut ratio_factor = 1.0;
+            match i {
+                4 => ratio_factor += UNEVENNESS,
+                5 => ratio_factor -= UNEVENNESS,
+                pad => load_factors[pad] += UNEVENNESS,
+            }
+            Self {
+                walker: Walker::with_unevenness(*ground, sweeps, load_factors, ratio_factor),
+                total_differences: [0.0; 3],
             }
         })
     }
@@ -49,12 +48,11 @@ impl UnevenWalk {
     /// Moves the servos to these sweeps, deg, and adds up the differences between each step's twist and the twist of
     /// the same step on even pads, listed in `even_twists`.
     fn move_and_compare(&mut self, sweeps: [f64; 4], even_twists: &[Twist]) {
-        let (mut even_twists, total_differences) =
-            (even_twists.iter(), &mut self.total_differences);
+        let (mut even_twists, totals) = (even_twists.iter(), &mut self.total_differences);
         self.walker.move_servos(sweeps, |_, displacement| {
             let even_twist = even_twists.next().copied().unwrap_or_default();
             for i in 0..3 {
-                total_differences[i] += (displacement.twist[i] - even_twist[i]).abs();
+                totals[i] += (displacement.twist[i] - even_twist[i]).abs();
             }
         });
     }
@@ -96,23 +94,15 @@ impl GroundContact {
         let length_tolerance = MIN_LENGTH_TOLERANCE.max(RELATIVE_TOLERANCE * path_length);
         let turn_tolerance = MIN_TURN_TOLERANCE.max(RELATIVE_TOLERANCE * total_turn);
         let pose = even_walker.body_pose();
-        let deviation = |walk: &UnevenWalk| {
+        let mut is_determined = [true; 3];
+        for walk in &uneven_walks {
             let uneven_pose = walk.walker.body_pose();
-            [
-                (uneven_pose.forward - pose.forward).abs(),
-                (uneven_pose.left - pose.left).abs(),
-            ]
-        };
-        let holds_for_all_walks =
-            |condition: &dyn Fn(&UnevenWalk) -> bool| uneven_walks.iter().all(condition);
-        let is_determined = [
-            holds_for_all_walks(&|walk| {
-                walk.total_differences[0] <= length_tolerance
-                    && deviation(walk)[0] <= length_tolerance
-            }),
-            holds_for_all_walks(&|walk| deviation(walk)[1] <= length_tolerance),
-            holds_for_all_walks(&|walk| walk.total_differences[2] <= turn_tolerance),
-        ];
+            let [forward_difference, _, turn_difference] = walk.total_differences;
+            is_determined[0] &= forward_difference <= length_tolerance
+                && (uneven_pose.forward - pose.forward).abs() <= length_tolerance;
+            is_determined[1] &= (uneven_pose.left - pose.left).abs() <= length_tolerance;
+            is_determined[2] &= turn_difference <= turn_tolerance;
+        }
         let travel = pose.travel();
         Prediction {
             forward: is_determined[0].then_some(travel.forward),

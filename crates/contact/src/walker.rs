@@ -188,7 +188,7 @@ impl Walker {
             inertia: Some(self.compute_inertia(seconds)),
             ..self.build_pads(start_points, reference_sweeps, lag_estimates, motor_steps)
         };
-        let displacement = pads.minimise_cost();
+        let displacement = pads.minimise_cost(None);
         for (i, total_lag) in displacement.lags.into_iter().enumerate() {
             let servo_lag = pads.compliance.map_or(0.0, |compliance| {
                 compliance.lag_energies[i].servo_lag(total_lag, KINK_WIDTH)
@@ -261,7 +261,7 @@ impl Walker {
         let start_points = self.ground.feet.positions(self.leg_sweeps());
         let mut lag_estimates = self.lags.map(f64::to_radians);
         let mut pads = self.build_pads(start_points, servo_sweeps, lag_estimates, [None; 4]);
-        let mut displacement = pads.minimise_cost();
+        let mut displacement = pads.minimise_cost(None);
         for _ in 1..MAX_ITERATIONS {
             let errors = (0..4).map(|i| (displacement.lags[i] - lag_estimates[i]).abs());
             if errors.fold(0.0, f64::max) < LAG_TOLERANCE {
@@ -269,7 +269,7 @@ impl Walker {
             }
             lag_estimates = displacement.lags;
             pads = self.build_pads(start_points, servo_sweeps, lag_estimates, [None; 4]);
-            displacement = pads.minimise_cost_from(Some(&displacement));
+            displacement = pads.minimise_cost(Some(&displacement));
         }
         (pads, displacement)
     }
@@ -291,7 +291,8 @@ impl Walker {
         let positions = build_points(&|i, j| (start_points[i][j] + end_points[i][j]) / 2.0);
         let previous_lags = self.lags.map(f64::to_radians);
         let friction_ratio = self.ground.friction_ratio * self.ratio_factor;
-        let loads = self.ground.loads(positions);
+        let GroundContact { stance, body, .. } = &self.ground;
+        let loads = stance.relative_loads(body, positions);
         let drive = &self.ground.drive;
         // No pad carries more than the whole robot.
         let max_pad_torque = 4.0 * feet.reach * friction_ratio.max(1.0);

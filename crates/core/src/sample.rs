@@ -22,12 +22,11 @@ use crate::control::safety::Health;
 use crate::control::supply::Reading;
 use crate::guard::clearance::Clearance;
 use crate::numbers::calibration::SweepRange;
-use crate::numbers::checksum::Checksum;
 use crate::numbers::gaits::{Channel, Gait, GaitId, Input, SAMPLES_PER_WAVE, Step, Wave};
 use crate::numbers::limits::Limits;
 use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
-use crate::numbers::section::{Content, Header, Map};
+use crate::numbers::section::{Content, Header, Map, write_checksum};
 use crate::numbers::slew::Slew;
 use crate::numbers::slider::{self, Slider};
 use crate::numbers::supplies::{Supplies, Thresholds};
@@ -45,40 +44,25 @@ pub const STEPS_PER_DEGREE: f64 = 65536.0 / 360.0;
 /// The names of every sample's gaits. The last gait becomes unsafe halfway through its cycle.
 pub const GAIT_NAMES: [&str; 6] = ["stand", "sway", "sway left", "swing", "back", "stray"];
 
-/// The range of each servo's sweeps that the gaits need; see [`make_waves`] and [`make_gaits`].
-const GAIT_TRAVEL: [SweepRange; 4] = [
-    SweepRange {
-        min: Sweep(-2000),
-        max: Sweep(2100),
-    },
-    SweepRange {
-        min: Sweep(-1100),
-        max: Sweep(1000),
-    },
-    SweepRange {
-        min: Sweep(-1500),
-        max: Sweep(1600),
-    },
-    SweepRange {
-        min: Sweep(-900),
-        max: Sweep(800),
-    },
-];
+/// The lowest and the highest sweep of each servo that the gaits need; see [`make_waves`] and [`add_gaits`].
+const GAIT_TRAVEL: [[i16; 2]; 4] = [[-2000, 2100], [-1100, 1000], [-1500, 1600], [-900, 800]];
+
+/// Returns the thresholds of a supply, mV: below the first gaits slow down, below the second the robot freezes, and
+/// below the third the pulses end.
+pub const fn thresholds([slow_mv, stop_mv, rest_mv]: [u16; 3]) -> Thresholds {
+    Thresholds {
+        slow_mv,
+        stop_mv,
+        rest_mv,
+    }
+}
 
 /// Supplies with a reference voltage of 1.08 V, and a rail that is measured through a divider of 10 and 4.7 kiloohms.
 const SUPPLIES: Supplies = Supplies {
     reference_mv: 1080,
-    board: Thresholds {
-        slow_mv: 4500,
-        stop_mv: 4300,
-        rest_mv: 4100,
-    },
+    board: thresholds([4500, 4300, 4100]),
     rail_reference_mv: 3378,
-    rail: Thresholds {
-        slow_mv: 4700,
-        stop_mv: 4400,
-        rest_mv: 3900,
-    },
+    rail: thresholds([4700, 4400, 3900]),
 };
 
 /// The pace on a low supply, percent, which differs from the pace of robots without a measured rail.
@@ -90,8 +74,6 @@ pub struct Sample {
     pub measurements: Measurements,
     /// The content of the robot's section.
     pub content: Content,
-    /// The five-bars of head and tail.
-    pub ends: [SampleFiveBar; 2],
     robot: Robot<'static>,
 }
 
@@ -106,71 +88,58 @@ impl Deref for Sample {
 impl Sample {
     /// Converts measurements to a robot in integers.
     pub fn new(measurements: Measurements) -> Self {
-        let Measurements {
-            lizard,
-            limits,
-            servos,
-            slew_deg_per_s,
-        } = measurements;
-        let make_five_bar =
-            |end| SampleFiveBar::new(&lizard.end(end)).expect("the couplers are long enough");
-        let make_slider = |side| {
-            let slider = lizard.side(side);
-            slider_in_steps(&slider, limits.stroke_min, limits.stroke_max)
-        };
+        let (lizard, limits) = (measurements.lizard, measurements.limits);
+        let servos = measurements.servos;
+        let calibration = servos.map(|servo| servo.calibration());
         let to_sine = |margin: f64| Sine((margin * 32768.0).ceil() as i16);
-        let mut names = Vec::new();
-        let gaits = make_gaits(&mut names);
-        let ends = [
-            make_five_bar(kinematics::End::Head),
-            make_five_bar(kinematics::End::Tail),
-        ];
-        let content = Content {
+        let mut content = Content {
             name: "sample".to_string(),
             pins: [9, 10, 5, 6],
             rail_pin: Some(14),
             slow_pace: SLOW_PACE,
             maps: core::array::from_fn(|_| Map::default()),
-            ends: ends.each_ref().map(SampleFiveBar::content),
-            sliders: [
-                make_slider(kinematics::Side::Left),
-                make_slider(kinematics::Side::Right),
-            ],
+            ends: kinematics::End::ALL.map(|end| {
+                let five_bar = SampleFiveBar::new(&lizard.end(end));
+                five_bar.expect("the couplers are long enough").lengths
+            }),
+            sliders: kinematics::Side::ALL.map(|side| {
+                slider_in_steps(&lizard.side(side), limits.stroke_min, limits.stroke_max)
+            }),
             limits: Limits {
                 type2: to_sine(limits.type2),
                 type1: to_sine(limits.type1),
                 leg: to_sine(limits.leg),
             },
-            slew: Slew::new((slew_deg_per_s * STEPS_PER_DEGREE / 50.0) as u16),
+            slew: Slew::new((measurements.slew_deg_per_s * STEPS_PER_DEGREE / 50.0) as u16),
             neutral_angles: servos
                 .map(|servo| Angle((servo.neutral_deg * STEPS_PER_DEGREE).round() as u16)),
-            calibration: servos.map(|servo| servo.calibration()),
-            gaits,
+            calibration,
+            gaits: Vec::new(),
             steps: Vec::new(),
-            names,
+            names: Vec::new(),
             waves: make_waves(),
             needed_travel: core::array::from_fn(|servo| {
-                let travel = servos[servo].calibration();
+                let [min, max] = GAIT_TRAVEL[servo].map(Sweep);
                 SweepRange {
-                    min: GAIT_TRAVEL[servo].min.max(travel.travel_min),
-                    max: GAIT_TRAVEL[servo].max.min(travel.travel_max),
+                    min: min.max(calibration[servo].travel_min),
+                    max: max.min(calibration[servo].travel_max),
                 }
             }),
             supplies: SUPPLIES,
             servo_hash: 0x7b5d_2e81,
         };
+        add_gaits(&mut content);
         Self {
-            robot: leak_robot(&content),
+            robot: leak_robot(content.section_bytes()),
             measurements,
             content,
-            ends,
         }
     }
 
     /// Applies `change` to the content of the section and rebuilds the robot.
     pub fn with_changes(mut self, change: impl FnOnce(&mut Content)) -> Self {
         change(&mut self.content);
-        self.robot = leak_robot(&self.content);
+        self.robot = leak_robot(self.content.section_bytes());
         self
     }
 
@@ -192,6 +161,14 @@ impl Sample {
             .prop_filter("stands safely", Self::stands_safely)
     }
 
+    /// Yields random robots, each with a random pose within the travel of every servo.
+    pub fn random_with_pose() -> impl Strategy<Value = (Self, Pose)> {
+        Self::random().prop_flat_map(|robot| {
+            let pose = robot.any_pose();
+            (Just(robot), pose)
+        })
+    }
+
     /// True if the integer guard accepts the neutral pose.
     pub fn stands_safely(&self) -> bool {
         Clearance::measure(self, &Pose::NEUTRAL)
@@ -204,23 +181,17 @@ impl Sample {
         let mut section = self.content.section_bytes();
         let offset = offset_of!(Header, hash);
         section[offset..offset + 4].copy_from_slice(&hash.to_le_bytes());
-        let crc = Checksum::compute(&section[offset_of!(Header, name)..]).0;
-        let offset = offset_of!(Header, crc);
-        section[offset..offset + 2].copy_from_slice(&crc.to_le_bytes());
-        Robot::unchecked(Region::new(Vec::leak(section))).expect("the section is complete")
+        write_checksum(&mut section);
+        leak_robot(section)
     }
 
     /// Adds a gait of this name whose servos do not move.
     pub fn with_gait(self, name: &str) -> Self {
-        self.with_changes(|content| {
-            content.gaits.push(Gait {
-                name_start: content.names.len() as u16,
-                name_length: name.len() as u16,
-                increment: 100_000,
-                ..Gait::STILL
-            });
-            content.names.extend(name.bytes());
-        })
+        let gait = Gait {
+            increment: 100_000,
+            ..Gait::STILL
+        };
+        self.with_changes(|content| add_gait(content, name, gait))
     }
 
     /// Adds a routine that executes `steps` `round_count` times, or endlessly if that is 0. Each step consists of its
@@ -240,13 +211,9 @@ impl Sample {
             .collect();
         self.with_changes(|content| {
             let (first_step, step_count) = (content.steps.len() as u16, steps.len() as u16);
-            content.gaits.push(Gait {
-                name_start: content.names.len() as u16,
-                name_length: name.len() as u16,
-                ..Gait::routine(first_step, step_count, round_count)
-            });
+            let routine = Gait::routine(first_step, step_count, round_count);
+            add_gait(content, name, routine);
             content.steps.extend(steps);
-            content.names.extend(name.bytes());
         })
     }
 
@@ -278,10 +245,9 @@ impl Robot<'_> {
     }
 }
 
-/// Builds a robot and its section, which stays in memory until the tests end.
-fn leak_robot(content: &Content) -> Robot<'static> {
-    Robot::unchecked(Region::new(Vec::leak(content.section_bytes())))
-        .expect("the section is complete")
+/// Builds the robot of a section, which stays in memory until the tests end.
+fn leak_robot(section: Vec<u8>) -> Robot<'static> {
+    Robot::unchecked(Region::new(Vec::leak(section))).expect("the section is complete")
 }
 
 /// Converts an angle of the core to degrees, 0..360.
@@ -356,8 +322,18 @@ fn make_waves() -> Vec<Wave> {
     ]
 }
 
-/// Makes the gaits of [`GAIT_NAMES`] and appends their names to `names`.
-fn make_gaits(names: &mut Vec<u8>) -> Vec<Gait> {
+/// Adds a gait of this name.
+fn add_gait(content: &mut Content, name: &str, gait: Gait) {
+    content.gaits.push(Gait {
+        name_start: content.names.len() as u16,
+        name_length: name.len() as u16,
+        ..gait
+    });
+    content.names.extend(name.bytes());
+}
+
+/// Adds the gaits of [`GAIT_NAMES`].
+fn add_gaits(content: &mut Content) {
     let channel = |wave, offset, gain| Channel { wave, offset, gain };
     let still_channels = [channel(0, 0, 0); 4];
     let swaying_channels = [
@@ -374,12 +350,8 @@ fn make_gaits(names: &mut Vec<u8>) -> Vec<Gait> {
         channel(0, 0xcdef, 3_000),
         channel(1, 0x4321, -6_500),
     ];
-    let straying_channels = [
-        channel(2, 0, 16_384),
-        still_channels[1],
-        still_channels[2],
-        still_channels[3],
-    ];
+    let mut straying_channels = still_channels;
+    straying_channels[0] = channel(2, 0, 16_384);
     let one_hertz_increment = (1 << 24) / 50;
     let motions = [
         (still_channels, one_hertz_increment),
@@ -389,18 +361,12 @@ fn make_gaits(names: &mut Vec<u8>) -> Vec<Gait> {
         (swaying_channels, -one_hertz_increment),
         (straying_channels, one_hertz_increment),
     ];
-    GAIT_NAMES
-        .iter()
-        .zip(motions)
-        .map(|(name, (channels, increment))| {
-            let name_start = names.len() as u16;
-            names.extend(name.bytes());
-            Gait {
-                name_start,
-                name_length: name.len() as u16,
-                increment,
-                channels,
-            }
-        })
-        .collect()
+    for (name, (channels, increment)) in GAIT_NAMES.into_iter().zip(motions) {
+        let gait = Gait {
+            increment,
+            channels,
+            ..Gait::STILL
+        };
+        add_gait(content, name, gait);
+    }
 }

@@ -145,10 +145,9 @@ impl VirtualBoard {
         if let Some(servo_state) = &restart.servo_state_before {
             store_servo_state(&self.ram, servo_state, restart.suspected_brown_outs);
         }
-        let rate = restart.rate;
         Self {
             last_restart: restart,
-            rate,
+            rate: restart.rate,
             ..self
         }
     }

@@ -13,7 +13,7 @@ use crate::error::IdentifyError;
 use crate::key::{FRICTION_RATIO_INDEX, KEY_COUNT, KEYS, Key, PLAY_INDEX, TWIST_INDEX};
 use crate::movement::MeasuredMovement;
 use crate::outcome::{GoodnessOfFit, Identification, KeyResult, MovementResult, Verdict};
-use crate::problem::{Problem, Solution, UNKNOWN_COUNT, Values, split_unknowns};
+use crate::problem::{Problem, Solution, UNKNOWN_COUNT, Unknowns, Values, split_unknowns};
 
 /// Indices in [`KEYS`] of the keys with the strongest nonlinearity near the file's value.
 const NONLINEAR_KEYS: [usize; 3] = [PLAY_INDEX, TWIST_INDEX, FRICTION_RATIO_INDEX];
@@ -93,23 +93,24 @@ pub(crate) fn solve(
         return Err(IdentifyError::NothingDetermined);
     }
     let card_unknowns: Vec<usize> = (KEY_COUNT..UNKNOWN_COUNT).collect();
-    let Fit {
-        solution: full_fit,
-        degrees_of_freedom,
-        chi_square_limit,
-        is_explained,
-    } = fit_all(&problem)?;
+    let full_fit = fit_all(&problem)?;
+    let degrees_of_freedom = compute_degrees_of_freedom(&problem, &full_fit);
+    let has_freedom = degrees_of_freedom >= 1.0;
+    let chi_square_limit = match has_freedom {
+        true => compute_percentile_99(degrees_of_freedom),
+        false => 0.0,
+    };
     // Deviations that the model does not explain widen the errors of the keys (ratio of Birge, 1932).
-    let error_factor = match degrees_of_freedom < 1.0 {
-        true => 1.0,
-        false => (full_fit.chi_square / degrees_of_freedom).sqrt().max(1.0),
+    let error_factor = match has_freedom {
+        true => (full_fit.chi_square / degrees_of_freedom).sqrt().max(1.0),
+        false => 1.0,
     };
     let errors = compute_standard_errors(&problem, &full_fit).map(|error| error_factor * error);
     let (last_fit, verdicts) = choose_keys(&problem, &full_fit, &errors)?;
-    let card_only_solution = problem.fit(&card_unknowns, &problem.start_unknowns());
+    let card_only_solution = problem.fit(&card_unknowns, &problem.start);
     let card_only_fit = card_only_solution.ok_or(IdentifyError::NoFit)?;
     let residuals = problem.compute_residuals(&last_fit.unknowns);
-    let indexed_residuals = residuals.as_flattened().iter().enumerate();
+    let indexed_residuals = residuals.iter().enumerate();
     let largest_residual = indexed_residuals.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     let (index, residual) = largest_residual.ok_or(IdentifyError::NothingDetermined)?;
     let (new_values, card) = split_unknowns(&last_fit.unknowns);
@@ -138,22 +139,12 @@ pub(crate) fn solve(
             chi_squares: [&card_only_fit, &last_fit, &full_fit].map(|fit| fit.chi_square),
             degrees_of_freedom,
             chi_square_limit,
-            is_explained,
+            is_explained: !has_freedom || full_fit.chi_square <= chi_square_limit,
             error_factor,
             largest_residual: (index / 3, index % 3, *residual),
         },
         movements: movement_results.collect(),
     })
-}
-
-/// A fit of all unknowns, and the agreement with the measurements.
-struct Fit {
-    solution: Solution,
-    degrees_of_freedom: f64,
-    /// Sum of squares that 1 % of correct models exceed; 0 if there are no degrees of freedom.
-    chi_square_limit: f64,
-    /// True if the model explains the measurements.
-    is_explained: bool,
 }
 
 /// Fits all unknowns, from several start points if the first fit is poor.
@@ -163,9 +154,9 @@ struct Fit {
 /// average, the fit is repeated from other start points, in each of which one nonlinear key is one prior standard
 /// deviation above or below the file's value. The limit that 1 % of correct models exceed would be too high a
 /// threshold, because a local minimum may also be below this limit.
-fn fit_all(problem: &Problem) -> Result<Fit, IdentifyError> {
+fn fit_all(problem: &Problem) -> Result<Solution, IdentifyError> {
     let all_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).collect();
-    let start = problem.start_unknowns();
+    let start = problem.start;
     let other_starts = NONLINEAR_KEYS.iter().flat_map(|&key| {
         [1.0, -1.0].map(|sign| {
             let mut guess = start;
@@ -173,26 +164,16 @@ fn fit_all(problem: &Problem) -> Result<Fit, IdentifyError> {
             guess
         })
     });
-    let mut best_fit: Option<Fit> = None;
+    let mut best_fit: Option<Solution> = None;
     for guess in std::iter::once(start).chain(other_starts) {
         let Some(full_fit) = problem.fit(&all_unknowns, &guess) else {
             continue;
         };
         let degrees_of_freedom = compute_degrees_of_freedom(problem, &full_fit);
-        let chi_square_limit = match degrees_of_freedom < 1.0 {
-            true => 0.0,
-            false => compute_percentile_99(degrees_of_freedom),
-        };
-        let is_explained = degrees_of_freedom < 1.0 || full_fit.chi_square <= chi_square_limit;
         let is_typical = degrees_of_freedom < 1.0 || full_fit.chi_square <= degrees_of_freedom;
-        let is_better = |best_fit: &Fit| full_fit.chi_square < best_fit.solution.chi_square;
+        let is_better = |best_fit: &Solution| full_fit.chi_square < best_fit.chi_square;
         if best_fit.as_ref().is_none_or(is_better) {
-            best_fit = Some(Fit {
-                solution: full_fit,
-                degrees_of_freedom,
-                chi_square_limit,
-                is_explained,
-            });
+            best_fit = Some(full_fit);
         }
         if is_typical {
             break;
@@ -207,7 +188,7 @@ fn fit_all(problem: &Problem) -> Result<Fit, IdentifyError> {
 /// foot takes over a load, and an even longer foot has no further effect. Therefore each key is shifted by two standard
 /// errors in both directions, and the other unknowns follow according to their correlation with the key. In a linear
 /// model, the sum of squares rises by four. If the rise is smaller, the error is enlarged accordingly.
-fn compute_standard_errors(problem: &Problem, full_fit: &Solution) -> [f64; UNKNOWN_COUNT] {
+fn compute_standard_errors(problem: &Problem, full_fit: &Solution) -> Unknowns {
     let min_cost = problem.compute_cost(&full_fit.unknowns);
     std::array::from_fn(|i| {
         let error = full_fit.covariance[(i, i)].max(0.0).sqrt();
@@ -239,30 +220,30 @@ fn compute_degrees_of_freedom(problem: &Problem, full_fit: &Solution) -> f64 {
 fn choose_keys(
     problem: &Problem,
     full_fit: &Solution,
-    errors: &[f64; UNKNOWN_COUNT],
+    errors: &Unknowns,
 ) -> Result<(Solution, [Verdict; KEY_COUNT]), IdentifyError> {
     let mut verdicts = [Verdict::Changed; KEY_COUNT];
     let mut guess = full_fit.unknowns;
     let mut covariance = full_fit.covariance.clone();
-    let start = problem.start_unknowns();
+    let start = &problem.start;
     for key in 0..KEY_COUNT {
         if errors[key] > MAX_ERROR_FRACTION * problem.prior_errors[key] {
             verdicts[key] = Verdict::Undetermined;
-            hold_key(key, &start, &mut guess, &mut covariance);
+            hold_key(key, start, &mut guess, &mut covariance);
         }
     }
     loop {
         // Keys are first held in the linear model, since this needs no simulations.
-        while let Some((key, verdict)) = find_key_to_hold(&verdicts, &guess, &start, errors) {
+        while let Some((key, verdict)) = find_key_to_hold(&verdicts, &guess, start, errors) {
             verdicts[key] = verdict;
-            hold_key(key, &start, &mut guess, &mut covariance);
+            hold_key(key, start, &mut guess, &mut covariance);
         }
         let is_free = |i: &usize| *i >= KEY_COUNT || verdicts[*i] == Verdict::Changed;
         let free_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).filter(is_free).collect();
         let last_fit = problem.fit(&free_unknowns, &guess);
         let last_fit = last_fit.ok_or(IdentifyError::NoFit)?;
         guess = last_fit.unknowns;
-        if find_key_to_hold(&verdicts, &guess, &start, errors).is_none() {
+        if find_key_to_hold(&verdicts, &guess, start, errors).is_none() {
             return Ok((last_fit, verdicts));
         }
     }
@@ -271,9 +252,9 @@ fn choose_keys(
 /// Finds the next key to hold at its file value, and its verdict; returns `None` if all free keys may change.
 fn find_key_to_hold(
     verdicts: &[Verdict; KEY_COUNT],
-    unknowns: &[f64; UNKNOWN_COUNT],
-    start: &[f64; UNKNOWN_COUNT],
-    errors: &[f64; UNKNOWN_COUNT],
+    unknowns: &Unknowns,
+    start: &Unknowns,
+    errors: &Unknowns,
 ) -> Option<(usize, Verdict)> {
     let free_keys = || (0..KEY_COUNT).filter(|&i| verdicts[i] == Verdict::Changed);
     let distance = |i: usize| (unknowns[i] - start[i]).abs() / errors[i];
@@ -287,12 +268,7 @@ fn find_key_to_hold(
 }
 
 /// Holds a key at its file value, and shifts the other unknowns and the covariance according to the correlations.
-fn hold_key(
-    key: usize,
-    start: &[f64; UNKNOWN_COUNT],
-    unknowns: &mut [f64; UNKNOWN_COUNT],
-    covariance: &mut DMatrix<f64>,
-) {
+fn hold_key(key: usize, start: &Unknowns, unknowns: &mut Unknowns, covariance: &mut DMatrix<f64>) {
     let variance = covariance[(key, key)];
     let column: Vec<f64> = covariance.column(key).iter().copied().collect();
     let shift = (unknowns[key] - start[key]) / variance;

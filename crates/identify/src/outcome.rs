@@ -85,12 +85,16 @@ pub struct MovementResult {
 impl Identification {
     /// The keys with a new value.
     pub fn changed_keys(&self) -> impl Iterator<Item = &KeyResult> {
-        let keys = self.keys.iter();
-        keys.filter(|result| result.verdict == Verdict::Changed)
+        self.keys.iter().filter(|result| result.is_changed())
     }
 }
 
 impl KeyResult {
+    /// True if the key has a new value.
+    pub(crate) fn is_changed(&self) -> bool {
+        self.verdict == Verdict::Changed
+    }
+
     /// Number of decimals with which the standard error has two significant digits.
     pub fn decimal_count(&self) -> usize {
         let first_digit_decimal = -self.error.log10().floor();

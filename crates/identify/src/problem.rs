@@ -18,6 +18,8 @@ use crate::movement::MeasuredMovement;
 pub(crate) type Values = [f64; KEY_COUNT];
 /// Number of unknowns: the keys, then the card's parameters.
 pub(crate) const UNKNOWN_COUNT: usize = KEY_COUNT + card::PARAMETER_COUNT;
+/// Values of the unknowns.
+pub(crate) type Unknowns = [f64; UNKNOWN_COUNT];
 /// Standard deviation of the model's roughness, mm and deg: servos have a dead band and pads stick, so a small change
 /// of a key may shift a step of the gait by a frame.
 pub(crate) const MODEL_ERROR: f64 = 0.05;
@@ -40,10 +42,10 @@ const REUSE_STEPS_AT_END: f64 = 1.0;
 pub(crate) struct Problem<'a> {
     /// The measured movements. Components that the model cannot predict have an infinite error.
     movements: &'a [MeasuredMovement],
-    /// The file's values.
-    pub file_values: Values,
+    /// Start values of the unknowns: the file's values of the keys, and a card exactly in its nominal position.
+    pub start: Unknowns,
     /// Prior standard deviations of the unknowns.
-    pub prior_errors: [f64; UNKNOWN_COUNT],
+    pub prior_errors: Unknowns,
     /// The model: predicts the movements for values of the keys.
     predict: &'a dyn Fn(&Values) -> Vec<Travel>,
     /// The model's results for all values so far.
@@ -57,7 +59,7 @@ pub(crate) struct Problem<'a> {
 #[derive(Clone, Debug)]
 pub(crate) struct Solution {
     /// Values of all unknowns; the unknowns that were not free have their start values.
-    pub unknowns: [f64; UNKNOWN_COUNT],
+    pub unknowns: Unknowns,
     /// Covariance of the free unknowns, in their order.
     pub covariance: DMatrix<f64>,
     /// Sum of the squared residuals of the movements, without the prior.
@@ -74,7 +76,7 @@ impl<'a> Problem<'a> {
         let mut prior_errors = keys.chain(CardPose::PRIOR_ERRORS);
         Self {
             movements,
-            file_values,
+            start: std::array::from_fn(|i| file_values.get(i).copied().unwrap_or_default()),
             prior_errors: std::array::from_fn(|_| prior_errors.next().unwrap_or_default()),
             predict,
             cached_results: RefCell::default(),
@@ -88,58 +90,44 @@ impl<'a> Problem<'a> {
         errors.filter(|error| error.is_finite()).count()
     }
 
-    /// Start values of the unknowns: the file's values of the keys, and a card exactly in its nominal position.
-    pub fn start_unknowns(&self) -> [f64; UNKNOWN_COUNT] {
-        std::array::from_fn(|i| self.file_values.get(i).copied().unwrap_or_default())
-    }
-
     /// Predicts the card's movements with the model.
-    pub fn predict_card_movements(&self, unknowns: &[f64; UNKNOWN_COUNT]) -> Vec<[f64; 3]> {
+    pub fn predict_card_movements(&self, unknowns: &Unknowns) -> Vec<[f64; 3]> {
         let (values, card) = split_unknowns(unknowns);
         let travels = self.predict_robot_travels(&values).into_iter();
         travels.map(|travel| card.convert_travel(travel)).collect()
     }
 
-    /// Computes the residuals of the movements, measured minus predicted, in standard errors.
-    pub fn compute_residuals(&self, unknowns: &[f64; UNKNOWN_COUNT]) -> Vec<[f64; 3]> {
-        let predicted = self.predict_card_movements(unknowns);
-        self.divide_by_errors(&predicted, |predicted, mean| mean - predicted)
+    /// Computes the residuals of the movements' components, measured minus predicted, in standard errors.
+    pub fn compute_residuals(&self, unknowns: &Unknowns) -> Vec<f64> {
+        let predicted = self.predict_card_movements(unknowns).into_flattened();
+        let means = self.movements.iter().flat_map(|movement| movement.mean);
+        let pairs = means.zip(predicted);
+        self.divide_by_errors(pairs.map(|(mean, predicted)| mean - predicted))
     }
 
     /// Computes the residuals of the movements, followed by the deviations of some unknowns from their prior values.
-    fn compute_all_residuals(
-        &self,
-        included_unknowns: impl IntoIterator<Item = usize>,
-        unknowns: &[f64; UNKNOWN_COUNT],
-    ) -> Vec<f64> {
-        let start = self.start_unknowns();
-        let prior_deviation = |i: usize| (unknowns[i] - start[i]) / self.prior_errors[i];
-        let mut residuals = self.compute_residuals(unknowns).into_flattened();
-        residuals.extend(included_unknowns.into_iter().map(prior_deviation));
+    fn compute_all_residuals(&self, included_unknowns: &[usize], unknowns: &Unknowns) -> Vec<f64> {
+        let prior_deviation = |&i: &usize| (unknowns[i] - self.start[i]) / self.prior_errors[i];
+        let mut residuals = self.compute_residuals(unknowns);
+        residuals.extend(included_unknowns.iter().map(prior_deviation));
         residuals
     }
 
     /// Computes the sum of squares that a fit of all unknowns minimises: residuals of the movements, and deviations
     /// from the prior values.
-    pub fn compute_cost(&self, unknowns: &[f64; UNKNOWN_COUNT]) -> f64 {
-        let residuals = self.compute_all_residuals(0..UNKNOWN_COUNT, unknowns);
+    pub fn compute_cost(&self, unknowns: &Unknowns) -> f64 {
+        let all_unknowns: [usize; UNKNOWN_COUNT] = std::array::from_fn(|i| i);
+        let residuals = self.compute_all_residuals(&all_unknowns, unknowns);
         residuals.iter().map(|residual| residual * residual).sum()
     }
 
-    /// Combines each predicted component with the measured mean, and divides the result by the standard error, which
-    /// includes the model's roughness.
-    fn divide_by_errors(
-        &self,
-        predicted: &[[f64; 3]],
-        combine: impl Fn(f64, f64) -> f64,
-    ) -> Vec<[f64; 3]> {
-        let rows = self.movements.iter().zip(predicted);
-        let divided_rows = rows.map(|(movement, predicted)| {
-            std::array::from_fn(|i| {
-                combine(predicted[i], movement.mean[i]) / movement.error[i].hypot(MODEL_ERROR)
-            })
-        });
-        divided_rows.collect()
+    /// Divides a value for each component of the movements by the component's standard error, which includes the
+    /// model's roughness.
+    fn divide_by_errors(&self, values: impl Iterator<Item = f64>) -> Vec<f64> {
+        let errors = self.movements.iter().flat_map(|movement| movement.error);
+        let pairs = values.zip(errors);
+        let in_errors = pairs.map(|(value, error)| value / error.hypot(MODEL_ERROR));
+        in_errors.collect()
     }
 
     /// Predicts the robot's movements with the model, and caches them. No robot has negative play, but a fit may try
@@ -177,13 +165,12 @@ impl<'a> Problem<'a> {
     ///
     /// Uses the Gauss-Newton method, and halves a step that does not reduce the sum of squares. A finer search would be
     /// useless, since the model is rough: servos have a dead band and pads stick.
-    pub fn fit(&self, free_unknowns: &[usize], guess: &[f64; UNKNOWN_COUNT]) -> Option<Solution> {
-        let mut unknowns = self.start_unknowns();
+    pub fn fit(&self, free_unknowns: &[usize], guess: &Unknowns) -> Option<Solution> {
+        let mut unknowns = self.start;
         for &unknown in free_unknowns {
             unknowns[unknown] = guess[unknown];
         }
-        let compute_all_residuals = |unknowns: &[f64; UNKNOWN_COUNT]| {
-            let free_unknowns = free_unknowns.iter().copied();
+        let compute_all_residuals = |unknowns: &Unknowns| {
             DVector::from_vec(self.compute_all_residuals(free_unknowns, unknowns))
         };
         let mut current_residuals = compute_all_residuals(&unknowns);
@@ -222,7 +209,7 @@ impl<'a> Problem<'a> {
                 None => break,
             }
         }
-        let residuals = self.compute_residuals(&unknowns).into_flattened();
+        let residuals = self.compute_residuals(&unknowns);
         let chi_square: f64 = residuals.iter().map(|residual| residual * residual).sum();
         let is_finite = chi_square.is_finite() && covariance.iter().all(|value| value.is_finite());
         is_finite.then_some(Solution {
@@ -234,7 +221,7 @@ impl<'a> Problem<'a> {
 
     /// Discards the derivatives if any key was more than `step_count` derivative steps away from its value in
     /// `unknowns`. Returns true if no derivatives are left.
-    fn discard_distant_jacobian(&self, unknowns: &[f64; UNKNOWN_COUNT], step_count: f64) -> bool {
+    fn discard_distant_jacobian(&self, unknowns: &Unknowns, step_count: f64) -> bool {
         let values = raise_to_min_values(split_unknowns(unknowns).0);
         let mut jacobian_point = self.jacobian_point.borrow_mut();
         let is_distant =
@@ -246,14 +233,10 @@ impl<'a> Problem<'a> {
     }
 
     /// Computes the derivatives of the residuals with respect to the free unknowns.
-    fn compute_jacobian(
-        &self,
-        free_unknowns: &[usize],
-        unknowns: &[f64; UNKNOWN_COUNT],
-    ) -> DMatrix<f64> {
+    fn compute_jacobian(&self, free_unknowns: &[usize], unknowns: &Unknowns) -> DMatrix<f64> {
         let near_values = self.choose_jacobian_point(split_unknowns(unknowns).0);
         let base = std::array::from_fn(|i| near_values.get(i).copied().unwrap_or(unknowns[i]));
-        let base_movements = self.predict_card_movements(&base);
+        let base_movements = self.predict_card_movements(&base).into_flattened();
         let row_count = 3 * self.movements.len() + free_unknowns.len();
         let mut jacobian = DMatrix::zeros(row_count, free_unknowns.len());
         for (column, &unknown) in free_unknowns.iter().enumerate() {
@@ -261,16 +244,13 @@ impl<'a> Problem<'a> {
             let mut shifted_unknowns = base;
             shifted_unknowns[unknown] += step;
             let shifted_movements = self.predict_card_movements(&shifted_unknowns);
-            let movement_pairs = base_movements.iter().zip(&shifted_movements);
-            let slopes: Vec<[f64; 3]> = movement_pairs
-                .map(|(base, shifted)| std::array::from_fn(|i| (base[i] - shifted[i]) / step))
-                .collect();
-            let scaled_slopes = self.divide_by_errors(&slopes, |slope, _| slope);
-            let scaled_slopes = scaled_slopes.into_flattened();
-            for (row, slope) in scaled_slopes.iter().enumerate() {
+            let pairs = base_movements.iter().zip(shifted_movements.as_flattened());
+            let slopes =
+                self.divide_by_errors(pairs.map(|(base, shifted)| (base - shifted) / step));
+            for (row, slope) in slopes.iter().enumerate() {
                 jacobian[(row, column)] = *slope;
             }
-            jacobian[(scaled_slopes.len() + column, column)] = 1.0 / self.prior_errors[unknown];
+            jacobian[(slopes.len() + column, column)] = 1.0 / self.prior_errors[unknown];
         }
         jacobian
     }
@@ -302,7 +282,7 @@ fn raise_to_min_values(values: Values) -> Values {
 }
 
 /// Splits the unknowns into the values of the keys and the card.
-pub(crate) fn split_unknowns(unknowns: &[f64; UNKNOWN_COUNT]) -> (Values, CardPose) {
+pub(crate) fn split_unknowns(unknowns: &Unknowns) -> (Values, CardPose) {
     let card: [f64; card::PARAMETER_COUNT] = std::array::from_fn(|i| unknowns[KEY_COUNT + i]);
     (std::array::from_fn(|i| unknowns[i]), card.into())
 }

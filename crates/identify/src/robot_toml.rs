@@ -40,10 +40,6 @@ fn write_key(text: &str, results: &[&KeyResult]) -> Result<String, edit::KeyErro
 }
 
 impl KeyResult {
-    fn is_changed(&self) -> bool {
-        self.verdict == crate::Verdict::Changed
-    }
-
     /// The value for the new file, rounded if the verdict is `Changed`.
     fn rounded_value(&self) -> f64 {
         if !self.is_changed() {

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::thread;
 
 use fastrand::Rng;
-use lizard_identify::{Identification, KEYS, KeyResult, MeasuredMovement, Verdict, identify};
-use lizard_robot::{CheckedGait, GroundContact, Robot, Travel};
+use lizard_identify::{Identification, KEYS, MeasuredMovement, Verdict, identify};
+use lizard_robot::{CheckedGait, GroundContact, Robot};
 
 /// Standard error of a mean of about eight cycles, mm and deg.
 const MEAN_ERROR: f64 = 0.03;
@@ -30,11 +30,6 @@ fn change_key(ground: &mut GroundContact, key_index: usize, change: f64) {
 /// Returns a random number with an approximately normal distribution: mean 0, standard deviation 1.
 fn random_deviate(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64()).sum::<f64>() - 6.0
-}
-
-/// Runs the simulations sequentially.
-fn run_sequentially(count: usize, simulate: &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel> {
-    (0..count).map(simulate).collect()
 }
 
 /// Simulates a robot's fastest gaits on a changed ground, with the random errors of a video.
@@ -88,16 +83,14 @@ impl Trial {
             change_key(&mut ground, key_index, change);
         }
         let movements = record_movements(&robot, &ground, &mut rng);
+        let identification = identify(&robot, &movements, &|count, simulate| {
+            (0..count).map(simulate).collect()
+        });
         Self {
             name: format!("{} with seed {seed}", path.display()),
             changes,
-            identification: identify(&robot, &movements, &run_sequentially)
-                .expect("the movements determine the keys"),
+            identification: identification.expect("the movements determine the keys"),
         }
-    }
-
-    fn changes_and_results(&self) -> impl Iterator<Item = (f64, &KeyResult)> {
-        self.changes.into_iter().zip(&self.identification.keys)
     }
 }
 
@@ -136,7 +129,7 @@ fn changed_keys_are_found_within_two_standard_errors_and_correct_keys_stay() {
             "{}: chi-square {:.0}, limit {:.0}",
             trial.name, goodness.chi_squares[1], goodness.chi_square_limit
         );
-        for (change, result) in trial.changes_and_results() {
+        for (change, result) in trial.changes.into_iter().zip(&trial.identification.keys) {
             let shift = result.new_value - result.file_value;
             let is_hit = (shift - change).abs() < 2.0 * result.error;
             println!(

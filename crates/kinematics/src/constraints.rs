@@ -192,38 +192,20 @@ mod tests {
             (robot, pose, solution) in any_solved_robot(),
         ) {
             let passive = solution.passive_joints();
-            let step = 1e-4;
-            let radian = 1f64.to_degrees();
-            let k = solution.active_matrix();
-            for column in 0..4 {
-                let residual_after = |step_size: f64| {
-                    let mut active = pose;
-                    active[column] += step_size * radian;
-                    robot.residuals(active, &passive)
-                };
-                let (residual_above, residual_below) = (residual_after(step), residual_after(-step));
-                for row in 0..8 {
-                    let slope = (residual_above[row] - residual_below[row]) / (2.0 * step);
-                    prop_assert!((slope - k[row][column]).abs() < 1e-6 * 200.0, "K[{row}][{column}] is not {slope}");
-                }
-            }
-            let k = solution.passive_matrix();
-            for column in 0..8 {
-                let residual_after = |step_size: f64| {
-                    let mut shifted = passive;
-                    let field = [
-                        &mut shifted.theta2, &mut shifted.theta3, &mut shifted.theta6, &mut shifted.theta7,
-                        &mut shifted.phi_left, &mut shifted.s_left, &mut shifted.phi_right, &mut shifted.s_right,
-                    ].into_iter().nth(column).unwrap();
-                    *field += if matches!(column, 5 | 7) { step_size } else { step_size * radian };
-                    robot.residuals(pose, &shifted)
-                };
-                let (residual_above, residual_below) = (residual_after(step), residual_after(-step));
-                for row in 0..8 {
-                    let slope = (residual_above[row] - residual_below[row]) / (2.0 * step);
-                    prop_assert!((slope - k[row][column]).abs() < 1e-6 * 200.0, "K*[{row}][{column}] is not {slope}");
-                }
-            }
+            compare_with_difference_quotients("K", solution.active_matrix(), |column, step| {
+                let mut active = pose;
+                active[column] += step.to_degrees();
+                robot.residuals(active, &passive)
+            })?;
+            compare_with_difference_quotients("K*", solution.passive_matrix(), |column, step| {
+                let mut shifted = passive;
+                let field = [
+                    &mut shifted.theta2, &mut shifted.theta3, &mut shifted.theta6, &mut shifted.theta7,
+                    &mut shifted.phi_left, &mut shifted.s_left, &mut shifted.phi_right, &mut shifted.s_right,
+                ].into_iter().nth(column).unwrap();
+                *field += if matches!(column, 5 | 7) { step } else { step.to_degrees() };
+                robot.residuals(pose, &shifted)
+            })?;
         }
 
         #[test]
@@ -236,6 +218,25 @@ mod tests {
             let scale = l.l2 * l.l3 * l.l7 * l.l8 * solution.left.d * solution.right.d;
             prop_assert!((product - determinant).abs() < 1e-9 * scale, "product {product}, determinant {determinant}");
         }
+    }
+
+    /// Compares a matrix with the difference quotients of the residuals of the loop equations. `residuals_after` returns
+    /// the residuals after a step of the joint of a column, rad or mm.
+    fn compare_with_difference_quotients<const N: usize>(
+        name: &str,
+        matrix: [[f64; N]; 8],
+        residuals_after: impl Fn(usize, f64) -> [f64; 8],
+    ) -> Result<(), TestCaseError> {
+        const STEP: f64 = 1e-4;
+        for column in 0..N {
+            let [above, below] = [STEP, -STEP].map(|step| residuals_after(column, step));
+            for row in 0..8 {
+                let slope = (above[row] - below[row]) / (2.0 * STEP);
+                let is_near = (slope - matrix[row][column]).abs() < 1e-6 * 200.0;
+                prop_assert!(is_near, "{name}[{row}][{column}] is not {slope}");
+            }
+        }
+        Ok(())
     }
 
     /// Computes the determinant by Gaussian elimination with pivoting.

@@ -45,9 +45,9 @@ pub struct MeasuredWalk<'f> {
 /// The gaits that a video may show.
 #[derive(Debug)]
 pub struct Gaits<'a> {
-    robot: &'a Robot,
-    /// Pace as a multiple of each gait's nominal pace.
-    pace: f64,
+    pub(crate) robot: &'a Robot,
+    /// Pace, percent of each gait's nominal pace.
+    pub(crate) pace_percent: u8,
     /// The gaits that the user names, in the user's order.
     named_candidates: Vec<Candidate<'a>>,
     /// All gaits that are fast enough to be considered; predicted on the first use.
@@ -56,15 +56,21 @@ pub struct Gaits<'a> {
 
 impl<'a> Gaits<'a> {
     /// Predicts the gaits that the user names, in the user's order. `named_gaits` is empty if the user names none.
-    /// `pace` is a multiple of each gait's nominal pace.
-    pub fn predict(robot: &'a Robot, named_gaits: &[&'a CheckedGait], pace: f64) -> Self {
+    /// `pace_percent` is relative to each gait's nominal pace.
+    pub fn predict(robot: &'a Robot, named_gaits: &[&'a CheckedGait], pace_percent: u8) -> Self {
+        let pace = f64::from(pace_percent) / 100.0;
         let to_candidate = |gait: &&'a CheckedGait| Candidate::new(robot, gait, pace);
         Self {
             robot,
-            pace,
+            pace_percent,
             named_candidates: named_gaits.iter().map(to_candidate).collect(),
             all_candidates: OnceCell::new(),
         }
+    }
+
+    /// Returns the pace as a multiple of each gait's nominal pace.
+    pub(crate) fn pace(&self) -> f64 {
+        f64::from(self.pace_percent) / 100.0
     }
 
     /// Returns the gaits that a walk can have: the named gaits, or all gaits if the user names none.
@@ -79,10 +85,11 @@ impl<'a> Gaits<'a> {
     fn all_candidates(&self) -> &[Candidate<'a>] {
         self.all_candidates.get_or_init(|| {
             let moving_gaits = self.robot.gaits().iter().filter(|gait| gait.has_movement());
-            let candidates = moving_gaits.map(|gait| Candidate::new(self.robot, gait, self.pace));
+            let pace = self.pace();
+            let candidates = moving_gaits.map(|gait| Candidate::new(self.robot, gait, pace));
             // A gait that hardly moves the robot would make the minimum duration of a rest too long.
             let is_fast =
-                |candidate: &Candidate| candidate.predicted_gait.speed() > MIN_SPEED * self.pace;
+                |candidate: &Candidate| candidate.predicted_gait.speed() > MIN_SPEED * pace;
             candidates.filter(is_fast).collect()
         })
     }
@@ -109,17 +116,9 @@ impl<'a> Gaits<'a> {
                 1 => 0,
                 _ => i,
             };
-            let candidate = &self.candidates()[candidate_index];
-            let analysis = &walk.video.analysis;
-            let measured_gait = analysis.measure(&candidate.predicted_gait, Some(walk.interval));
-            let measured_gait = measured_gait.map_err(|error| {
-                let message = self.format_mismatch(walk, candidate, error);
-                format!("{}, {}: {message}", walk.format_label(), candidate.name())
-            })?;
-            Ok(MeasuredWalk {
-                walk,
-                candidate_index,
-                measured_gait,
+            self.measure_as(candidate_index, walk).map_err(|message| {
+                let name = self.candidates()[candidate_index].name();
+                format!("{}, {name}: {message}", walk.format_label())
             })
         });
         measured_walks.collect()
@@ -135,13 +134,22 @@ impl<'a> Gaits<'a> {
         video: &'f NamedVideo,
         interval: Option<[f64; 2]>,
     ) -> Result<MeasuredWalk<'f>, String> {
-        let candidate = self.named_candidates.get(candidate_index);
-        let candidate = candidate.ok_or_else(|| VideoError::NoGait.to_string())?;
-        let walk = Walk {
-            video,
-            interval: interval.or_else(|| video.time_range()).unwrap_or_default(),
-        };
-        let measured_gait = video.analysis.measure(&candidate.predicted_gait, interval);
+        if candidate_index >= self.named_candidates.len() {
+            return Err(VideoError::NoGait.to_string());
+        }
+        let interval = interval.or_else(|| video.time_range()).unwrap_or_default();
+        self.measure_as(candidate_index, Walk { video, interval })
+    }
+
+    /// Measures a candidate, given by its index, in a walk; fails with a message if the walk does not show it.
+    fn measure_as<'f>(
+        &self,
+        candidate_index: usize,
+        walk: Walk<'f>,
+    ) -> Result<MeasuredWalk<'f>, String> {
+        let candidate = &self.candidates()[candidate_index];
+        let analysis = &walk.video.analysis;
+        let measured_gait = analysis.measure(&candidate.predicted_gait, Some(walk.interval));
         let measured_gait =
             measured_gait.map_err(|error| self.format_mismatch(walk, candidate, error))?;
         Ok(MeasuredWalk {

@@ -22,11 +22,7 @@ pub fn predict_gait(robot: &Robot, gait: &CheckedGait, pace: f64) -> Gait {
         }
         if frame >= frames_per_cycle {
             let travel = pose.travel_from(start_pose);
-            path.push(BodyPose {
-                forward: travel.forward,
-                left: travel.left,
-                heading: travel.turn.to_radians(),
-            });
+            path.push(BodyPose::START.moved_by_travel(travel));
         }
     }
     Gait { period, path }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use lizard_robot::{BodyPose, Robot, Travel, UNDETERMINED_NOTE};
+use lizard_robot::{BodyPose, Travel, UNDETERMINED_NOTE};
 use lizard_video::{CyclePoint, MeasuredGait, Setup};
 use serde::Serialize;
 
@@ -75,8 +75,8 @@ pub struct GaitReport<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     mujoco: Option<[f64; 3]>,
     /// Range of the prediction when one assumption at a time is changed.
-    #[serde(rename = "range", skip_serializing_if = "Option::is_none")]
-    prediction_range: Option<PredictionRange>,
+    #[serde(rename = "range")]
+    prediction_range: PredictionRange,
     /// The predicted path of a cycle, at equal time steps.
     #[serde(skip)]
     pub predicted_path: &'a [BodyPose],
@@ -194,12 +194,16 @@ impl LargestDeviation {
 impl<'a> GaitReport<'a> {
     /// Computes the mean over all walks of a gait.
     fn compute(
-        robot: &Robot,
-        pace_percent: u8,
+        robot_toml: &str,
         gaits: &Gaits<'a>,
         candidate: &'a Candidate,
         walks: &[&MeasuredWalk<'a>],
     ) -> Self {
+        let robot = gaits.robot;
+        let mujoco = match gaits.pace_percent {
+            100 => find_mujoco_movement(robot_toml, candidate.name()),
+            _ => None,
+        };
         let predicted_gait = &candidate.predicted_gait;
         let measured_gaits = walks.iter().map(|walk| walk.measured_gait.clone());
         let measured_gaits: Vec<MeasuredGait> = measured_gaits.collect();
@@ -248,7 +252,7 @@ impl<'a> GaitReport<'a> {
         let cycle_path = &measured_gait.cycle_path;
         Self {
             name: candidate.name(),
-            pace_percent,
+            pace_percent: gaits.pace_percent,
             walks: walks.iter().map(to_walk_report).collect(),
             cycle_count: measured_gait.cycles.len(),
             period: measured_gait.period.value,
@@ -260,8 +264,8 @@ impl<'a> GaitReport<'a> {
             cycle_movements: measured_gait.cycles.iter().map(to_cycle_movement).collect(),
             mean_path: cycle_path.iter().map(to_phase_point).collect(),
             largest_deviation: LargestDeviation::find(cycle_path, predicted_values),
-            mujoco: None,
-            prediction_range: None,
+            mujoco,
+            prediction_range: PredictionRange::compute(robot, candidate.gait, gaits.pace()),
             predicted_path: &predicted_gait.path,
         }
     }
@@ -288,9 +292,7 @@ impl<'a> GaitReport<'a> {
         for (label, component) in COMPONENT_LABELS.iter().zip(self.components()) {
             text += &component.format_line(label);
         }
-        if let Some(range) = &self.prediction_range {
-            text += &range.format_line();
-        }
+        text += &self.prediction_range.format_line();
         if let Some([forward, left, turn]) = self.mujoco {
             let _ = writeln!(
                 text,
@@ -305,11 +307,11 @@ impl<'a> GaitReport<'a> {
 }
 
 impl<'a> Report<'a> {
-    /// Reports the walks in videos, and combines walks of the same gait. `pace_percent` is relative to the nominal
-    /// pace.
+    /// Reports the walks in videos, and combines walks of the same gait. The ranges of the predictions take a second
+    /// for each gait. The movements according to MuJoCo are known at full pace for the project's own robots, which
+    /// `robot_toml`, the text of the robot's file, identifies.
     pub fn compute(
-        robot: &Robot,
-        pace_percent: u8,
+        robot_toml: &str,
         setup: Setup,
         videos: &'a [NamedVideo],
         gaits: &'a Gaits<'a>,
@@ -341,31 +343,12 @@ impl<'a> Report<'a> {
             }
         };
         let to_gait_report = |(candidate, walks): &(&'a Candidate, Vec<&MeasuredWalk<'a>>)| {
-            GaitReport::compute(robot, pace_percent, gaits, candidate, walks)
+            GaitReport::compute(robot_toml, gaits, candidate, walks)
         };
         Self {
             videos: videos.iter().map(to_video_report).collect(),
             gaits: walks_by_gait.iter().map(to_gait_report).collect(),
         }
-    }
-
-    /// Adds the movements according to MuJoCo, which are known at full pace for the project's own robots.
-    pub fn with_mujoco(mut self, robot_toml: &str) -> Self {
-        let gaits = self.gaits.iter_mut();
-        for gait in gaits.filter(|gait| gait.pace_percent == 100) {
-            gait.mujoco = find_mujoco_movement(robot_toml, gait.name);
-        }
-        self
-    }
-
-    /// Adds the ranges of the predictions, which takes a second for each gait.
-    pub fn with_ranges(mut self, robot: &Robot) -> Self {
-        for report in &mut self.gaits {
-            let gait = robot.gait(report.name);
-            let pace = f64::from(report.pace_percent) / 100.0;
-            report.prediction_range = gait.map(|gait| PredictionRange::compute(robot, gait, pace));
-        }
-        self
     }
 
     /// Formats the report as tables.

@@ -99,29 +99,30 @@ fn build_body(lizard: &Lizard, solution: &Solution) -> Mechanism {
     const CRANK_LINKS: [usize; 4] = [1, 2, 3, 4];
     let tips = solution.crank_tips();
     let shafts = lizard.shafts();
-    let pin_joint = |first: usize, second: usize, point: Vector| Joint {
-        links: [first, second],
+    let pin_joint = |links: [usize; 2], point: Vector| Joint {
+        links,
         kind: JointKind::Revolute(point),
     };
-    let shaft_joints = (0..4).map(|i| pin_joint(0, CRANK_LINKS[i], shafts[i]));
+    let shaft_joints = (0..4).map(|i| pin_joint([0, CRANK_LINKS[i]], shafts[i]));
     let mut joints: Vec<Joint> = shaft_joints.collect();
     // Head couplers 5, 6; tail couplers 7 (left), 8 (right).
-    joints.push(pin_joint(CRANK_LINKS[0], 5, tips[0]));
-    joints.push(pin_joint(CRANK_LINKS[1], 6, tips[1]));
-    joints.push(pin_joint(5, 6, solution.head_point()));
-    joints.push(pin_joint(CRANK_LINKS[3], 7, tips[3]));
-    joints.push(pin_joint(CRANK_LINKS[2], 8, tips[2]));
-    joints.push(pin_joint(7, 8, solution.tail_point()));
+    joints.push(pin_joint([CRANK_LINKS[0], 5], tips[0]));
+    joints.push(pin_joint([CRANK_LINKS[1], 6], tips[1]));
+    joints.push(pin_joint([5, 6], solution.head_point()));
+    joints.push(pin_joint([CRANK_LINKS[3], 7], tips[3]));
+    joints.push(pin_joint([CRANK_LINKS[2], 8], tips[2]));
+    joints.push(pin_joint([7, 8], solution.tail_point()));
     // Slider halves: left rear 9, front 10; right rear 11, front 12.
     for (side, halves) in Side::ALL.into_iter().zip([[9, 10], [11, 12]]) {
         let ([front, rear], slider) = (side.servos(), solution.side(side));
         let [rear_tip, front_tip] =
             [slider.rear_tip, slider.front_tip].map(|tip| shafts[rear] + tip);
-        joints.push(pin_joint(CRANK_LINKS[rear], halves[0], rear_tip));
-        joints.push(pin_joint(CRANK_LINKS[front], halves[1], front_tip));
+        joints.push(pin_joint([CRANK_LINKS[rear], halves[0]], rear_tip));
+        joints.push(pin_joint([CRANK_LINKS[front], halves[1]], front_tip));
+        let direction = slider.span * (1.0 / slider.d);
         joints.push(Joint {
             links: halves,
-            kind: JointKind::Prismatic(rear_tip, slider.span * (1.0 / slider.d)),
+            kind: JointKind::Prismatic(rear_tip, direction),
         });
     }
     Mechanism {

@@ -77,10 +77,11 @@ pub struct Item {
 
 impl Item {
     fn printed(part: &Part) -> Self {
-        let grams = match part.is_flexible {
-            true => PAD_DENSITY * part.volume(),
-            false => PRINTED_DENSITY * part.volume(),
+        let density = match part.is_flexible {
+            true => PAD_DENSITY,
+            false => PRINTED_DENSITY,
         };
+        let grams = density * part.volume();
         Self {
             hours: Some(HOURS_PER_PIECE + HOURS_PER_GRAM * grams),
             price: None,
@@ -141,62 +142,41 @@ pub struct Bill {
     battery_space: [f64; 3],
 }
 
-/// Returns the text of the bill's row for a bought body, and the body's mass, g. The text is empty for a body that is
-/// printed or sold as a part of another body.
-fn row_text_and_grams(
-    body: &Body,
-    assembly: &Assembly,
-    spring_effect: Option<&SpringEffect>,
-) -> (String, f64) {
-    let parts = assembly.robot().parts();
+/// Returns the text of the bill's row for a bought body; empty for a body that is printed or sold as a part of another
+/// body.
+fn format_row(body: &Body, parts: &Parts, spring_effect: Option<&SpringEffect>) -> String {
     let diameter = parts.screw.diameter;
-    let volume = || compute_volume(&body.prisms);
-    let screw_row = |length: f64, head: &str| {
-        let text = format!("screw M{diameter} x {length}, {head}");
-        (text, SCREW_HEAD_GRAMS + SCREW_GRAMS_PER_MM * length)
-    };
     match body.kind {
-        Kind::Printed => (String::new(), PRINTED_DENSITY * volume()),
-        Kind::Servo => (
-            "servo SG-90 with its horn and screws".to_owned(),
-            SERVO_GRAMS,
-        ),
-        Kind::Horn => (String::new(), HORN_GRAMS),
-        Kind::Screw(length) => screw_row(length, "button head (ISO 7380)"),
-        Kind::HexScrew(length) => screw_row(length, "hexagon head (ISO 4017)"),
-        Kind::ServoScrew => (String::new(), SERVO_SCREW_GRAMS),
+        Kind::Servo => "servo SG-90 with its horn and screws".to_owned(),
+        Kind::Screw(length) => format!("screw M{diameter} x {length}, button head (ISO 7380)"),
+        Kind::HexScrew(length) => format!("screw M{diameter} x {length}, hexagon head (ISO 4017)"),
         Kind::HornScrew(length) => {
             let size = format!("1.7 to 2 mm thick, exactly {length} mm long");
-            let text = format!("self-tapping screw, {size}, for the horns");
-            (text, HORN_SCREW_GRAMS)
+            format!("self-tapping screw, {size}, for the horns")
         }
-        Kind::Lead => (String::new(), 0.0),
-        Kind::Fitting(fitting) => (fitting.format_bill_row(), fitting.spec().grams),
-        Kind::Pad => (String::new(), PAD_DENSITY * volume()),
-        Kind::Nut => (format!("lock nut M{diameter} (DIN 985)"), NUT_GRAMS),
+        Kind::Fitting(fitting) => fitting.format_bill_row(),
+        Kind::Nut => format!("lock nut M{diameter} (DIN 985)"),
         Kind::Standoff(length) => {
-            let text = format!("standoff M{diameter}, {length} mm, thread in both ends");
-            (text, STANDOFF_GRAMS_PER_MM * length)
+            format!("standoff M{diameter}, {length} mm, thread in both ends")
         }
         Kind::Spring => {
             let spring = &parts.spring;
             let (wire, outer) = (spring.wire_diameter, spring.outer_diameter);
             let length = spring.free_length;
-            let coil_text =
-                format!("wire {wire} mm, coil {outer} mm, {length} mm inside its hooks");
             let pull_text = spring_effect.map_or(String::new(), |effect| {
                 let (force, length) = (effect.preload_force, effect.installed_length);
                 format!(", {force:.1} N at {length:.1} mm")
             });
-            let text = format!("tension spring, {coil_text}{pull_text}");
-            (text, spring_grams(spring))
+            format!(
+                "tension spring, wire {wire} mm, coil {outer} mm, {length} mm inside its hooks{pull_text}"
+            )
         }
-        Kind::Board => ("Arduino UNO".to_owned(), BOARD_GRAMS),
+        Kind::Board => "Arduino UNO".to_owned(),
         Kind::Battery => {
             let [x, y, z] = parts.battery;
-            let text = format!("battery, two lithium cells, at most {x} x {y} x {z} mm");
-            (text, BATTERY_DENSITY * x * y * z)
+            format!("battery, two lithium cells, at most {x} x {y} x {z} mm")
         }
+        Kind::Printed | Kind::Pad | Kind::Horn | Kind::ServoScrew | Kind::Lead => String::new(),
     }
 }
 
@@ -220,7 +200,28 @@ pub(crate) fn spring_grams(coil: &Coil) -> f64 {
 
 /// Mass of a body, g.
 pub(crate) fn body_grams(body: &Body, assembly: &Assembly) -> f64 {
-    row_text_and_grams(body, assembly, None).1
+    let parts = assembly.robot().parts();
+    match body.kind {
+        Kind::Printed => PRINTED_DENSITY * compute_volume(&body.prisms),
+        Kind::Pad => PAD_DENSITY * compute_volume(&body.prisms),
+        Kind::Servo => SERVO_GRAMS,
+        Kind::Horn => HORN_GRAMS,
+        Kind::Screw(length) | Kind::HexScrew(length) => {
+            SCREW_HEAD_GRAMS + SCREW_GRAMS_PER_MM * length
+        }
+        Kind::ServoScrew => SERVO_SCREW_GRAMS,
+        Kind::HornScrew(_) => HORN_SCREW_GRAMS,
+        Kind::Lead => 0.0,
+        Kind::Fitting(fitting) => fitting.spec().grams,
+        Kind::Nut => NUT_GRAMS,
+        Kind::Standoff(length) => STANDOFF_GRAMS_PER_MM * length,
+        Kind::Spring => spring_grams(&parts.spring),
+        Kind::Board => BOARD_GRAMS,
+        Kind::Battery => {
+            let [x, y, z] = parts.battery;
+            BATTERY_DENSITY * x * y * z
+        }
+    }
 }
 
 /// Makes the row for the pads' strips with a grain; `None` if the pads are plain.
@@ -240,21 +241,23 @@ fn make_strip_item(parts: &Parts) -> Option<Item> {
 fn list_input_items(robot: &Robot) -> Vec<Item> {
     let has_input = |name: &str| robot.inputs().named_pins().any(|(input, _)| input == name);
     let rows = INPUT_ITEMS.into_iter().filter(|(name, _)| has_input(name));
-    let rows = rows.map(|(_, row)| Item::unmodelled(row));
-    rows.chain(make_strip_item(robot.parts())).collect()
+    let items = rows.map(|(_, row)| Item::unmodelled(row));
+    items.chain(make_strip_item(robot.parts())).collect()
 }
 
 impl Bill {
     /// Computes the bill of materials of a robot, with its centre of mass at `pose`.
     pub fn compute(assembly: &Assembly, parts: &[Part], pose: &Solution) -> Self {
         let spring_effect = SpringEffect::compute(assembly);
-        let mut bought_rows: BTreeMap<String, (usize, f64, PriceClass)> = BTreeMap::new();
+        let mut items_by_name: BTreeMap<String, Item> = BTreeMap::new();
         let (mut grams, mut moment) = (0.0, [0.0; 3]);
         for body in assembly.bodies() {
-            let (text, body_mass) = row_text_and_grams(body, assembly, spring_effect.as_ref());
-            if !text.is_empty() {
-                let row = bought_rows.entry(text);
-                row.or_insert((0, body_mass, price_class(body.kind))).0 += 1;
+            let name = format_row(body, assembly.robot().parts(), spring_effect.as_ref());
+            let body_mass = body_grams(body, assembly);
+            if !name.is_empty() {
+                let price = price_class(body.kind);
+                let new_item = Item::bought(0, name.clone(), body_mass, price);
+                items_by_name.entry(name).or_insert(new_item).count += 1;
             }
             let [x, y, z] = compute_centroid(&body.prisms);
             let position = assembly.placement(body.mount, pose).map(Vector::new(x, y));
@@ -268,11 +271,9 @@ impl Bill {
             let listed_parts = parts.filter(|part| part.replaces.is_some() == is_alternative);
             listed_parts.map(Item::printed).collect()
         };
-        let to_item = |(text, (count, grams, price))| Item::bought(count, text, grams, price);
-        let bought = bought_rows.into_iter().map(to_item);
         let unplaced_items = UNPLACED_ITEMS.map(Item::unmodelled);
         grams += unplaced_items.iter().map(Item::total_grams).sum::<f64>();
-        let bought: Vec<_> = bought.chain(unplaced_items).collect();
+        let bought: Vec<_> = items_by_name.into_values().chain(unplaced_items).collect();
         Self {
             printed: list_items(false),
             alternatives: list_items(true),
@@ -332,12 +333,12 @@ impl fmt::Display for Bill {
             let hours = item.hours.unwrap_or_default();
             writeln!(f, "| {count} | {name} | {grams:.1} | {hours:.2} |")?;
         }
+        let hours = self.printing_hours();
         writeln!(
             f,
-            "\nAbout {:.0} hours on a printer like an Ender 3, in layers of 0.2 mm with 30 % infill.",
-            self.printing_hours()
+            "\nAbout {hours:.0} hours on a printer like an Ender 3, in layers of 0.2 mm with 30 % infill.\n\n\
+             {PADS_TEXT}"
         )?;
-        writeln!(f, "\n{PADS_TEXT}")?;
         let (leg_text, kind) = match self.spring_effect {
             Some(_) => ("without springs", "rigid"),
             None => ("with springs", "strut"),
@@ -350,10 +351,11 @@ impl fmt::Display for Bill {
                  `kind = \"{kind}\"` under `[leg.drive]` in robot.toml, this guide describes such legs."
             )?;
         }
-        writeln!(f, "\nTo buy:\n\n{}", format_buying_table(&self.bought))?;
-        writeln!(f, "{}\n\n{SERVOS_TEXT}", self.format_prices())?;
-        let rows = format_buying_table(&self.radio);
-        writeln!(f, "\nOptional, to drive the robot by radio:\n\n{rows}")?;
+        let bought = format_buying_table(&self.bought);
+        let radio = format_buying_table(&self.radio);
+        let prices = self.format_prices();
+        writeln!(f, "\nTo buy:\n\n{bought}\n{prices}\n\n{SERVOS_TEXT}")?;
+        writeln!(f, "\nOptional, to drive the robot by radio:\n\n{radio}")?;
         if !self.inputs.is_empty() {
             let rows = format_buying_table(&self.inputs);
             writeln!(
@@ -361,33 +363,26 @@ impl fmt::Display for Bill {
                 "Optional, for the inputs and strips in robot.toml:\n\n{rows}"
             )?;
         }
+        let places = format_mounting_table(self.battery_space);
+        let centre = self.describe_centre();
+        let (grams, height) = (self.grams, self.centre_of_mass[2]);
         writeln!(
             f,
-            "Places on the robot, and products that fit there:\n\n{}",
-            format_mounting_table(self.battery_space)
+            "Places on the robot, and products that fit there:\n\n{places}\n\nThe robot weighs about {grams:.0} g; its \
+             centre of mass is {centre}, {height:.1} mm above the plate's top.\n"
         )?;
-        writeln!(
-            f,
-            "\nThe robot weighs about {:.0} g; its centre of mass is {}, {:.1} mm above the plate's top.\n",
-            self.grams,
-            self.describe_centre(),
-            self.centre_of_mass[2]
-        )?;
-        let drive = match &self.spring_effect {
+        let (drive_text, drive_toml) = match &self.spring_effect {
             Some(effect) => {
-                write!(f, "{effect}")?;
                 let (force, rate) = (effect.preload_force, effect.spring_rate);
-                format!("kind = \"strut\"\nforce = {force:.2}\nrate = {rate:.3}")
+                let toml = format!("kind = \"strut\"\nforce = {force:.2}\nrate = {rate:.3}");
+                (effect.to_string(), toml)
             }
-            None => {
-                writeln!(f, "{RIGID_TEXT}")?;
-                "kind = \"rigid\"".to_owned()
-            }
+            None => (format!("{RIGID_TEXT}\n"), "kind = \"rigid\"".to_owned()),
         };
-        let body = self.format_body_toml();
+        let body_toml = self.format_body_toml();
         writeln!(
             f,
-            "\nIn robot.toml:\n\n```toml\n[leg.drive]\n{drive}\n\n{body}```"
+            "{drive_text}\nIn robot.toml:\n\n```toml\n[leg.drive]\n{drive_toml}\n\n{body_toml}```"
         )
     }
 }

@@ -65,29 +65,23 @@ impl BuildError {
     /// The parts that collide or may collide; `None` if the error has another reason.
     #[must_use]
     pub fn colliding_pair(&self) -> Option<CollidingPair> {
-        match self {
-            Self::Clash(Clash::Overlap(clearance) | Clash::Narrow(clearance)) => {
-                Some(CollidingPair {
-                    first: clearance.first.clone(),
-                    second: clearance.second.clone(),
-                    mm: clearance.mm,
-                    pose: Some(clearance.pose),
-                })
+        let (first, second, mm, pose) = match self {
+            Self::Clash(Clash::Overlap(pair) | Clash::Narrow(pair)) => {
+                (&pair.first, &pair.second, pair.mm, Some(pair.pose))
             }
-            Self::Clash(Clash::Unproved(pair)) => Some(CollidingPair {
-                first: pair.first.clone(),
-                second: pair.second.clone(),
-                mm: pair.lower_bound,
-                pose: pair.unproved_angles,
-            }),
-            Self::OverlapOnMount { first, second, mm } => Some(CollidingPair {
-                first: first.clone(),
-                second: second.clone(),
-                mm: -mm,
-                pose: None,
-            }),
-            Self::Dimension(_) | Self::Blocked(_) | Self::OpenSurface(_) => None,
-        }
+            Self::Clash(Clash::Unproved(pair)) => {
+                let (mm, angles) = (pair.lower_bound, pair.unproved_angles);
+                (&pair.first, &pair.second, mm, angles)
+            }
+            Self::OverlapOnMount { first, second, mm } => (first, second, -mm, None),
+            Self::Dimension(_) | Self::Blocked(_) | Self::OpenSurface(_) => return None,
+        };
+        Some(CollidingPair {
+            first: first.clone(),
+            second: second.clone(),
+            mm,
+            pose,
+        })
     }
 }
 

@@ -68,7 +68,8 @@ impl Part {
 
     /// Finds the centres of the bridged holes, which are drilled later, in the frame of the printed part, mm.
     pub fn find_bridged_holes(&self) -> Vec<Vector> {
-        roof::find_unsupported_holes(&self.prisms)
+        let holes = roof::find_unsupported_holes(&self.prisms).into_iter();
+        holes.map(|(hole, _)| hole.middle()).collect()
     }
 
     /// Computes the rigid transform from the printed part to the position of a body, in the body's frame.
@@ -231,23 +232,20 @@ fn compute_print_frame(body: &Body) -> Placement {
 
 /// True if two parts' layers are equal except for rounding.
 fn are_equal_layers(a: &[Prism], b: &[Prism]) -> bool {
-    let are_near = |a: f64, b: f64| (a - b).abs() < 1e-9;
-    let are_near_pairs = |a: [f64; 2], b: [f64; 2]| are_near(a[0], b[0]) && are_near(a[1], b[1]);
-    let have_equal_points = |a: &Shape, b: &Shape| {
-        a.points.len() == b.points.len()
-            && zip(&a.points, &b.points).all(|(a, b)| are_near(a.x, b.x) && are_near(a.y, b.y))
+    fn all_equal<T>(a: &[T], b: &[T], are_equal: impl Fn(&T, &T) -> bool) -> bool {
+        a.len() == b.len() && zip(a, b).all(|(a, b)| are_equal(a, b))
+    }
+    let are_near = |a: &f64, b: &f64| (a - b).abs() < 1e-9;
+    let are_near_points = |a: &Vector, b: &Vector| are_near(&a.x, &b.x) && are_near(&a.y, &b.y);
+    let are_equal_shapes = |a: &Shape, b: &Shape| {
+        are_near(&a.radius, &b.radius) && all_equal(&a.points, &b.points, are_near_points)
     };
-    let are_equal_shapes = |a: &[Shape], b: &[Shape]| {
-        a.len() == b.len()
-            && zip(a, b).all(|(a, b)| are_near(a.radius, b.radius) && have_equal_points(a, b))
-    };
-    a.len() == b.len()
-        && zip(a, b).all(|(a, b)| {
-            are_near_pairs(a.z, b.z)
-                && are_near_pairs(a.insets, b.insets)
-                && are_equal_shapes(&a.filled_shapes, &b.filled_shapes)
-                && are_equal_shapes(&a.cut_shapes, &b.cut_shapes)
-        })
+    all_equal(a, b, |a, b| {
+        all_equal(&a.z, &b.z, are_near)
+            && all_equal(&a.insets, &b.insets, are_near)
+            && all_equal(&a.filled_shapes, &b.filled_shapes, are_equal_shapes)
+            && all_equal(&a.cut_shapes, &b.cut_shapes, are_equal_shapes)
+    })
 }
 
 /// Joins the names of several bodies: `link A1 A3`; only the noun if there are four; the first name if the nouns

@@ -104,16 +104,3 @@ pub fn widest_margin_band(robot: &Robot) -> f64 {
     let bands = End::ALL.map(|end| compute_bands(robot, end)[0]);
     bands.into_iter().fold(MARGIN_BAND, f64::max)
 }
-
-/// The number of rows to check: one for each position of the first servo of each end and side.
-pub fn row_count(guard: &CoreRobot) -> u64 {
-    let count_positions = |servo: usize| {
-        let calibration = guard.calibration()[servo];
-        (i32::from(calibration.travel_max.0) - i32::from(calibration.travel_min.0) + 1) as u64
-    };
-    let first_servos = End::ALL
-        .map(|end| end.servos()[0])
-        .into_iter()
-        .chain(Side::ALL.map(|side| side.servos()[0]));
-    first_servos.map(count_positions).sum()
-}

@@ -1,5 +1,6 @@
 //! The proof of a robot's guard: the findings for all parts of the robot.
 
+use lizard_kinematics::{End, Side};
 use lizard_robot::{CoreRobot, Robot};
 use serde::Serialize;
 
@@ -42,9 +43,18 @@ impl Proof {
         }
     }
 
-    /// The number of rows that [`Proof::compute`] compares.
+    /// The number of rows that [`Proof::compute`] compares: one for each position of the first servo of each end and
+    /// side.
     pub fn row_count(guard: &CoreRobot) -> u64 {
-        guard_comparison::row_count(guard)
+        let count_positions = |servo: usize| {
+            let calibration = guard.calibration()[servo];
+            (i32::from(calibration.travel_max.0) - i32::from(calibration.travel_min.0) + 1) as u64
+        };
+        let first_servos = End::ALL
+            .map(|end| end.servos()[0])
+            .into_iter()
+            .chain(Side::ALL.map(|side| side.servos()[0]));
+        first_servos.map(count_positions).sum()
     }
 
     /// The number of pairs in cells of the robot's maps; the firmware accepts their poses without computing them.

@@ -2,7 +2,7 @@
 
 use lizard_host::flash::image_source;
 use lizard_kinematics::{Check, End, Vector};
-use lizard_parts::{Assembly, Scene, format_mjcf};
+use lizard_parts::{Assembly, Pieces, Scene};
 use lizard_robot::{CheckedGait, Error, violations};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::{PyKeyError, PyValueError};
@@ -179,10 +179,7 @@ impl Robot {
 
     /// Builds the image for a board as Intel HEX: the firmware with this robot, or the robot alone.
     fn image(&self, py: Python<'_>, only_robot: bool) -> PyResult<String> {
-        let image = py.detach(|| match only_robot {
-            true => image_source::build_robot_image(&self.0),
-            false => image_source::build_image(&self.0),
-        });
+        let image = py.detach(|| image_source::build_image(&self.0, only_robot));
         image.map(|image| image.to_hex()).map_err(to_value_error)
     }
 
@@ -197,7 +194,8 @@ impl Robot {
                 has_shapes: shapes,
                 ..Scene::for_assembly(&assembly)
             };
-            format_mjcf(&assembly, &neutral, &scene).map_err(to_value_error)
+            let pieces = Pieces::compute(&assembly, &scene).map_err(to_value_error)?;
+            Ok(pieces.format_mjcf(&neutral, &scene))
         })
     }
 }

@@ -11,7 +11,7 @@ use lizard_core::numbers::gaits::MAX_NAME_BYTES;
 use toml::de::DeTable;
 
 use crate::config::servo::SERVO_NAMES;
-use crate::file::{Error, ReadResult, Section, UnlocatedError, parse};
+use crate::file::{Error, ReadResult, Section, parse, read_for_each};
 
 /// The value of the key `format`. The number is incremented when the meaning of a key changes.
 const FORMAT_VERSION: &str = "lizard calibration 1";
@@ -106,10 +106,10 @@ impl ServoSettings {
     /// Reads the table of a servo in a calibration file.
     fn from_section(section: &Section) -> ReadResult<Self> {
         let read_number = |key| {
-            let value = section.number(key, -360.0, 360.0, "deg")?;
+            let value = section.number(key, (-360.0, 360.0), "deg")?;
             require_two_decimals(section, key, value)
         };
-        let limit: [f64; 2] = section.numbers("limit", -360.0, 360.0, "deg")?;
+        let limit: [f64; 2] = section.numbers("limit", (-360.0, 360.0), "deg")?;
         for angle in limit {
             require_two_decimals(section, "limit", angle)?;
         }
@@ -231,27 +231,25 @@ impl Calibration {
             let problem = format!(
                 "must be \"{FORMAT_VERSION}\": this is not a calibration file of a supported version"
             );
-            return Err(UnlocatedError::new("format", problem));
+            return Err(Error::new("format", problem));
         }
         let root = Section::root(table, &["format", "boot", "deadman", "servo"])?;
         let boot = root.text("boot")?;
         if !is_gait_name(boot) {
             return Err(root.error("boot", "is not the name of a gait"));
         }
-        let deadman = root.number("deadman", 0.0, f64::from(MAX_DEADMAN_MS), "ms")?;
+        let deadman = root.number("deadman", (0.0, f64::from(MAX_DEADMAN_MS)), "ms")?;
         if deadman.fract() != 0.0 {
             return Err(root.error("deadman", "must be a whole number of ms"));
         }
         let servos = root.section("servo", &SERVO_NAMES)?;
-        let read_servo = |name| {
-            let keys = ["trim", "limit", "dir", "scale"];
-            ServoSettings::from_section(&servos.section(name, &keys)?)
-        };
-        let [a1, a2, a3, a4] = SERVO_NAMES.map(read_servo);
         Ok(Self {
             boot: boot.to_owned(),
             deadman: deadman as u16,
-            servos: [a1?, a2?, a3?, a4?],
+            servos: read_for_each(SERVO_NAMES, |name| {
+                let keys = ["trim", "limit", "dir", "scale"];
+                ServoSettings::from_section(&servos.section(name, &keys)?)
+            })?,
         })
     }
 }

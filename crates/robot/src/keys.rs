@@ -111,10 +111,8 @@ fn read_reference_tables() -> Vec<(&'static str, &'static str, Vec<KeyLine>)> {
     let mut tables: Vec<(_, _, Vec<KeyLine>)> = Vec::new();
     let lines = include_str!("keys.txt").lines();
     for line in lines.filter(|line| !line.is_empty() && !line.starts_with("# ")) {
-        if let Some((name, meaning)) = line
-            .strip_prefix('[')
-            .and_then(|line| line.split_once("] "))
-        {
+        let header = line.strip_prefix('[');
+        if let Some((name, meaning)) = header.and_then(|header| header.split_once("] ")) {
             tables.push((name, meaning, Vec::new()));
             continue;
         }
@@ -133,17 +131,12 @@ fn read_reference_tables() -> Vec<(&'static str, &'static str, Vec<KeyLine>)> {
 #[test]
 fn the_reference_lists_exactly_the_keys_that_are_read() {
     let read_keys: BTreeSet<String> = record_keys().into_keys().collect();
-    let listed_keys = read_reference_tables()
-        .into_iter()
-        .flat_map(|(.., lines)| lines);
-    let listed_keys: BTreeSet<String> = listed_keys.map(|line| line.key).collect();
-    assert_eq!(
-        read_keys
-            .symmetric_difference(&listed_keys)
-            .collect::<Vec<_>>(),
-        Vec::<&String>::new(),
-        "src/keys.txt must list exactly the keys that are read"
-    );
+    let tables = read_reference_tables().into_iter();
+    let listed_lines = tables.flat_map(|(.., lines)| lines);
+    let listed_keys: BTreeSet<String> = listed_lines.map(|line| line.key).collect();
+    let differences: Vec<&String> = read_keys.symmetric_difference(&listed_keys).collect();
+    let message = "src/keys.txt must list exactly the keys that are read";
+    assert!(differences.is_empty(), "{message}: {differences:?}");
     assert!(read_keys.len() > 120, "only {} keys", read_keys.len());
 }
 
@@ -209,26 +202,18 @@ fn exactly_the_required_keys_of_the_reference_cannot_be_left_out() {
             },
         };
         for KeyLine { cells, .. } in lines {
-            let end = text[start..]
-                .find("\n[")
-                .map_or(text.len(), |end| start + end);
+            let table_text = text[start..].split("\n[").next().unwrap_or_default();
             let is_key = |line: &&str| line.split('=').next().unwrap_or("").trim() == cells[0];
-            let Some(line) = text[start..end].lines().find(is_key) else {
+            let Some(line) = table_text.lines().find(is_key) else {
                 assert_ne!(cells[2], "required", "{table}.{}", cells[0]);
                 continue;
             };
             let text_without_key =
                 format!("{}{}", &text[..start], text[start..].replacen(line, "", 1));
-            let message = read_definitions(&text_without_key)
-                .err()
-                .map(|error| error.to_string());
-            let is_required = message.is_some_and(|message| message.contains("is missing"));
-            assert_eq!(
-                is_required,
-                cells[2].starts_with("required"),
-                "{table}.{}",
-                cells[0]
-            );
+            let error = read_definitions(&text_without_key).err();
+            let is_required = error.is_some_and(|error| error.problem.contains("is missing"));
+            let is_listed_as_required = cells[2].starts_with("required");
+            assert_eq!(is_required, is_listed_as_required, "{table}.{}", cells[0]);
             checked_key_count += 1;
         }
     }

@@ -15,7 +15,7 @@ use crate::config::servo::FORWARD_TURN_SIGN;
 use crate::config::{
     self, Coil, Inputs, LegPlan, Parts, Plate, RobotConfig, Servo, ServoType, SpeedLimits, Supplies,
 };
-use crate::file::{self, Error, ReadResult, Section, UnlocatedError};
+use crate::file::{self, Error, ReadResult, Section};
 use crate::gaits::{Routine, define, routine};
 use crate::tables::{CellMaps, CoreRobot, Tables, flash, numbers};
 
@@ -48,11 +48,12 @@ impl Robot {
     /// Fails if the file cannot be read, is longer than [`crate::MAX_FILE_BYTES`], is not UTF-8 text, or is invalid.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
-        let file = path.display().to_string();
-        match file::read_text(path) {
-            Ok(text) => Self::parse(&text).map_err(|error| Error { file, ..error }),
-            Err(problem) => Err(UnlocatedError::new("", problem).with_location(file, None)),
-        }
+        let text = file::read_text(path).map_err(|problem| Error::new("", problem));
+        text.and_then(|text| Self::parse(&text))
+            .map_err(|error| Error {
+                file: path.display().to_string(),
+                ..error
+            })
     }
 
     /// Reads and checks the text of a robot.toml. Skips a byte order mark at the start.
@@ -124,7 +125,7 @@ impl Robot {
         let flash = Region::new(&section);
         let core_error = || {
             let message = "the firmware would reject this robot: its numbers are invalid";
-            UnlocatedError::new("", message)
+            Error::new("", message)
         };
         let core_robot =
             lizard_core::numbers::robot::Robot::unchecked(flash).ok_or_else(core_error)?;
@@ -414,22 +415,19 @@ pub(crate) const TOP_LEVEL_KEYS: [&str; 14] = [
 
 /// Reads the robot's name from the top of the file.
 fn read_name<'a>(root: &Section<'a>) -> ReadResult<&'a str> {
-    if !root.has_key("name") {
-        return Ok("robot");
-    }
-    let name = root.text("name")?;
+    let name = root.text_or("name", "robot")?;
     let is_allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     if name.is_empty() || name.len() > MAX_NAME_BYTES || !name.chars().all(is_allowed) {
         let message =
             format!("must be at most {MAX_NAME_BYTES} lower-case letters, digits and dashes");
-        return Err(UnlocatedError::new("name", message));
+        return Err(Error::new("name", message));
     }
     Ok(name)
 }
 
 /// Creates the error for a robot whose section has too many `bytes`. The message states the number of bytes for the
 /// waveforms, the gaits and the routines.
-fn size_error(content: &Content, bytes: usize) -> UnlocatedError {
+fn size_error(content: &Content, bytes: usize) -> Error {
     let excess_bytes = bytes - usize::from(REGION_BYTES);
     let wave_count = content.waves.len();
     let wave_bytes = std::mem::size_of_val(content.waves.as_slice());
@@ -445,5 +443,5 @@ fn size_error(content: &Content, bytes: usize) -> UnlocatedError {
     let message = format!(
         "the robot exceeds the board's limit of {REGION_BYTES} bytes by {excess_bytes}; {wave_count} waveforms take {wave_bytes} bytes, {gait_count} gaits with their names take {gait_bytes}{routine_text}; remove gaits, starting with those whose waveform no other gait uses"
     );
-    UnlocatedError::with_own_subject("gait", message)
+    Error::with_own_subject("gait", message)
 }

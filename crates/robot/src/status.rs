@@ -142,15 +142,11 @@ mod tests {
         let status = Status::parse(WALKING_STATUS).expect("the line is a status");
         assert!(status.is_moving());
         assert_eq!((status.phase, status.pace), (0.35, Some(100.0)));
-        assert_eq!(
-            (status.reset_cause.as_str(), status.reset_count),
-            ("external", 3)
-        );
-        assert_eq!(
-            status.format_line(),
-            "arc-left  A1..A4 138.6 41.4 318.6 221.4  margin 0.81  5.02 V  servos 5.91 V  \
-             no fault  2 bytes lost"
-        );
+        assert_eq!(status.reset_cause, "external");
+        assert_eq!(status.reset_count, 3);
+        let expected = "arc-left  A1..A4 138.6 41.4 318.6 221.4  margin 0.81  5.02 V  servos 5.91 V  \
+             no fault  2 bytes lost";
+        assert_eq!(status.format_line(), expected);
     }
 
     #[test]

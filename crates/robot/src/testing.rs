@@ -70,6 +70,13 @@ pub fn assert_starts_with(text: &str, expected: &str) {
     assert!(text.starts_with(expected), "expected {expected:?}: {text}");
 }
 
+/// Checks that a value differs from the expected value by less than a tolerance.
+#[track_caller]
+pub fn assert_near(actual: f64, expected: f64, tolerance: f64) {
+    let is_near = (actual - expected).abs() < tolerance;
+    assert!(is_near, "{actual}, expected {expected}");
+}
+
 /// Reads a table of texts: one row in each line, whose cells are separated by ` | `.
 pub fn read_table<const N: usize>(table: &str) -> impl Iterator<Item = [&str; N]> {
     let rows = table.trim().lines().map(str::trim_start);

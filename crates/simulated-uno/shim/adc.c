@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "adc.h"
 
+#include <math.h>
+
 enum { /* ADCSRA */
 	ADEN = 1 << 7, ADSC = 1 << 6, ADATE = 1 << 5, ADIF = 1 << 4, ADIE = 1 << 3, ADPS = 7,
 };
@@ -61,7 +63,6 @@ static avr_cycle_count_t finish_conversion(avr_t *avr, avr_cycle_count_t when, v
 {
 	struct adc *adc = param;
 	uint8_t *control = &avr->data[REG_ADCSRA];
-	adc->is_converting = false;
 	if (!adc->is_result_locked)
 		adc->result = adc->sampled_code;
 	*control &= ~ADSC;
@@ -71,16 +72,8 @@ static avr_cycle_count_t finish_conversion(avr_t *avr, avr_cycle_count_t when, v
 	return 0;
 }
 
-static void arm_timers(struct adc *adc)
-{
-	avr_t *avr = adc->avr;
-	avr_cycle_timer_register(avr, chip_cycles_until(avr, adc->sample_at), sample, adc);
-	avr_cycle_timer_register(avr, chip_cycles_until(avr, adc->end_at), finish_conversion, adc);
-}
-
 static void stop_conversion(struct adc *adc)
 {
-	adc->is_converting = false;
 	adc->next_is_first = true;
 	avr_cycle_timer_cancel(adc->avr, sample, adc);
 	avr_cycle_timer_cancel(adc->avr, finish_conversion, adc);
@@ -92,17 +85,15 @@ static void begin_conversion(struct adc *adc, uint64_t edge)
 	uint64_t clock_cycles = cycles_per_clock(avr);
 	uint64_t ready_at = adc->enabled_at > adc->selected_at ? adc->enabled_at : adc->selected_at;
 	uint64_t waited_cycles = edge > ready_at ? edge - ready_at : 0;
-	adc->settled_fraction = waited_cycles < SETTLING_CYCLES
-	                     ? (double)waited_cycles / SETTLING_CYCLES
-	                     : 1.0;
+	adc->settled_fraction = fmin((double)waited_cycles / SETTLING_CYCLES, 1.0);
 	adc->mux = avr->data[REG_ADMUX] & MUX;
 	adc->reference = avr->data[REG_ADMUX] & REFS;
-	adc->is_converting = true;
 	avr->data[REG_ADCSRA] |= ADSC;
-	adc->sample_at = edge + sample_half_clocks[adc->next_is_first] * clock_cycles / 2;
-	adc->end_at = edge + length_half_clocks[adc->next_is_first] * clock_cycles / 2;
+	uint64_t sample_at = edge + sample_half_clocks[adc->next_is_first] * clock_cycles / 2;
+	uint64_t end_at = edge + length_half_clocks[adc->next_is_first] * clock_cycles / 2;
 	adc->next_is_first = false;
-	arm_timers(adc);
+	chip_call_at(avr, sample_at, sample, adc);
+	chip_call_at(avr, end_at, finish_conversion, adc);
 }
 
 /* "The conversion starts at the following rising edge of the ADC clock cycle";
@@ -116,11 +107,10 @@ static uint64_t next_edge(const struct adc *adc, uint64_t cycle)
 static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
 	struct adc *adc = param;
-	uint64_t cycle = instruction_effect_cycle(adc->instruction);
+	uint64_t cycle = instruction_effect_cycle(adc->interrupts->instruction);
 	uint8_t old = avr->data[address];
 	uint8_t control = value & (ADEN | ADATE | ADIE | ADPS);
-	control |= old & ADIF & ~value;
-	control |= adc->is_converting ? ADSC : 0;
+	control |= (old & ADIF & ~value) | (old & ADSC);
 	if (!(control & ADEN)) {
 		stop_conversion(adc);
 		control &= ~ADSC;
@@ -130,7 +120,7 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 	avr->data[address] = control;
 	if (!(control & ADIF))
 		adc->stock->adc.pending = 0; /* a conversion that ends in this cycle sets ADIF again */
-	if ((control & ADEN) && (value & ADSC) && !adc->is_converting)
+	if ((control & ADEN) && (value & ADSC) && !(control & ADSC))
 		begin_conversion(adc, next_edge(adc, cycle));
 	interrupts_request_check(adc->interrupts);
 }
@@ -141,7 +131,7 @@ static void write_channel(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 	uint8_t old = avr->data[address] & MUX;
 	if (old != (value & MUX)) {
 		adc->previous_mv = channel_mv(adc, old);
-		adc->selected_at = instruction_effect_cycle(adc->instruction);
+		adc->selected_at = instruction_effect_cycle(adc->interrupts->instruction);
 	}
 	avr->data[address] = value & (REFS | ADLAR | MUX);
 }
@@ -170,22 +160,15 @@ void adc_attach(struct adc *adc, avr_t *avr)
 	};
 }
 
-void adc_correct(struct adc *adc, const struct instruction *instruction,
-                 struct interrupts *interrupts, const struct supply *supply)
+void adc_correct(struct adc *adc, struct interrupts *interrupts, const struct supply *supply)
 {
 	avr_t *avr = adc->avr;
-	adc->instruction = instruction;
 	adc->interrupts = interrupts;
 	adc->supply = supply;
-	hook_write(avr, REG_ADCSRA, write_control, adc);
-	hook_read(avr, REG_ADCSRA, NULL, NULL);
-	hook_write(avr, REG_ADMUX, write_channel, adc);
-	hook_read(avr, REG_ADMUX, NULL, NULL);
-	const uint16_t result_registers[2] = { REG_ADCL, REG_ADCH };
-	for (int i = 0; i < 2; i++) {
-		hook_read(avr, result_registers[i], read_result, adc);
-		hook_write(avr, result_registers[i], ignore_write, adc);
-	}
+	hook_register(avr, REG_ADCSRA, NULL, write_control, adc);
+	hook_register(avr, REG_ADMUX, NULL, write_channel, adc);
+	hook_register(avr, REG_ADCL, read_result, ignore_write, adc);
+	hook_register(avr, REG_ADCH, read_result, ignore_write, adc);
 }
 
 void adc_set_pin(struct adc *adc, uint8_t channel, uint16_t mv)

@@ -11,7 +11,6 @@
 
 #include <simavr/avr_adc.h>
 
-#include "instruction.h"
 #include "interrupts.h"
 #include "supply.h"
 
@@ -19,7 +18,6 @@
 
 struct adc {
 	avr_t *avr;
-	const struct instruction *instruction;
 	struct interrupts *interrupts;
 	const struct supply *supply;
 	avr_adc_t *stock;               /* simavr's ADC, for its interrupt vector */
@@ -28,14 +26,11 @@ struct adc {
 	uint64_t enabled_at;            /* cycle at which ADEN was set */
 	uint64_t selected_at;           /* cycle at which the channel was selected */
 	double previous_mv;             /* voltage of the previously selected channel */
-	bool is_converting;             /* a conversion is in progress */
 	bool next_is_first;             /* the next conversion is the first one since ADEN was set */
 	bool is_result_locked;          /* ADCL has been read, but not yet ADCH */
 	uint8_t mux;                    /* channel of the conversion in progress */
 	uint8_t reference;              /* REFS bits of the conversion in progress */
 	double settled_fraction;        /* settling of the bandgap when the conversion began, 0 to 1 */
-	uint64_t sample_at;             /* cycle at which the conversion samples its input */
-	uint64_t end_at;                /* cycle at which the conversion ends */
 	uint16_t sampled_code;          /* result of the conversion in progress, once sampled */
 	uint16_t result;                /* contents of the ADC Data Register, right adjusted */
 };
@@ -43,7 +38,6 @@ struct adc {
 /* Gives adc_set_pin access to simavr's ADC, which is sufficient for the stock fidelity. */
 void adc_attach(struct adc *adc, avr_t *avr);
 /* Replaces simavr's callbacks for the ADC's registers. */
-void adc_correct(struct adc *adc, const struct instruction *instruction,
-                 struct interrupts *interrupts, const struct supply *supply);
+void adc_correct(struct adc *adc, struct interrupts *interrupts, const struct supply *supply);
 void adc_set_pin(struct adc *adc, uint8_t channel, uint16_t mv);
 void adc_reset(struct adc *adc);

@@ -31,7 +31,6 @@ struct uno {
 	uint64_t sleep_cycles;    /* cycles up to avr->cycle in which the CPU slept */
 	uint64_t watchdog_resets; /* number of resets by the watchdog */
 	bool is_powered_off;      /* true from a power cut until the power is restored */
-	bool stops_at_line;       /* true: a run ends when the firmware has sent a line feed */
 	uint16_t data_end;        /* first SRAM address after the firmware's static data */
 	char error_message[256];  /* the last error that simavr logged; empty if none */
 

@@ -1,37 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "call_timer.h"
 
-void call_timer_attach(struct call_timer *timer, const avr_t *avr,
-                       const struct handlers *handlers)
+void call_timer_attach(struct call_timer *timer, const struct handlers *handlers)
 {
 	*timer = (struct call_timer){
-		.avr = avr,
 		.handlers = handlers,
 		.calls.item_size = sizeof(struct call),
 	};
 }
 
-void call_timer_reset(struct call_timer *timer)
-{
-	timer->is_in_call = false;
-}
-
-void call_timer_set(struct call_timer *timer, bool is_enabled, uint32_t entry_address)
-{
-	timer->is_enabled = is_enabled;
-	timer->entry_address = entry_address;
-	timer->is_in_call = false;
-}
-
 void call_timer_check(struct call_timer *timer)
 {
-	const avr_t *avr = timer->avr;
+	const avr_t *avr = timer->handlers->avr;
 	uint16_t sp = avr->data[R_SPL] | avr->data[R_SPH] << 8;
 	if (timer->is_in_call && avr->pc == timer->return_address && sp == timer->stack_pointer + 2) {
 		uint64_t interrupt_cycles =
 			handlers_cycles(timer->handlers) - timer->handler_cycles_at_entry;
-		struct call *call = list_push(&timer->calls);
-		*call = (struct call){ timer->enter_cycle, avr->cycle, interrupt_cycles };
+		list_push(&timer->calls,
+		          &(struct call){ timer->enter_cycle, avr->cycle, interrupt_cycles });
 		timer->is_in_call = false;
 	} else if (!timer->is_in_call && avr->pc == timer->entry_address) {
 		/* The firmware may have set any stack pointer, so the address may wrap. */

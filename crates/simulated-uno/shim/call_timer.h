@@ -14,7 +14,6 @@ struct call {
 };
 
 struct call_timer {
-	const avr_t *avr;
 	const struct handlers *handlers;
 	bool is_enabled;         /* true: simavr must run one instruction at a time */
 	bool is_in_call;         /* true between the entry and the return of a timed call */
@@ -27,10 +26,6 @@ struct call_timer {
 	struct list calls;       /* completed calls: struct call */
 };
 
-void call_timer_attach(struct call_timer *timer, const avr_t *avr,
-                       const struct handlers *handlers);
-void call_timer_reset(struct call_timer *timer);
-/* Starts or stops timing the calls of the function at this byte address. */
-void call_timer_set(struct call_timer *timer, bool is_enabled, uint32_t entry_address);
+void call_timer_attach(struct call_timer *timer, const struct handlers *handlers);
 /* Detects the start and the end of a timed call; must be called before each instruction. */
 void call_timer_check(struct call_timer *timer);

@@ -67,13 +67,13 @@ double uno_supply_mv(const struct uno *uno)
 void uno_ramp_supply(struct uno *uno, double mv, uint64_t cycles)
 {
 	restart_catch_up(uno);
-	supply_ramp(&uno->supply, mv, uno->avr->cycle, cycles);
+	supply_ramp(&uno->supply, mv, cycles);
 }
 
 void uno_set_brown_out(struct uno *uno, double mv)
 {
 	restart_catch_up(uno);
-	supply_set_brown_out(&uno->supply, mv, uno->avr->cycle);
+	supply_set_brown_out(&uno->supply, mv);
 }
 
 void uno_set_bandgap(struct uno *uno, double mv) { uno->adc.bandgap_mv = mv; }
@@ -83,9 +83,9 @@ void uno_set_analog(struct uno *uno, uint8_t channel, uint16_t mv)
 	adc_set_pin(&uno->adc, channel, mv);
 }
 
-void uno_set_contact(struct uno *uno, uint16_t address, uint8_t bit, bool is_closed)
+void uno_set_contact(struct uno *uno, uint8_t number, bool is_closed)
 {
-	contacts_set(&uno->contacts, address, bit, is_closed);
+	contacts_set(&uno->contacts, number, is_closed);
 }
 
 void uno_set_boot_address(struct uno *uno, uint32_t address)

@@ -8,16 +8,14 @@
 
 #include "chip.h"
 
-#define CONTACT_PORT_COUNT 3
-
 struct contacts {
 	/* All arrays are indexed by port: B, C, D. */
-	struct read_hook stock_hooks[CONTACT_PORT_COUNT]; /* simavr's callbacks for the PIN registers */
-	uint8_t contact_bits[CONTACT_PORT_COUNT]; /* pins that have a contact */
-	uint8_t closed_bits[CONTACT_PORT_COUNT];  /* pins whose contact is closed */
+	struct read_hook stock_hooks[CHIP_PORT_COUNT]; /* simavr's callbacks for the PIN registers */
+	uint8_t contact_bits[CHIP_PORT_COUNT]; /* pins that have a contact */
+	uint8_t closed_bits[CHIP_PORT_COUNT];  /* pins whose contact is closed */
 };
 
 void contacts_attach(struct contacts *contacts, avr_t *avr);
-/* Closes or opens the contact at bit `bit` of the port whose PIN register has this data
- * address. The first call for a pin adds the contact. */
-void contacts_set(struct contacts *contacts, uint16_t address, uint8_t bit, bool is_closed);
+/* Closes or opens the contact at the pin with this Arduino number. The first call for a pin adds the
+ * contact. */
+void contacts_set(struct contacts *contacts, uint8_t number, bool is_closed);

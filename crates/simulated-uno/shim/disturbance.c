@@ -3,12 +3,6 @@
 
 #include <simavr/sim_core.h>
 
-void disturbance_attach(struct disturbance *disturbance, avr_t *avr,
-                        const struct handlers *handlers)
-{
-	*disturbance = (struct disturbance){ .avr = avr, .handlers = handlers };
-}
-
 /* True if interrupts have been enabled for at least one instruction. Until then, interrupt_state
  * is negative; simavr does not increment it while the CPU sleeps. */
 static bool accepts_interrupts(const avr_t *avr)

@@ -14,8 +14,6 @@ struct disturbance {
 	uint64_t stalled_until;  /* the main program executes nothing before this cycle */
 };
 
-void disturbance_attach(struct disturbance *disturbance, avr_t *avr,
-                        const struct handlers *handlers);
 /* Serves the foreign interrupt if it is pending and interrupts are enabled: its cycles pass
  * without an instruction, while timers and the serial line continue and set their flags. Must be
  * called before the chip's interrupts are served. */

@@ -14,7 +14,7 @@ static const uint64_t duration_cycles[] = {
 	3400 * CHIP_CYCLES_PER_US, 1800 * CHIP_CYCLES_PER_US, 1800 * CHIP_CYCLES_PER_US,
 };
 
-static struct eeprom_operation *latest_operation(struct eeprom *eeprom)
+static struct eeprom_operation *latest_operation(const struct eeprom *eeprom)
 {
 	struct eeprom_operation *operations = eeprom->operations.items;
 	return &operations[eeprom->operations.count - 1];
@@ -25,18 +25,12 @@ static uint16_t selected_address(const avr_t *avr)
 	return avr->data[REG_EEARL] | (avr->data[REG_EEARH] & 0x03) << 8;
 }
 
-static void set_idle(struct eeprom *eeprom)
-{
-	eeprom->is_busy = false;
-	eeprom->interrupts->eeprom_ready.is_requested = true;
-}
-
 static avr_cycle_count_t finish_operation(avr_t *avr, avr_cycle_count_t when, void *param)
 {
 	struct eeprom *eeprom = param;
 	const struct eeprom_operation *operation = latest_operation(eeprom);
 	eeprom->stock->eeprom[operation->address] = operation->new_value;
-	set_idle(eeprom);
+	eeprom->is_busy = false;
 	avr_raise_interrupt(avr, &eeprom->stock->ready); /* wakes the CPU, if enabled */
 	return 0;
 }
@@ -44,24 +38,25 @@ static avr_cycle_count_t finish_operation(avr_t *avr, avr_cycle_count_t when, vo
 static avr_cycle_count_t cut_power(avr_t *avr, avr_cycle_count_t when, void *param)
 {
 	struct eeprom *eeprom = param;
-	reset_request_power_cut(eeprom->reset);
+	reset_request(eeprom->reset, RESET_POWER_CUT);
 	return 0;
+}
+
+/* The cycle at which this number of quarters of the latest operation is over. An erase-and-write
+ * operation erases until a cycle that the data sheet does not specify; half of the duration is
+ * assumed. */
+static uint64_t end_of_quarters(const struct eeprom *eeprom, unsigned quarters)
+{
+	const struct eeprom_operation *operation = latest_operation(eeprom);
+	return operation->cycle + duration_cycles[operation->mode] * quarters / 4;
 }
 
 static void arm_timers(struct eeprom *eeprom)
 {
 	avr_t *avr = eeprom->avr;
-	avr_cycle_timer_register(avr, chip_cycles_until(avr, eeprom->ends_at), finish_operation, eeprom);
+	chip_call_at(avr, end_of_quarters(eeprom, 4), finish_operation, eeprom);
 	if (eeprom->cut_at)
-		avr_cycle_timer_register(avr, chip_cycles_until(avr, eeprom->cut_at), cut_power,
-		                         eeprom);
-}
-
-/* The cycle at which the erase phase of an erase-and-write operation ends. The data sheet does not
- * specify it; half of the duration is assumed. */
-static uint64_t erase_end(const struct eeprom *eeprom)
-{
-	return eeprom->started_at + (eeprom->ends_at - eeprom->started_at) / 2;
+		chip_call_at(avr, eeprom->cut_at, cut_power, eeprom);
 }
 
 /* Counts this operation for the requested power cut. Returns the cycle of the cut, in the middle of
@@ -76,10 +71,9 @@ static uint64_t take_cut_request(struct eeprom *eeprom, uint8_t mode)
 		return 0;
 	}
 	request->is_pending = false;
-	uint64_t middle = erase_end(eeprom);
-	if (mode == EEPROM_ERASE || mode == EEPROM_WRITE)
-		return middle;
-	return request->in_write ? (middle + eeprom->ends_at) / 2 : (eeprom->started_at + middle) / 2;
+	if (mode != EEPROM_ERASE_WRITE)
+		return end_of_quarters(eeprom, 2);
+	return end_of_quarters(eeprom, request->in_write ? 3 : 1);
 }
 
 static void begin_operation(struct eeprom *eeprom, uint64_t cycle)
@@ -92,28 +86,28 @@ static void begin_operation(struct eeprom *eeprom, uint64_t cycle)
 	uint8_t old_value = eeprom->stock->eeprom[address];
 	uint8_t data = avr->data[REG_EEDR];
 	uint8_t new_value = mode == EEPROM_ERASE ? 0xff : mode == EEPROM_WRITE ? old_value & data : data;
-	struct eeprom_operation *operation = list_push(&eeprom->operations);
-	*operation = (struct eeprom_operation){ cycle, address, mode, old_value, new_value, false };
+	const struct eeprom_operation operation = { cycle, address, mode, old_value, new_value, false };
+	list_push(&eeprom->operations, &operation);
 	eeprom->is_busy = true;
-	eeprom->interrupts->eeprom_ready.is_requested = false;
 	eeprom->written_data = data;
-	eeprom->started_at = cycle;
-	eeprom->ends_at = cycle + duration_cycles[mode];
 	eeprom->cut_at = take_cut_request(eeprom, mode);
-	instruction_halt_cpu(eeprom->instruction, WRITE_HALT_CYCLES);
+	avr->cycle += WRITE_HALT_CYCLES;
 	arm_timers(eeprom);
 }
 
 static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
 	struct eeprom *eeprom = param;
-	uint64_t cycle = instruction_effect_cycle(eeprom->instruction);
-	uint8_t touched = instruction_touched_bits(eeprom->instruction);
+	const struct instruction *instruction = eeprom->interrupts->instruction;
+	uint64_t cycle = instruction_effect_cycle(instruction);
+	uint8_t touched = instruction_touched_bits(instruction);
 	uint8_t ones = value & touched;
 	bool is_armed = cycle <= eeprom->armed_until;
 	uint8_t stored_bits = touched & (EERIE | (eeprom->is_busy ? 0 : EEPM));
 	uint8_t kept_bits = avr->data[address] & (EERIE | EEPM) & ~stored_bits;
 	avr->data[address] = kept_bits | (value & stored_bits);
+	/* Also ends the slice of instructions that simavr runs at once: simavr does not count the
+	 * cycles of a halt in the slice, so timers would be late. */
 	interrupts_request_check(eeprom->interrupts);
 	if (eeprom->is_busy)
 		ones &= EEMPE;
@@ -123,7 +117,7 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 		begin_operation(eeprom, cycle);
 	} else if (ones & EERE) {
 		avr->data[REG_EEDR] = eeprom->stock->eeprom[selected_address(avr)];
-		instruction_halt_cpu(eeprom->instruction, READ_HALT_CYCLES);
+		avr->cycle += READ_HALT_CYCLES;
 	}
 }
 
@@ -156,16 +150,14 @@ void eeprom_attach(struct eeprom *eeprom, avr_t *avr)
 	};
 }
 
-void eeprom_correct(struct eeprom *eeprom, const struct instruction *instruction,
-                    struct interrupts *interrupts, struct reset *reset)
+void eeprom_correct(struct eeprom *eeprom, struct interrupts *interrupts, struct reset *reset)
 {
 	avr_t *avr = eeprom->avr;
-	eeprom->instruction = instruction;
 	eeprom->interrupts = interrupts;
 	eeprom->reset = reset;
-	interrupts->eeprom_ready = (struct level_interrupt){ &eeprom->stock->ready, true };
-	hook_write(avr, REG_EECR, write_control, eeprom);
-	hook_read(avr, REG_EECR, read_control, eeprom);
+	interrupts->eeprom_ready = &eeprom->stock->ready;
+	interrupts->is_eeprom_busy = &eeprom->is_busy;
+	hook_register(avr, REG_EECR, read_control, write_control, eeprom);
 	hook_write(avr, REG_EEARL, write_address, eeprom);
 	hook_write(avr, REG_EEARH, write_address, eeprom);
 }
@@ -189,10 +181,8 @@ void eeprom_tear(struct eeprom *eeprom)
 	avr_t *avr = eeprom->avr;
 	struct eeprom_operation *operation = latest_operation(eeprom);
 	uint8_t ones = eeprom->torn_bits;
-	bool is_erasing = operation->mode == EEPROM_ERASE;
-	if (operation->mode != EEPROM_ERASE && operation->mode != EEPROM_WRITE)
-		is_erasing = avr->cycle < erase_end(eeprom);
-	if (is_erasing)
+	bool is_first_half = avr->cycle < end_of_quarters(eeprom, 2);
+	if (operation->mode == EEPROM_ERASE || (operation->mode == EEPROM_ERASE_WRITE && is_first_half))
 		operation->new_value = operation->old_value | ones;
 	else if (operation->mode == EEPROM_WRITE)
 		operation->new_value = operation->old_value & (eeprom->written_data | ones);
@@ -202,7 +192,7 @@ void eeprom_tear(struct eeprom *eeprom)
 	eeprom->stock->eeprom[operation->address] = operation->new_value;
 	avr_cycle_timer_cancel(avr, finish_operation, eeprom);
 	avr_cycle_timer_cancel(avr, cut_power, eeprom);
-	set_idle(eeprom);
+	eeprom->is_busy = false;
 }
 
 void eeprom_cancel_cut(struct eeprom *eeprom)

@@ -10,7 +10,6 @@
 
 #include <simavr/avr_eeprom.h>
 
-#include "instruction.h"
 #include "interrupts.h"
 #include "list.h"
 #include "reset.h"
@@ -36,14 +35,11 @@ struct eeprom_cut_request {
 
 struct eeprom {
 	avr_t *avr;
-	const struct instruction *instruction;
 	struct interrupts *interrupts;
 	struct reset *reset;
 	avr_eeprom_t *stock;       /* simavr's EEPROM, which keeps the bytes */
 	uint64_t armed_until;      /* last cycle at which setting EEPE starts an operation */
 	bool is_busy;              /* an operation is in progress */
-	uint64_t started_at;       /* cycle at which the operation in progress started */
-	uint64_t ends_at;          /* cycle at which the operation ends */
 	uint64_t cut_at;           /* cycle at which a power cut tears the byte; 0: never */
 	uint8_t written_data;      /* EEDR when the operation started */
 	struct eeprom_cut_request cut_request;
@@ -54,8 +50,7 @@ struct eeprom {
 /* Gives access to simavr's bytes, which is sufficient for the stock fidelity. */
 void eeprom_attach(struct eeprom *eeprom, avr_t *avr);
 /* Replaces simavr's callbacks for the EEPROM's registers. */
-void eeprom_correct(struct eeprom *eeprom, const struct instruction *instruction,
-                    struct interrupts *interrupts, struct reset *reset);
+void eeprom_correct(struct eeprom *eeprom, struct interrupts *interrupts, struct reset *reset);
 /* "If a reset occurs while a write operation is in progress, the write
  * operation will be completed" (8.4.2). */
 void eeprom_reset(struct eeprom *eeprom);

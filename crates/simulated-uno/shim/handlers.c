@@ -29,6 +29,7 @@ static void on_vector(struct avr_irq_t *irq, uint32_t is_running, void *param)
 		if (handlers->depth)
 			handlers->depth--;
 	} else if (vector < CHIP_VECTOR_COUNT && handlers->depth < sizeof handlers->running_vectors) {
+		handlers->vectors[vector].vector = vector;
 		handlers->vectors[vector].entry_count++;
 		handlers->running_vectors[handlers->depth++] = vector;
 	}
@@ -41,9 +42,4 @@ void handlers_attach(struct handlers *handlers, avr_t *avr)
 		avr_irq_register_notify(
 			avr->interrupts.vector[v]->irq + AVR_INT_IRQ_RUNNING, on_vector,
 			handlers);
-}
-
-void handlers_reset(struct handlers *handlers)
-{
-	handlers->depth = 0;
 }

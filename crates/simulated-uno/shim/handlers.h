@@ -7,6 +7,7 @@
 #include "chip.h"
 
 struct vector_stats {
+	uint8_t vector;       /* number of the vector, counted from 0 (reset) */
 	uint64_t entry_count; /* number of times that the interrupt was served */
 	uint64_t cycles;      /* cycles spent in its handler */
 };
@@ -21,6 +22,5 @@ struct handlers {
 };
 
 void handlers_attach(struct handlers *handlers, avr_t *avr);
-void handlers_reset(struct handlers *handlers);
 /* The cycles spent in all handlers so far. */
 uint64_t handlers_cycles(const struct handlers *handlers);

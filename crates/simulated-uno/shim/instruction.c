@@ -39,13 +39,3 @@ uint8_t instruction_touched_bits(const struct instruction *instruction)
 	bool is_bit_instruction = instruction->is_executing && (code & 0xfd00) == 0x9800; /* cbi, sbi */
 	return is_bit_instruction ? 1 << (code & 7) : 0xff;
 }
-
-void instruction_halt_cpu(const struct instruction *instruction, unsigned cycles)
-{
-	instruction->avr->cycle += cycles;
-}
-
-void instruction_end_slice(const struct instruction *instruction)
-{
-	instruction->avr->run_cycle_count = 1;
-}

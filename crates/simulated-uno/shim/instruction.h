@@ -23,10 +23,3 @@ uint8_t instruction_written_bits(const struct instruction *instruction, uint8_t 
 /* The bits of an I/O register that the current instruction can change: one bit for `sbi` and `cbi`,
  * otherwise all bits. */
 uint8_t instruction_touched_bits(const struct instruction *instruction);
-/* Halts the CPU for `cycles` after the current instruction. simavr does not count these cycles in
- * the slice of instructions that it runs at once, so the caller must also end the slice; otherwise
- * timers would be late. */
-void instruction_halt_cpu(const struct instruction *instruction, unsigned cycles);
-/* Ends the slice of instructions that simavr runs at once, so that timers and interrupts are served
- * right after the current instruction. */
-void instruction_end_slice(const struct instruction *instruction);

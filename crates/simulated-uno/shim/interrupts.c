@@ -11,8 +11,8 @@ static bool is_pending(const struct interrupts *interrupts, const avr_int_vector
 	avr_t *avr = interrupts->avr;
 	if (!avr_regbit_get(avr, vector->enable))
 		return false;
-	if (vector == interrupts->eeprom_ready.vector)
-		return interrupts->eeprom_ready.is_requested;
+	if (vector == interrupts->eeprom_ready)
+		return !*interrupts->is_eeprom_busy;
 	return vector->raised.reg ? avr_regbit_get(avr, vector->raised) : vector->pending;
 }
 
@@ -92,7 +92,7 @@ static void write_flags(avr_t *avr, avr_io_addr_t address, uint8_t value, void *
 void interrupts_request_check(struct interrupts *interrupts)
 {
 	interrupts->needs_check = true;
-	instruction_end_slice(interrupts->instruction);
+	interrupts->avr->run_cycle_count = 1; /* simavr returns right after the current instruction */
 }
 
 void interrupts_attach(struct interrupts *interrupts, const struct instruction *instruction)

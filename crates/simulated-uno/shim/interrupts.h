@@ -11,16 +11,12 @@
 
 #include "instruction.h"
 
-/* An interrupt without a flag, which is requested as long as its condition holds. */
-struct level_interrupt {
-	const avr_int_vector_t *vector;
-	bool is_requested; /* the condition holds */
-};
-
 struct interrupts {
 	const struct instruction *instruction;
 	avr_t *avr;
-	struct level_interrupt eeprom_ready;
+	/* EE_READY has no flag: it is requested as long as the EEPROM is not busy. */
+	const avr_int_vector_t *eeprom_ready;
+	const bool *is_eeprom_busy;
 	bool ends_sleep;  /* the next interrupt to be served wakes the CPU */
 	bool needs_check; /* a flag or an enable bit has changed since the last check of all interrupts */
 };

@@ -2,8 +2,9 @@
 #include "list.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-void *list_push(struct list *list)
+void list_push(struct list *list, const void *item)
 {
 	if (list->count == list->capacity) {
 		list->capacity = list->capacity ? list->capacity * 2 : 1024;
@@ -11,7 +12,7 @@ void *list_push(struct list *list)
 		if (!list->items)
 			abort();
 	}
-	return (char *)list->items + list->item_size * list->count++;
+	memcpy((char *)list->items + list->item_size * list->count++, item, list->item_size);
 }
 
 void serial_bytes_init(struct serial_bytes *bytes)
@@ -21,7 +22,6 @@ void serial_bytes_init(struct serial_bytes *bytes)
 
 void serial_bytes_push(struct serial_bytes *bytes, uint64_t cycle, uint8_t byte)
 {
-	struct serial_byte *last = list_push(&bytes->bytes);
-	*last = (struct serial_byte){ cycle, byte };
+	list_push(&bytes->bytes, &(struct serial_byte){ cycle, byte });
 	bytes->has_line_ended |= byte == '\n';
 }

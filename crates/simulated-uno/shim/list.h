@@ -14,8 +14,8 @@ struct list {
 	size_t item_size; /* size of an item, bytes */
 };
 
-/* Appends an uninitialised item and returns its address. Aborts if memory runs out. */
-void *list_push(struct list *list);
+/* Appends a copy of an item of `item_size` bytes. Aborts if memory runs out. */
+void list_push(struct list *list, const void *item);
 
 /* A byte on the serial line, with the cycle at which it was complete. */
 struct serial_byte { uint64_t cycle; uint8_t byte; };

@@ -1,20 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pin_toggle.h"
 
-static const uint16_t pin_registers[3] = { REG_PINB, REG_PINC, REG_PIND };
-
 static void write_pin(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
-	struct pin_toggle *toggle = param;
+	const struct pin_toggle *toggle = param;
+	const struct write_hook *stock_hook = &toggle->stock_hooks[CHIP_PORT_INDEX(address)];
 	uint8_t bits = instruction_written_bits(toggle->instruction, value);
-	for (int i = 0; i < 3; i++)
-		if (pin_registers[i] == address)
-			toggle->stock_hooks[i].callback(avr, address, bits, toggle->stock_hooks[i].param);
+	stock_hook->callback(avr, address, bits, stock_hook->param);
 }
 
 void pin_toggle_attach(struct pin_toggle *toggle, const struct instruction *instruction)
 {
 	toggle->instruction = instruction;
-	for (int i = 0; i < 3; i++)
-		toggle->stock_hooks[i] = hook_write(instruction->avr, pin_registers[i], write_pin, toggle);
+	for (int i = 0; i < CHIP_PORT_COUNT; i++)
+		toggle->stock_hooks[i] =
+			hook_write(instruction->avr, CHIP_PIN_REGISTER(i), write_pin, toggle);
 }

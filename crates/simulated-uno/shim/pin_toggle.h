@@ -9,7 +9,7 @@
 
 struct pin_toggle {
 	const struct instruction *instruction;
-	struct write_hook stock_hooks[3]; /* simavr's callbacks for PINB, PINC and PIND */
+	struct write_hook stock_hooks[CHIP_PORT_COUNT]; /* simavr's callbacks for PINB, PINC and PIND */
 };
 
 void pin_toggle_attach(struct pin_toggle *toggle, const struct instruction *instruction);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "reset.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #define REGISTER_COUNT 32 /* r0 to r31 */
@@ -22,11 +21,8 @@ void reset_attach(struct reset *reset, avr_t *avr, bool follows_data_sheet)
 		.avr = avr,
 		.follows_data_sheet = follows_data_sheet,
 		.noise_state = INITIAL_NOISE_STATE,
-		.initial_sram = calloc(1, avr->ramend + 1),
 		.events.item_size = sizeof(struct reset_event),
 	};
-	if (!reset->initial_sram)
-		abort();
 	if (follows_data_sheet)
 		hook_write(avr, REG_MCUSR, write_mcusr, reset);
 }
@@ -34,26 +30,7 @@ void reset_attach(struct reset *reset, avr_t *avr, bool follows_data_sheet)
 void reset_request(struct reset *reset, enum reset_cause cause)
 {
 	reset->requested_causes |= cause;
-	reset->avr->run_cycle_count = 1;
-}
-
-void reset_request_power_cut(struct reset *reset)
-{
-	reset->is_power_cut_requested = true;
-	reset->avr->run_cycle_count = 1;
-}
-
-void reset_stop_timers(const struct reset *reset)
-{
-	static const uint16_t control_registers[] = {
-		REG_TCCR0B, REG_TCCR1B, REG_TCCR2B, REG_TCCR0A, REG_TCCR1A, REG_TCCR2A,
-	};
-	avr_t *avr = reset->avr;
-	for (size_t i = 0; i < ARRAY_SIZE(control_registers); i++) {
-		avr_io_addr_t io = AVR_DATA_TO_IO(control_registers[i]);
-		if (avr->io[io].w.c)
-			avr->io[io].w.c(avr, control_registers[i], 0, avr->io[io].w.param);
-	}
+	reset->avr->run_cycle_count = 1; /* simavr returns right after the current instruction */
 }
 
 /* Returns the cause that is recorded if several causes occur at once. */
@@ -69,10 +46,8 @@ static uint8_t main_cause(uint8_t causes)
 void reset_record(struct reset *reset, uint8_t causes, uint64_t now)
 {
 	causes &= ~RESET_HOLD;
-	if (causes) {
-		struct reset_event *event = list_push(&reset->events);
-		*event = (struct reset_event){ now, main_cause(causes) };
-	}
+	if (causes)
+		list_push(&reset->events, &(struct reset_event){ now, main_cause(causes) });
 	if (causes & RESET_POWER_ON)
 		reset->mcusr = RESET_POWER_ON;
 	else if (causes && !reset->follows_data_sheet)
@@ -81,11 +56,6 @@ void reset_record(struct reset *reset, uint8_t causes, uint64_t now)
 		reset->mcusr |= causes;
 	if (reset->has_boot_loader)
 		reset->mcusr = 0;
-}
-
-void reset_restore_mcusr(const struct reset *reset)
-{
-	reset->avr->data[REG_MCUSR] = reset->mcusr;
 }
 
 /* Returns the next byte of a xorshift64* generator. */
@@ -100,17 +70,8 @@ static uint8_t next_noise(struct reset *reset)
 void reset_fill_sram(struct reset *reset)
 {
 	avr_t *avr = reset->avr;
-	for (uint32_t address = 0; address <= avr->ramend; address++)
+	for (uint32_t address = 0; address < CHIP_SRAM_END; address++)
 		if (address < REGISTER_COUNT || address >= CHIP_SRAM_START)
 			avr->data[address] = next_noise(reset);
-	memcpy(reset->initial_sram, avr->data, avr->ramend + 1);
-}
-
-uint16_t reset_first_changed(const struct reset *reset, uint16_t from)
-{
-	uint16_t address = from;
-	const avr_t *avr = reset->avr;
-	while (address <= avr->ramend && avr->data[address] == reset->initial_sram[address])
-		address++;
-	return address;
+	memcpy(reset->initial_sram, avr->data, CHIP_SRAM_END);
 }

@@ -14,7 +14,9 @@
 enum reset_cause {
 	RESET_POWER_ON = 1 << 0, RESET_EXTERNAL = 1 << 1, RESET_BROWN_OUT = 1 << 2,
 	RESET_WATCHDOG = 1 << 3,
-	RESET_HOLD = 1 << 7, /* not in MCUSR: the supply is too low and holds the chip in reset */
+	/* Not in MCUSR: */
+	RESET_POWER_CUT = 1 << 6, /* the power is cut */
+	RESET_HOLD = 1 << 7, /* the supply is too low and holds the chip in reset */
 };
 
 struct reset_event { uint64_t cycle; uint8_t cause; };
@@ -24,24 +26,15 @@ struct reset {
 	bool follows_data_sheet;
 	bool has_boot_loader;     /* a boot loader clears MCUSR before the firmware starts */
 	uint8_t requested_causes; /* causes of the requested reset; 0 if none is requested */
-	bool is_power_cut_requested;
 	uint8_t mcusr;            /* MCUSR, which simavr's reset clears */
 	uint64_t noise_state;     /* state of the random generator whose output fills the SRAM */
-	uint8_t *initial_sram;    /* the data space right after power-on */
+	uint8_t initial_sram[CHIP_SRAM_END]; /* the data space right after power-on */
 	struct list events;       /* all resets, including power-on: struct reset_event */
 };
 
 void reset_attach(struct reset *reset, avr_t *avr, bool follows_data_sheet);
 void reset_request(struct reset *reset, enum reset_cause cause);
-void reset_request_power_cut(struct reset *reset);
-/* Stops Timer0, Timer1 and Timer2, which would continue after simavr's reset. */
-void reset_stop_timers(const struct reset *reset);
 /* Records a reset, and adds its causes to `mcusr`. */
 void reset_record(struct reset *reset, uint8_t causes, uint64_t now);
-/* Writes `mcusr` to the register, which simavr's reset has cleared. */
-void reset_restore_mcusr(const struct reset *reset);
 /* Fills r0 to r31 and the SRAM with noise, as power-on does. */
 void reset_fill_sram(struct reset *reset);
-/* The first SRAM address, starting at `from`, that no longer contains its noise. If static data ends
- * at `from`, this is the lowest address that the stack has reached. */
-uint16_t reset_first_changed(const struct reset *reset, uint16_t from);

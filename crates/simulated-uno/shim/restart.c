@@ -1,15 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "restart.h"
 
+/* Records every pin as low, and stops Timer0, Timer1 and Timer2, which would continue after simavr's
+ * reset. */
 static void release_pins_and_stop_timers(struct uno *uno)
 {
+	static const uint16_t control_registers[] = {
+		REG_TCCR0B, REG_TCCR1B, REG_TCCR2B, REG_TCCR0A, REG_TCCR1A, REG_TCCR2A,
+	};
 	recorder_release_pins(&uno->recorder);
-	reset_stop_timers(&uno->reset);
+	for (size_t i = 0; i < ARRAY_SIZE(control_registers); i++)
+		chip_store(uno->avr, control_registers[i], 0);
 }
 
 void restart(struct uno *uno, uint8_t causes)
 {
-	uno->reset.requested_causes = 0;
+	uno->reset.requested_causes &= RESET_POWER_CUT;
 	release_pins_and_stop_timers(uno);
 	if (causes & RESET_POWER_ON)
 		reset_fill_sram(&uno->reset);
@@ -18,44 +24,31 @@ void restart(struct uno *uno, uint8_t causes)
 	/* Before avr_reset, because watchdog_reset reads WDRF. */
 	reset_record(&uno->reset, causes, uno->avr->cycle);
 	avr_reset(uno->avr);
-	reset_restore_mcusr(&uno->reset);
+	uno->avr->data[REG_MCUSR] = uno->reset.mcusr;
 }
 
 bool restart_if_requested(struct uno *uno)
 {
-	if (uno->reset.is_power_cut_requested) {
+	uint8_t causes = uno->reset.requested_causes;
+	if (causes & RESET_POWER_CUT)
 		restart_cut_power(uno);
-		return true;
-	}
-	if (!uno->reset.requested_causes)
-		return false;
-	restart(uno, uno->reset.requested_causes);
-	return true;
+	else if (causes)
+		restart(uno, causes);
+	return causes != 0;
 }
 
 void restart_advance_in_reset(struct uno *uno, uint64_t until)
 {
 	avr_t *avr = uno->avr;
 	uint64_t cycles_to_timer = avr_cycle_timer_process(avr);
-	if (uno->reset.requested_causes || uno->reset.is_power_cut_requested)
+	if (uno->reset.requested_causes)
 		return;
 	uint64_t cycles_to_end = until - avr->cycle;
 	avr->cycle += cycles_to_timer < cycles_to_end ? cycles_to_timer : cycles_to_end;
 }
 
-void restart_by_stock_watchdog(struct uno *uno, avr_run_t normal_run)
-{
-	release_pins_and_stop_timers(uno);
-	uno->watchdog_resets++;
-	reset_record(&uno->reset, RESET_WATCHDOG, uno->avr->cycle);
-	uno->avr->run(uno->avr);
-	uno->avr->run = normal_run;
-	reset_restore_mcusr(&uno->reset);
-}
-
 void restart_cut_power(struct uno *uno)
 {
-	uno->reset.is_power_cut_requested = false;
 	uno->reset.requested_causes = 0;
 	uno->is_powered_off = true;
 	eeprom_tear(&uno->eeprom);

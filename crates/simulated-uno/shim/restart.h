@@ -13,9 +13,6 @@ bool restart_if_requested(struct uno *uno);
 /* While the supply holds the chip in reset, advances the clock to the next simavr timer or to
  * `until`, whichever comes first. */
 void restart_advance_in_reset(struct uno *uno, uint64_t until);
-/* Executes the reset that stock simavr's watchdog requests by replacing avr->run. `normal_run`: the
- * previous value of avr->run. */
-void restart_by_stock_watchdog(struct uno *uno, avr_run_t normal_run);
 /* Switches the power off: nothing runs until the power is restored. */
 void restart_cut_power(struct uno *uno);
 /* Advances simavr's clock to the current cycle; must be called before the board is changed from

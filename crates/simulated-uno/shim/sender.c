@@ -2,8 +2,6 @@
 #include "sender.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #define FRAME_BITS 10.0   /* start bit, eight data bits, stop bit */
 #define SAMPLED_BITS 9.5  /* a receiver has read a byte in the middle of its stop bit */
@@ -13,16 +11,17 @@ static avr_cycle_count_t begin_byte(avr_t *avr, avr_cycle_count_t when, void *pa
 static bool take_next_byte(struct sender *sender, struct line_byte *byte)
 {
 	const struct line_byte *queue = sender->queue.items;
+	const struct line_byte *flood = sender->flood.items;
 	if (sender->next_index < sender->queue.count) {
 		*byte = queue[sender->next_index++];
 		if (sender->next_index == sender->queue.count)
 			sender->next_index = sender->queue.count = 0;
 		return true;
 	}
-	if (!sender->flood_length)
+	if (!sender->flood.count)
 		return false;
-	*byte = (struct line_byte){ .value = sender->flood_bytes[sender->flood_position] };
-	sender->flood_position = (sender->flood_position + 1) % sender->flood_length;
+	*byte = flood[sender->flood_position];
+	sender->flood_position = (sender->flood_position + 1) % sender->flood.count;
 	return true;
 }
 
@@ -36,8 +35,7 @@ static avr_cycle_count_t end_byte(avr_t *avr, avr_cycle_count_t when, void *para
 	serial_bytes_push(&sender->delivered, avr->cycle, received);
 	/* Check again when the line is free, even if the queue is empty now: a byte that is queued
 	 * meanwhile starts at that cycle. */
-	uint64_t cycles_to_free_line = chip_cycles_until(avr, ceil(sender->line_free_at));
-	avr_cycle_timer_register(avr, cycles_to_free_line, begin_byte, sender);
+	chip_call_at(avr, ceil(sender->line_free_at), begin_byte, sender);
 	return 0;
 }
 
@@ -52,10 +50,8 @@ static avr_cycle_count_t begin_byte(avr_t *avr, avr_cycle_count_t when, void *pa
 	double frame_cycles = FRAME_BITS * sender->cycles_per_bit;
 	sender->is_busy = true;
 	sender->sent_count++;
-	sender->line_free_at = start + receiver->frame_cycles(receiver->param, frame_cycles);
-	receiver->on_start_bit(receiver->param);
-	uint64_t end = ceil(start + SAMPLED_BITS * sender->cycles_per_bit);
-	avr_cycle_timer_register(avr, chip_cycles_until(avr, end), end_byte, sender);
+	sender->line_free_at = start + receiver->begin_frame(receiver->param, frame_cycles);
+	chip_call_at(avr, ceil(start + SAMPLED_BITS * sender->cycles_per_bit), end_byte, sender);
 	return 0;
 }
 
@@ -63,7 +59,7 @@ static avr_cycle_count_t begin_byte(avr_t *avr, avr_cycle_count_t when, void *pa
 static void schedule_next_byte(struct sender *sender, uint64_t now)
 {
 	avr_t *avr = sender->avr;
-	bool is_empty = sender->next_index == sender->queue.count && !sender->flood_length;
+	bool is_empty = sender->next_index == sender->queue.count && !sender->flood.count;
 	if (is_empty || sender->is_busy || avr_cycle_timer_status(avr, begin_byte, sender))
 		return;
 	uint64_t free_at = ceil(sender->line_free_at);
@@ -79,6 +75,7 @@ void sender_attach(struct sender *sender, avr_t *avr, struct receiver receiver, 
 		.avr = avr,
 		.receiver = receiver,
 		.queue.item_size = sizeof(struct line_byte),
+		.flood.item_size = sizeof(struct line_byte),
 	};
 	serial_bytes_init(&sender->delivered);
 	sender_set_baud(sender, baud);
@@ -95,28 +92,24 @@ void sender_set_baud(struct sender *sender, double baud)
 	sender->cycles_per_bit = CHIP_FREQUENCY / baud;
 }
 
+static void append_bytes(struct list *list, const uint8_t *bytes, size_t length,
+                         bool is_stop_bit_low)
+{
+	for (size_t i = 0; i < length; i++)
+		list_push(list, &(struct line_byte){ bytes[i], is_stop_bit_low });
+}
+
 void sender_send(struct sender *sender, const uint8_t *bytes, size_t length, bool is_stop_bit_low,
                  uint64_t now)
 {
-	for (size_t i = 0; i < length; i++) {
-		struct line_byte *last = list_push(&sender->queue);
-		*last = (struct line_byte){ bytes[i], is_stop_bit_low };
-	}
+	append_bytes(&sender->queue, bytes, length, is_stop_bit_low);
 	schedule_next_byte(sender, now);
 }
 
 void sender_set_flood(struct sender *sender, const uint8_t *bytes, size_t length, uint64_t now)
 {
-	free(sender->flood_bytes);
-	sender->flood_bytes = NULL;
-	sender->flood_length = length;
-	sender->flood_position = 0;
-	if (!length)
-		return;
-	sender->flood_bytes = malloc(length);
-	if (!sender->flood_bytes)
-		abort();
-	memcpy(sender->flood_bytes, bytes, length);
+	sender->flood.count = sender->flood_position = 0;
+	append_bytes(&sender->flood, bytes, length, false);
 	schedule_next_byte(sender, now);
 }
 

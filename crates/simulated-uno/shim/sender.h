@@ -16,11 +16,9 @@ struct line_byte {
 /* The UART at the UNO's end of the cable. */
 struct receiver {
 	void *param;
-	/* Returns the number of cycles between two start bits, given the length of the sender's
-	 * frame. */
-	double (*frame_cycles)(void *param, double sender_frame_cycles);
-	/* Called when a start bit begins. */
-	void (*on_start_bit)(void *param);
+	/* Called when a start bit begins. Returns the number of cycles until the next start bit may
+	 * begin, given the length of the sender's frame. */
+	double (*begin_frame)(void *param, double sender_frame_cycles);
 	/* Takes a byte from the line. Returns the received value, or 0xff after a framing error.
 	 * `cycles_per_bit`: the length of the sender's bits. */
 	uint8_t (*receive_byte)(void *param, struct line_byte byte, double cycles_per_bit);
@@ -33,9 +31,8 @@ struct sender {
 	double line_free_at;            /* cycle at which the last stop bit ends */
 	struct list queue;              /* struct line_byte */
 	size_t next_index;              /* index of the first unsent byte in the queue */
-	uint8_t *flood_bytes;           /* sent repeatedly while the queue is empty; NULL if none */
-	size_t flood_length;            /* number of bytes in `flood_bytes` */
-	size_t flood_position;          /* index of the next byte in `flood_bytes` */
+	struct list flood;              /* sent repeatedly while the queue is empty: struct line_byte */
+	size_t flood_position;          /* index of the next byte in `flood` */
 	uint64_t sent_count;            /* number of bytes put on the line so far */
 	struct line_byte current_byte;  /* the byte on the line while `is_busy` */
 	bool is_busy;                   /* a byte is on the line */

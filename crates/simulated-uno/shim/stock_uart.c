@@ -10,15 +10,11 @@ static void on_transmit(struct avr_irq_t *irq, uint32_t value, void *param)
 
 /* In stock simavr, a frame has 11 bits. At the sender's true rate, a long stream would overflow
  * simavr's receive buffer of 64 bytes, so the sender sends no faster than simavr receives. */
-static double frame_cycles(void *param, double sender_frame_cycles)
+static double begin_frame(void *param, double sender_frame_cycles)
 {
 	const struct stock_uart *stock = param;
 	double min_cycles = stock->uart->cycles_per_byte;
 	return min_cycles < sender_frame_cycles ? sender_frame_cycles : min_cycles;
-}
-
-static void on_start_bit(void *param)
-{
 }
 
 static uint8_t receive_byte(void *param, struct line_byte byte, double cycles_per_bit)
@@ -45,5 +41,5 @@ void stock_uart_attach(struct stock_uart *stock, const struct instruction *instr
 
 struct receiver stock_uart_receiver(struct stock_uart *stock)
 {
-	return (struct receiver){ stock, frame_cycles, on_start_bit, receive_byte };
+	return (struct receiver){ stock, begin_frame, receive_byte };
 }

@@ -39,7 +39,7 @@ static uint64_t crossing_cycle(const struct supply *supply, double level_mv)
 		return 0;
 	uint64_t ramp_cycles = supply->ramp_end - supply->ramp_start;
 	uint64_t cycle = supply->ramp_start + (uint64_t)(fraction * ramp_cycles) + 1;
-	return cycle > supply->avr->cycle ? cycle : 0;
+	return cycle > supply->reset->avr->cycle ? cycle : 0;
 }
 
 static avr_cycle_count_t check_supply(avr_t *avr, avr_cycle_count_t when, void *param);
@@ -56,14 +56,18 @@ static void schedule_check(struct supply *supply)
 		if (cycle && (!next_check || cycle < next_check))
 			next_check = cycle;
 	}
-	avr_t *avr = supply->avr;
+	avr_t *avr = supply->reset->avr;
 	avr_cycle_timer_cancel(avr, check_supply, supply);
-	if (next_check && supply->follows_data_sheet)
-		avr_cycle_timer_register(avr, next_check - avr->cycle, check_supply, supply);
+	if (next_check && supply->reset->follows_data_sheet)
+		chip_call_at(avr, next_check, check_supply, supply);
 }
 
-static void apply_voltage(struct supply *supply, double mv)
+/* Holds the chip in reset or releases it, according to the current voltage. */
+static void update(struct supply *supply)
 {
+	if (!supply->reset->follows_data_sheet)
+		return;
+	double mv = supply_mv(supply, supply->reset->avr->cycle);
 	if (mv < MIN_OPERATING_MV)
 		eeprom_tear(supply->eeprom);
 	if (mv < POWER_ON_FALLING_MV)
@@ -76,20 +80,12 @@ static void apply_voltage(struct supply *supply, double mv)
 		reset_request(supply->reset, supply->has_lost_sram ? RESET_POWER_ON : RESET_BROWN_OUT);
 		supply->has_lost_sram = false;
 	}
-}
-
-/* Holds the chip in reset or releases it, according to the current voltage. */
-static void update(struct supply *supply, uint64_t now)
-{
-	if (!supply->follows_data_sheet)
-		return;
-	apply_voltage(supply, supply_mv(supply, now));
 	schedule_check(supply);
 }
 
 static avr_cycle_count_t check_supply(avr_t *avr, avr_cycle_count_t when, void *param)
 {
-	update(param, avr->cycle);
+	update(param);
 	return 0;
 }
 
@@ -97,48 +93,44 @@ static avr_cycle_count_t cut_power(avr_t *avr, avr_cycle_count_t when, void *par
 {
 	struct supply *supply = param;
 	supply->power_cut_at = 0;
-	reset_request_power_cut(supply->reset);
+	reset_request(supply->reset, RESET_POWER_CUT);
 	return 0;
 }
 
-void supply_attach(struct supply *supply, avr_t *avr, struct reset *reset,
-                   struct eeprom *eeprom, bool follows_data_sheet)
+void supply_attach(struct supply *supply, struct reset *reset, struct eeprom *eeprom)
 {
 	*supply = (struct supply){
-		.avr = avr,
 		.reset = reset,
 		.eeprom = eeprom,
 		.from_mv = NOMINAL_MV,
 		.to_mv = NOMINAL_MV,
 		.brown_out_mv = BROWN_OUT_MV,
-		.follows_data_sheet = follows_data_sheet,
 	};
 }
 
-void supply_ramp(struct supply *supply, double mv, uint64_t now, uint64_t cycles)
+void supply_ramp(struct supply *supply, double mv, uint64_t cycles)
 {
-	avr_t *avr = supply->avr;
-	supply->from_mv = supply_mv(supply, now);
+	avr_t *avr = supply->reset->avr;
+	supply->from_mv = supply_mv(supply, avr->cycle);
 	supply->to_mv = mv;
-	supply->ramp_start = now;
-	supply->ramp_end = now + cycles;
+	supply->ramp_start = avr->cycle;
+	supply->ramp_end = avr->cycle + cycles;
 	avr->vcc = avr->avcc = avr->aref = mv; /* read by stock simavr's ADC */
-	update(supply, now);
+	update(supply);
 }
 
-void supply_set_brown_out(struct supply *supply, double mv, uint64_t now)
+void supply_set_brown_out(struct supply *supply, double mv)
 {
 	supply->brown_out_mv = mv;
-	update(supply, now);
+	update(supply);
 }
 
 static void arm_power_cut(struct supply *supply)
 {
-	avr_t *avr = supply->avr;
+	avr_t *avr = supply->reset->avr;
 	avr_cycle_timer_cancel(avr, cut_power, supply);
 	if (supply->power_cut_at)
-		avr_cycle_timer_register(avr, chip_cycles_until(avr, supply->power_cut_at), cut_power,
-		                         supply);
+		chip_call_at(avr, supply->power_cut_at, cut_power, supply);
 }
 
 void supply_schedule_power_cut(struct supply *supply, uint64_t cycle)
@@ -149,7 +141,7 @@ void supply_schedule_power_cut(struct supply *supply, uint64_t cycle)
 
 bool supply_may_reset(const struct supply *supply)
 {
-	return supply->power_cut_at || supply->avr->cycle < supply->ramp_end;
+	return supply->power_cut_at || supply->reset->avr->cycle < supply->ramp_end;
 }
 
 void supply_reset(struct supply *supply)
@@ -160,8 +152,7 @@ void supply_reset(struct supply *supply)
 
 void supply_power_on(struct supply *supply)
 {
-	supply->holds_reset = supply->has_lost_sram = false;
-	double mv = supply_mv(supply, supply->avr->cycle);
-	if (supply->follows_data_sheet && mv < release_above_mv(supply))
-		supply->holds_reset = supply->has_lost_sram = true;
+	double mv = supply_mv(supply, supply->reset->avr->cycle);
+	bool is_too_low = supply->reset->follows_data_sheet && mv < release_above_mv(supply);
+	supply->holds_reset = supply->has_lost_sram = is_too_low;
 }

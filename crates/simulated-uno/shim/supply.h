@@ -9,27 +9,24 @@
 #include "reset.h"
 
 struct supply {
-	avr_t *avr;
 	struct reset *reset;
 	struct eeprom *eeprom;
 	double from_mv;          /* voltage until cycle `ramp_start` */
 	double to_mv;            /* voltage from cycle `ramp_end` on; it changes linearly between */
 	uint64_t ramp_start, ramp_end;
 	double brown_out_mv;     /* brown-out level; 0: brown-out detection is off */
-	bool follows_data_sheet;
 	bool holds_reset;        /* the supply is too low and holds the chip in reset */
 	bool has_lost_sram;      /* the supply has been too low for the SRAM to keep its contents */
 	uint64_t power_cut_at;   /* cycle at which the power is cut; 0: never */
 };
 
-void supply_attach(struct supply *supply, avr_t *avr, struct reset *reset,
-                   struct eeprom *eeprom, bool follows_data_sheet);
+void supply_attach(struct supply *supply, struct reset *reset, struct eeprom *eeprom);
 /* The voltage at a cycle, from the start of the last ramp on. */
 double supply_mv(const struct supply *supply, uint64_t cycle);
 /* Changes the voltage linearly to `mv` over `cycles` from now. */
-void supply_ramp(struct supply *supply, double mv, uint64_t now, uint64_t cycles);
+void supply_ramp(struct supply *supply, double mv, uint64_t cycles);
 /* Sets the brown-out level; 0 switches brown-out detection off. */
-void supply_set_brown_out(struct supply *supply, double mv, uint64_t now);
+void supply_set_brown_out(struct supply *supply, double mv);
 /* Schedules a power cut at a cycle; 0: never. */
 void supply_schedule_power_cut(struct supply *supply, uint64_t cycle);
 /* True while a ramp of the supply or a power cut can still reset the chip. */

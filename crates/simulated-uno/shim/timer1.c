@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "timer1.h"
 
-static const uint16_t low_byte_registers[4] = { REG_TCNT1L, REG_ICR1L, REG_OCR1AL, REG_OCR1BL };
-
 static void write_high(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
 	((struct timer1 *)param)->temp = value;
@@ -11,22 +9,19 @@ static void write_high(avr_t *avr, avr_io_addr_t address, uint8_t value, void *p
 static void write_low(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
 	struct timer1 *timer1 = param;
+	const struct write_hook *stock_hook = &timer1->stock_low_hooks[(address - REG_TCNT1L) / 2];
 	avr->data[address + 1] = timer1->temp;
-	for (int i = 0; i < 4; i++) {
-		if (low_byte_registers[i] != address)
-			continue;
-		const struct write_hook *stock_hook = &timer1->stock_low_hooks[i];
-		if (stock_hook->callback)
-			stock_hook->callback(avr, address, value, stock_hook->param);
-		else
-			avr->data[address] = value;
-	}
+	if (stock_hook->callback)
+		stock_hook->callback(avr, address, value, stock_hook->param);
+	else
+		avr->data[address] = value;
 }
 
 static uint8_t read_count_low(avr_t *avr, avr_io_addr_t address, void *param)
 {
 	struct timer1 *timer1 = param;
-	uint8_t low = timer1->stock_count_hook.callback(avr, address, timer1->stock_count_hook.param);
+	const struct read_hook *stock_hook = &timer1->stock_count_hook;
+	uint8_t low = stock_hook->callback(avr, address, stock_hook->param); /* updates both bytes */
 	timer1->temp = avr->data[address + 1];
 	return low;
 }
@@ -44,17 +39,13 @@ static uint8_t read_temp(avr_t *avr, avr_io_addr_t address, void *param)
 
 void timer1_attach(struct timer1 *timer1, avr_t *avr)
 {
-	for (int i = 0; i < 4; i++) {
-		timer1->stock_low_hooks[i] = hook_write(avr, low_byte_registers[i], write_low, timer1);
-		hook_write(avr, low_byte_registers[i] + 1, write_high, timer1);
+	for (int i = 0; i < TIMER1_REGISTER_COUNT; i++) {
+		uint16_t low_byte = REG_TCNT1L + 2 * i;
+		timer1->stock_low_hooks[i] = hook_write(avr, low_byte, write_low, timer1);
+		hook_write(avr, low_byte + 1, write_high, timer1);
 	}
 	timer1->stock_count_hook = hook_read(avr, REG_TCNT1L, read_count_low, timer1);
 	hook_read(avr, REG_TCNT1L + 1, read_temp, timer1);
 	hook_read(avr, REG_ICR1L, read_capture_low, timer1);
 	hook_read(avr, REG_ICR1L + 1, read_temp, timer1);
-}
-
-void timer1_reset(struct timer1 *timer1)
-{
-	timer1->temp = 0;
 }

@@ -7,11 +7,14 @@
 
 #include "chip.h"
 
+/* The 16-bit registers TCNT1, ICR1, OCR1A and OCR1B, one after another from TCNT1L on. */
+#define TIMER1_REGISTER_COUNT 4
+
 struct timer1 {
-	uint8_t temp;                         /* TEMP */
-	struct write_hook stock_low_hooks[4]; /* simavr's callbacks for the low bytes */
-	struct read_hook stock_count_hook;    /* simavr's callback for TCNT1L */
+	uint8_t temp; /* TEMP */
+	/* simavr's callbacks for writes of the low bytes, and for reads of TCNT1L: */
+	struct write_hook stock_low_hooks[TIMER1_REGISTER_COUNT];
+	struct read_hook stock_count_hook;
 };
 
 void timer1_attach(struct timer1 *timer1, avr_t *avr);
-void timer1_reset(struct timer1 *timer1);

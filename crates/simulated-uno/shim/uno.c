@@ -41,10 +41,10 @@ static void on_reset(struct avr_io_t *io)
 {
 	struct uno *uno = (struct uno *)((char *)io - offsetof(struct uno, io));
 	disable_level_polling(uno->avr);
-	handlers_reset(&uno->handlers);
-	call_timer_reset(&uno->call_timer);
+	uno->handlers.depth = 0;
+	uno->call_timer.is_in_call = false;
 	if (uno->follows_data_sheet) {
-		timer1_reset(&uno->timer1);
+		uno->timer1.temp = 0;
 		usart_reset(&uno->usart);
 		eeprom_reset(&uno->eeprom);
 		adc_reset(&uno->adc);
@@ -83,7 +83,7 @@ static void widen_data_space(avr_t *avr)
 	memset(avr->data + size, 0, UINT16_MAX + 1 - size);
 }
 
-struct uno *uno_new(bool follows_data_sheet, uint32_t pins, double baud)
+struct uno *uno_new(bool follows_data_sheet, double baud)
 {
 	struct uno *uno = calloc(1, sizeof *uno);
 	avr_t *avr = avr_make_mcu_by_name("atmega328p");
@@ -99,10 +99,10 @@ struct uno *uno_new(bool follows_data_sheet, uint32_t pins, double baud)
 	uno->avr = avr;
 	uno->follows_data_sheet = follows_data_sheet;
 	uno->instruction.avr = avr;
-	recorder_attach(&uno->recorder, &uno->instruction, pins);
+	recorder_attach(&uno->recorder, &uno->instruction);
 	handlers_attach(&uno->handlers, avr);
-	call_timer_attach(&uno->call_timer, avr, &uno->handlers);
-	disturbance_attach(&uno->disturbance, avr, &uno->handlers);
+	call_timer_attach(&uno->call_timer, &uno->handlers);
+	uno->disturbance = (struct disturbance){ .avr = avr, .handlers = &uno->handlers };
 	serial_bytes_init(&uno->transmitted);
 	stock_uart_attach(&uno->stock_uart, &uno->instruction, &uno->transmitted);
 	struct receiver receiver = stock_uart_receiver(&uno->stock_uart);
@@ -110,17 +110,16 @@ struct uno *uno_new(bool follows_data_sheet, uint32_t pins, double baud)
 	eeprom_attach(&uno->eeprom, avr);
 	adc_attach(&uno->adc, avr);
 	contacts_attach(&uno->contacts, avr);
-	supply_attach(&uno->supply, avr, &uno->reset, &uno->eeprom, follows_data_sheet);
+	supply_attach(&uno->supply, &uno->reset, &uno->eeprom);
 	if (follows_data_sheet) {
 		interrupts_attach(&uno->interrupts, &uno->instruction);
 		timer1_attach(&uno->timer1, avr);
 		pin_toggle_attach(&uno->pin_toggle, &uno->instruction);
-		usart_attach(&uno->usart, &uno->interrupts, uno->stock_uart.uart,
-		             &uno->transmitted);
+		usart_attach(&uno->usart, &uno->interrupts, &uno->stock_uart);
 		receiver = usart_receiver(&uno->usart);
-		eeprom_correct(&uno->eeprom, &uno->instruction, &uno->interrupts, &uno->reset);
-		adc_correct(&uno->adc, &uno->instruction, &uno->interrupts, &uno->supply);
-		watchdog_attach(&uno->watchdog, &uno->instruction, &uno->interrupts, &uno->reset);
+		eeprom_correct(&uno->eeprom, &uno->interrupts, &uno->reset);
+		adc_correct(&uno->adc, &uno->interrupts, &uno->supply);
+		watchdog_attach(&uno->watchdog, &uno->interrupts, &uno->reset);
 	}
 	sender_attach(&uno->sender, avr, receiver, baud);
 	join_reset_chain(avr, &uno->io);
@@ -135,21 +134,11 @@ void uno_free(struct uno *uno)
 	const struct list *lists[] = {
 		&uno->recorder.edges, &uno->recorder.marks, &uno->call_timer.calls,
 		&uno->transmitted.bytes, &uno->sender.delivered.bytes, &uno->sender.queue,
-		&uno->reset.events, &uno->eeprom.operations,
+		&uno->sender.flood, &uno->reset.events, &uno->eeprom.operations,
 	};
 	for (size_t i = 0; i < ARRAY_SIZE(lists); i++)
 		free(lists[i]->items);
-	free(uno->sender.flood_bytes);
-	free(uno->reset.initial_sram);
 	free(uno);
-}
-
-bool uno_load(struct uno *uno, const uint8_t *code, uint32_t size, uint32_t address)
-{
-	if (size > uno->avr->flashend + 1 || address > uno->avr->flashend + 1 - size)
-		return false;
-	memcpy(uno->avr->flash + address, code, size);
-	return true;
 }
 
 void uno_set_program_bounds(struct uno *uno, uint32_t code_end, uint16_t data_end)
@@ -158,23 +147,23 @@ void uno_set_program_bounds(struct uno *uno, uint32_t code_end, uint16_t data_en
 	uno->data_end = data_end;
 }
 
+/* The first SRAM address after static data that no longer contains its noise. */
 uint16_t uno_lowest_stack_address(const struct uno *uno)
 {
-	return reset_first_changed(&uno->reset, uno->data_end);
+	uint16_t address = uno->data_end;
+	while (address < CHIP_SRAM_END && uno->avr->data[address] == uno->reset.initial_sram[address])
+		address++;
+	return address;
 }
 
 static void run_instructions(struct uno *uno, uint64_t until)
 {
 	avr_t *avr = uno->avr;
-	if (uno->call_timer.is_enabled) {
+	if (uno->call_timer.is_enabled)
 		call_timer_check(&uno->call_timer);
-		avr->run_cycle_limit = 1;
-	} else if (disturbance_is_active(&uno->disturbance)) {
-		avr->run_cycle_limit = 1;
-	} else {
-		uint64_t cycles_to_end = until > avr->cycle ? until - avr->cycle : 1;
-		avr->run_cycle_limit = cycles_to_end < MAX_SLICE_CYCLES ? cycles_to_end : MAX_SLICE_CYCLES;
-	}
+	bool is_stepping = uno->call_timer.is_enabled || disturbance_is_active(&uno->disturbance);
+	uint64_t max_cycles = is_stepping || until <= avr->cycle ? 1 : until - avr->cycle;
+	avr->run_cycle_limit = max_cycles < MAX_SLICE_CYCLES ? max_cycles : MAX_SLICE_CYCLES;
 	/* The count that simavr computed from the old limit may extend beyond `until`. */
 	if (avr->run_cycle_count > avr->run_cycle_limit)
 		avr->run_cycle_count = avr->run_cycle_limit;
@@ -247,8 +236,10 @@ static bool step(struct uno *uno, avr_run_t normal_run, uint64_t until)
 	}
 	bool was_asleep = avr->state == cpu_Sleeping;
 	uint64_t cycles_to_timer = avr_cycle_timer_process(avr);
-	if (avr->run != normal_run) { /* stock simavr's watchdog requests a reset */
-		restart_by_stock_watchdog(uno, normal_run);
+	/* Stock simavr's watchdog requests a reset by replacing avr->run with a call of avr_reset. */
+	if (avr->run != normal_run) {
+		restart(uno, RESET_WATCHDOG);
+		avr->run = normal_run;
 		return true;
 	}
 	if (was_asleep)
@@ -270,7 +261,7 @@ static bool step(struct uno *uno, avr_run_t normal_run, uint64_t until)
 	return true;
 }
 
-enum stop_reason uno_run(struct uno *uno, uint64_t until)
+enum stop_reason uno_run(struct uno *uno, uint64_t until, bool stops_at_line)
 {
 	avr_t *avr = uno->avr;
 	avr_run_t normal_run = avr->run;
@@ -280,11 +271,11 @@ enum stop_reason uno_run(struct uno *uno, uint64_t until)
 			break;
 		if (!step(uno, normal_run, until))
 			break;
-		if (uno->transmitted.has_line_ended && uno->stops_at_line)
+		if (uno->transmitted.has_line_ended && stops_at_line)
 			break;
 	}
 	restart_if_requested(uno); /* requested in the last cycle */
-	bool has_line_ended = uno->transmitted.has_line_ended && uno->stops_at_line;
+	bool has_line_ended = uno->transmitted.has_line_ended && stops_at_line;
 	bool is_alive = avr->state == cpu_Running || avr->state == cpu_Sleeping;
 	/* The CPU sleeps and nothing is due before `until`, so `until` is the current cycle, ahead
 	 * of simavr's. */
@@ -308,7 +299,9 @@ uint64_t uno_sleep_cycles(const struct uno *uno)
 
 void uno_time_calls(struct uno *uno, bool is_enabled, uint32_t entry_address)
 {
-	call_timer_set(&uno->call_timer, is_enabled, entry_address);
+	uno->call_timer.is_enabled = is_enabled;
+	uno->call_timer.is_in_call = false;
+	uno->call_timer.entry_address = entry_address;
 }
 
 void uno_send(struct uno *uno, const uint8_t *bytes, size_t length, bool is_stop_bit_low)
@@ -339,18 +332,11 @@ void uno_stall_main(struct uno *uno, uint64_t until)
 
 void uno_poke(struct uno *uno, uint16_t address, uint8_t value)
 {
-	avr_t *avr = uno->avr;
-	avr_io_addr_t io = AVR_DATA_TO_IO(address);
-	if (address >= 32 && io < MAX_IOs && avr->io[io].w.c)
-		avr->io[io].w.c(avr, address, value, avr->io[io].w.param);
-	else if (address <= avr->ramend)
-		avr->data[address] = value;
+	chip_store(uno->avr, address, value);
 }
 
 void uno_set_baud(struct uno *uno, double baud) { sender_set_baud(&uno->sender, baud); }
 uint32_t uno_cycles_per_bit(const struct uno *uno) { return usart_cycles_per_bit(uno->avr); }
-uint8_t uno_sample_byte(uint8_t byte, double ratio) { return usart_sample_byte(byte, ratio); }
-void uno_set_stop_at_line(struct uno *uno, bool is_enabled) { uno->stops_at_line = is_enabled; }
 size_t uno_unsent_count(const struct uno *uno) { return sender_unsent_count(&uno->sender); }
 uint64_t uno_sent_count(const struct uno *uno) { return uno->sender.sent_count; }
 uint64_t uno_now(const struct uno *uno) { return uno->now; }
@@ -360,7 +346,6 @@ uint64_t uno_overrun_count(const struct uno *uno) { return uno->usart.overrun_co
 uint32_t uno_pin_levels(const struct uno *uno) { return uno->recorder.levels; }
 const char *uno_error_message(const struct uno *uno) { return uno->error_message; }
 const uint8_t *uno_data(const struct uno *uno) { return uno->avr->data; }
-uint32_t uno_data_size(const struct uno *uno) { return uno->avr->ramend + 1; }
 const struct vector_stats *uno_vectors(const struct uno *uno) { return uno->handlers.vectors; }
 struct list *uno_edges(struct uno *uno) { return &uno->recorder.edges; }
 struct list *uno_marks(struct uno *uno) { return &uno->recorder.marks; }

@@ -1,4 +1,4 @@
-/* The interface of one simulated UNO to src/ffi.rs.
+/* The interface of one simulated UNO to src/ffi.rs, which also calls usart_sample_byte.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -21,19 +21,16 @@ enum stop_reason {
 /* Directs simavr's error messages to the uno that they concern. Call this function once. */
 void uno_set_logger(void);
 /* `follows_data_sheet`: true for the data-sheet fidelity (simavr corrected to match the data
- * sheet), false for the stock fidelity (simavr without corrections). `pins`: the pins whose edges
- * are recorded, bit n = Arduino pin n. `baud`: the sender's baud rate. */
-struct uno *uno_new(bool follows_data_sheet, uint32_t pins, double baud);
+ * sheet), false for the stock fidelity (simavr without corrections). `baud`: the sender's baud
+ * rate. */
+struct uno *uno_new(bool follows_data_sheet, double baud);
 void uno_free(struct uno *uno);
-/* Copies `size` bytes into flash at a byte address. Returns false if they do not fit. */
-bool uno_load(struct uno *uno, const uint8_t *code, uint32_t size, uint32_t address);
-/* Must be called after the last uno_load. The code in flash ends before byte address `code_end`, and
- * the static data before data address `data_end`. */
+/* The code in flash ends before byte address `code_end`, and the static data before data address
+ * `data_end`. */
 void uno_set_program_bounds(struct uno *uno, uint32_t code_end, uint16_t data_end);
-/* Runs until cycle `until`, or until another stop reason occurs. */
-enum stop_reason uno_run(struct uno *uno, uint64_t until);
-/* While `is_enabled`, a run ends as soon as the firmware has sent a complete line. */
-void uno_set_stop_at_line(struct uno *uno, bool is_enabled);
+/* Runs until cycle `until`, or until another stop reason occurs. With `stops_at_line`, the run ends as
+ * soon as the firmware has sent a complete line. */
+enum stop_reason uno_run(struct uno *uno, uint64_t until, bool stops_at_line);
 /* Starts or stops timing the calls of the function at this byte address. */
 void uno_time_calls(struct uno *uno, bool is_enabled, uint32_t entry_address);
 /* Queues bytes for the serial line. `is_stop_bit_low`: the line is low during each stop bit. */
@@ -44,9 +41,6 @@ void uno_set_flood(struct uno *uno, const uint8_t *bytes, size_t length);
 void uno_set_baud(struct uno *uno, double baud);
 /* The length of a bit of the chip's USART, cycles, as its registers set it. */
 uint32_t uno_cycles_per_bit(const struct uno *uno);
-/* Returns the byte that a receiver reads if its bits are `ratio` times as long as the sender's; see
- * usart_sample_byte. */
-uint8_t uno_sample_byte(uint8_t byte, double ratio);
 /* Occupies the CPU for `cycles`, as a foreign interrupt would, at once or as soon as interrupts are
  * enabled; see disturbance.h. */
 void uno_block_cpu(struct uno *uno, uint64_t cycles);
@@ -74,9 +68,8 @@ uint32_t uno_pin_levels(const struct uno *uno);
 uint16_t uno_lowest_stack_address(const struct uno *uno);
 /* The last error that simavr logged; empty if none. */
 const char *uno_error_message(const struct uno *uno);
-/* The data space: registers r0 to r31, I/O registers and SRAM. */
+/* The data space: registers r0 to r31, I/O registers and SRAM; 0x900 bytes. */
 const uint8_t *uno_data(const struct uno *uno);
-uint32_t uno_data_size(const struct uno *uno);
 /* CHIP_VECTOR_COUNT items, indexed by the vector number. */
 const struct vector_stats *uno_vectors(const struct uno *uno);
 struct list *uno_edges(struct uno *uno);             /* struct edge */
@@ -120,9 +113,8 @@ void uno_set_brown_out(struct uno *uno, double mv);
 void uno_set_bandgap(struct uno *uno, double mv);
 /* Sets the voltage at the analogue pin of this ADC channel, mV. */
 void uno_set_analog(struct uno *uno, uint8_t channel, uint16_t mv);
-/* Closes or opens a contact between ground and bit `bit` of the port whose PIN register has this
- * data address. */
-void uno_set_contact(struct uno *uno, uint16_t address, uint8_t bit, bool is_closed);
+/* Closes or opens a contact between ground and the pin with this Arduino number. */
+void uno_set_contact(struct uno *uno, uint8_t number, bool is_closed);
 
 /* Makes the program start at this byte address in flash, now and after every reset, as the fuse
  * BOOTRST does. */

@@ -37,7 +37,7 @@ uint8_t usart_sample_byte(uint8_t byte, double ratio)
 /* Sets RXC, FE and DOR as the receive buffer requires. */
 static void update_receive_flags(struct usart *usart)
 {
-	avr_t *avr = usart->avr;
+	avr_t *avr = usart->interrupts->avr;
 	uint8_t *status = &avr->data[REG_UCSR0A];
 	*status &= ~(RXC | FE | DOR);
 	if (usart->received_count && usart->received[0].has_frame_error)
@@ -45,26 +45,28 @@ static void update_receive_flags(struct usart *usart)
 	if (usart->has_overrun)
 		*status |= DOR;
 	if (usart->received_count) {
-		avr_raise_interrupt(avr, &usart->vectors->rxc); /* sets RXC */
+		avr_raise_interrupt(avr, &usart->stock->uart->rxc); /* sets RXC */
 		*status |= RXC; /* also if the interrupt was already pending */
 	}
 }
 
-static void on_start_bit(void *param)
+/* The receiver does not slow the sender down. */
+static double begin_frame(void *param, double sender_frame_cycles)
 {
 	struct usart *usart = param;
-	if (usart->received_count < RECEIVE_CAPACITY)
-		return;
-	usart->received_count--; /* the next byte overwrites the shift register */
-	usart->has_overrun = true;
-	usart->overrun_count++;
-	update_receive_flags(usart);
+	if (usart->received_count == RECEIVE_CAPACITY) {
+		usart->received_count--; /* the next byte overwrites the shift register */
+		usart->has_overrun = true;
+		usart->overrun_count++;
+		update_receive_flags(usart);
+	}
+	return sender_frame_cycles;
 }
 
 static uint8_t receive_byte(void *param, struct line_byte byte, double sender_cycles_per_bit)
 {
 	struct usart *usart = param;
-	const avr_t *avr = usart->avr;
+	const avr_t *avr = usart->interrupts->avr;
 	if (!(avr->data[REG_UCSR0B] & RXEN))
 		return byte.value;
 	double ratio = usart_cycles_per_bit(avr) / sender_cycles_per_bit;
@@ -85,7 +87,7 @@ static uint8_t read_data(avr_t *avr, avr_io_addr_t addr, void *param)
 	for (int i = 0; i < usart->received_count; i++)
 		usart->received[i] = usart->received[i + 1];
 	usart->has_overrun = false;
-	usart->vectors->rxc.pending = 0;
+	usart->stock->uart->rxc.pending = 0;
 	interrupts_request_check(usart->interrupts);
 	update_receive_flags(usart);
 	avr->data[REG_UDR0] = byte;
@@ -95,15 +97,15 @@ static uint8_t read_data(avr_t *avr, avr_io_addr_t addr, void *param)
 static avr_cycle_count_t finish_frame(avr_t *avr, avr_cycle_count_t when, void *param)
 {
 	struct usart *usart = param;
-	serial_bytes_push(usart->transmitted, when, usart->sent_byte);
+	serial_bytes_push(usart->stock->transmitted, when, usart->sent_byte);
 	if (usart->has_waiting_byte) {
 		usart->sent_byte = usart->waiting_byte;
 		usart->has_waiting_byte = false;
-		avr_raise_interrupt(avr, &usart->vectors->udrc);
+		avr_raise_interrupt(avr, &usart->stock->uart->udrc);
 		return when + FRAME_BITS * usart_cycles_per_bit(avr);
 	}
 	usart->is_sending = false;
-	avr_raise_interrupt(avr, &usart->vectors->txc);
+	avr_raise_interrupt(avr, &usart->stock->uart->txc);
 	return 0;
 }
 
@@ -121,7 +123,7 @@ static void write_data(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *para
 		usart->waiting_byte = value;
 		usart->has_waiting_byte = true;
 		avr->data[REG_UCSR0A] &= ~UDRE;
-		usart->vectors->udrc.pending = 0;
+		usart->stock->uart->udrc.pending = 0;
 	}
 }
 
@@ -131,7 +133,7 @@ static void write_status(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *pa
 	uint8_t *status = &avr->data[REG_UCSR0A];
 	if (value & TXC) {
 		*status &= ~TXC;
-		usart->vectors->txc.pending = 0;
+		usart->stock->uart->txc.pending = 0;
 	}
 	*status = (*status & ~(U2X | MPCM)) | (value & (U2X | MPCM));
 }
@@ -148,25 +150,17 @@ static void write_control(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *p
 	interrupts_request_check(usart->interrupts); /* an interrupt fires if it is enabled while its flag is set */
 }
 
-/* The receiver does not slow the sender down. */
-static double frame_cycles(void *param, double sender_frame_cycles)
-{
-	return sender_frame_cycles;
-}
-
 struct receiver usart_receiver(struct usart *usart)
 {
-	return (struct receiver){ usart, frame_cycles, on_start_bit, receive_byte };
+	return (struct receiver){ usart, begin_frame, receive_byte };
 }
 
 void usart_reset(struct usart *usart)
 {
-	avr_t *avr = usart->avr;
+	avr_t *avr = usart->interrupts->avr;
 	*usart = (struct usart){
-		.avr = avr,
-		.vectors = usart->vectors,
+		.stock = usart->stock,
 		.interrupts = usart->interrupts,
-		.transmitted = usart->transmitted,
 		.overrun_count = usart->overrun_count,
 	};
 	avr_cycle_timer_cancel(avr, finish_frame, usart);
@@ -175,20 +169,14 @@ void usart_reset(struct usart *usart)
 	avr->data[REG_UCSR0C] = 0x06;
 }
 
-void usart_attach(struct usart *usart, struct interrupts *interrupts, avr_uart_t *vectors,
-                  struct serial_bytes *transmitted)
+void usart_attach(struct usart *usart, struct interrupts *interrupts,
+                  const struct stock_uart *stock)
 {
 	avr_t *avr = interrupts->avr;
-	usart->avr = avr;
-	usart->vectors = vectors;
+	usart->stock = stock;
 	usart->interrupts = interrupts;
-	usart->transmitted = transmitted;
-	hook_read(avr, REG_UDR0, read_data, usart);
-	hook_write(avr, REG_UDR0, write_data, usart);
-	hook_read(avr, REG_UCSR0A, NULL, NULL);
-	hook_write(avr, REG_UCSR0A, write_status, usart);
-	hook_read(avr, REG_UCSR0B, NULL, NULL);
-	hook_write(avr, REG_UCSR0B, write_control, usart);
-	hook_read(avr, REG_UBRR0L, NULL, NULL);
-	hook_write(avr, REG_UBRR0L, NULL, NULL);
+	hook_register(avr, REG_UDR0, read_data, write_data, usart);
+	hook_register(avr, REG_UCSR0A, NULL, write_status, usart);
+	hook_register(avr, REG_UCSR0B, NULL, write_control, usart);
+	hook_register(avr, REG_UBRR0L, NULL, NULL, NULL);
 }

@@ -9,18 +9,15 @@
  */
 #pragma once
 
-#include <simavr/avr_uart.h>
-
 #include "interrupts.h"
-#include "sender.h"
+#include "stock_uart.h"
 
 #define RECEIVE_CAPACITY 3 /* bytes: two in the buffer, one in the shift register */
 
 struct usart {
-	avr_t *avr;
-	avr_uart_t *vectors;              /* simavr's USART0, for its interrupt vectors */
+	/* simavr's USART0, for its interrupt vectors and the record of the transmitted bytes. */
+	const struct stock_uart *stock;
 	struct interrupts *interrupts;
-	struct serial_bytes *transmitted; /* record of the bytes that the chip has sent */
 	struct received_byte { uint8_t value; bool has_frame_error; } received[RECEIVE_CAPACITY];
 	uint8_t received_count;           /* number of bytes in `received` */
 	bool has_overrun;                 /* DOR: a byte was lost after UDR0 was last read */
@@ -32,8 +29,8 @@ struct usart {
 };
 
 /* Replaces simavr's callbacks for USART0's registers. */
-void usart_attach(struct usart *usart, struct interrupts *interrupts, avr_uart_t *vectors,
-                  struct serial_bytes *transmitted);
+void usart_attach(struct usart *usart, struct interrupts *interrupts,
+                  const struct stock_uart *stock);
 void usart_reset(struct usart *usart);
 /* Returns the USART as the receiver at the end of the sender's cable. */
 struct receiver usart_receiver(struct usart *usart);

@@ -42,13 +42,12 @@ static avr_cycle_count_t on_time_out(avr_t *avr, avr_cycle_count_t when, void *p
 
 static void schedule_time_out(struct watchdog *watchdog)
 {
-	avr_t *avr = watchdog->avr;
+	avr_t *avr = watchdog->interrupts->avr;
 	uint8_t control = avr->data[REG_WDTCSR];
 	avr_cycle_timer_cancel(avr, on_time_out, watchdog);
 	if (!is_on(control))
 		return;
-	uint64_t time_out_cycle = watchdog->counter_start + period_cycles(control);
-	avr_cycle_timer_register(avr, chip_cycles_until(avr, time_out_cycle), on_time_out, watchdog);
+	chip_call_at(avr, watchdog->counter_start + period_cycles(control), on_time_out, watchdog);
 }
 
 /* Called by simavr with each request to its parts, such as `wdr`. Returns -1 for other requests. */
@@ -57,7 +56,7 @@ static int on_request(avr_io_t *io, uint32_t request, void *param)
 	if (request != AVR_IOCTL_WATCHDOG_RESET)
 		return -1;
 	struct watchdog *watchdog = (struct watchdog *)io;
-	watchdog->counter_start = watchdog->avr->cycle + 1; /* `wdr` ends with this cycle */
+	watchdog->counter_start = io->avr->cycle + 1; /* `wdr` ends with this cycle */
 	schedule_time_out(watchdog);
 	return 0;
 }
@@ -65,7 +64,7 @@ static int on_request(avr_io_t *io, uint32_t request, void *param)
 static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
 	struct watchdog *watchdog = param;
-	uint64_t cycle = instruction_effect_cycle(watchdog->instruction);
+	uint64_t cycle = instruction_effect_cycle(watchdog->interrupts->instruction);
 	uint8_t old = avr->data[address];
 	bool may_change = cycle <= watchdog->change_window_end && !(value & WDCE);
 	uint8_t control = (value & WDIE) | (old & WDIF & ~value);
@@ -97,33 +96,29 @@ static uint8_t read_control(avr_t *avr, avr_io_addr_t address, void *param)
 static void on_vector(struct avr_irq_t *irq, uint32_t is_running, void *param)
 {
 	struct watchdog *watchdog = param;
-	uint8_t *control = &watchdog->avr->data[REG_WDTCSR];
+	uint8_t *control = &watchdog->interrupts->avr->data[REG_WDTCSR];
 	if (is_running)
 		*control &= *control & WDE ? ~(WDIF | WDIE) : ~WDIF;
 }
 
-void watchdog_attach(struct watchdog *watchdog, const struct instruction *instruction,
-                     struct interrupts *interrupts, struct reset *reset)
+void watchdog_attach(struct watchdog *watchdog, struct interrupts *interrupts, struct reset *reset)
 {
-	avr_t *avr = instruction->avr;
+	avr_t *avr = interrupts->avr;
 	*watchdog = (struct watchdog){
 		.io = { .kind = "simulated-uno watchdog", .ioctl = on_request },
-		.avr = avr,
-		.instruction = instruction,
 		.interrupts = interrupts,
 		.reset = reset,
 		.stock = (avr_watchdog_t *)chip_find_peripheral(avr, "watchdog"),
 	};
 	avr_register_io(avr, &watchdog->io); /* precedes simavr's own watchdog in the list */
-	hook_write(avr, REG_WDTCSR, write_control, watchdog);
-	hook_read(avr, REG_WDTCSR, read_control, watchdog);
+	hook_register(avr, REG_WDTCSR, read_control, write_control, watchdog);
 	avr_irq_register_notify(watchdog->stock->watchdog.irq + AVR_INT_IRQ_RUNNING, on_vector,
 	                        watchdog);
 }
 
 void watchdog_reset(struct watchdog *watchdog)
 {
-	avr_t *avr = watchdog->avr;
+	avr_t *avr = watchdog->interrupts->avr;
 	watchdog->change_window_end = 0;
 	watchdog->counter_start = avr->cycle;
 	avr->data[REG_WDTCSR] = watchdog->reset->mcusr & RESET_WATCHDOG ? WDE : 0;
@@ -132,5 +127,5 @@ void watchdog_reset(struct watchdog *watchdog)
 
 bool watchdog_may_reset(const struct watchdog *watchdog)
 {
-	return watchdog->avr->data[REG_WDTCSR] & WDE;
+	return watchdog->interrupts->avr->data[REG_WDTCSR] & WDE;
 }

@@ -9,14 +9,11 @@
 
 #include <simavr/avr_watchdog.h>
 
-#include "instruction.h"
 #include "interrupts.h"
 #include "reset.h"
 
 struct watchdog {
 	avr_io_t io;                /* our entry in simavr's list of parts, which receives `wdr` */
-	avr_t *avr;
-	const struct instruction *instruction;
 	struct interrupts *interrupts;
 	struct reset *reset;
 	avr_watchdog_t *stock;      /* simavr's watchdog, for its interrupt vector */
@@ -25,8 +22,7 @@ struct watchdog {
 };
 
 /* Replaces simavr's watchdog. */
-void watchdog_attach(struct watchdog *watchdog, const struct instruction *instruction,
-                     struct interrupts *interrupts, struct reset *reset);
+void watchdog_attach(struct watchdog *watchdog, struct interrupts *interrupts, struct reset *reset);
 /* Switches the watchdog on if WDRF is set, otherwise off; must be called after a reset. */
 void watchdog_reset(struct watchdog *watchdog);
 /* True if the watchdog will reset the chip unless the firmware acts. */

@@ -7,13 +7,7 @@ impl Uno {
     /// Closes or opens a contact between a pin and ground, such as a push button. An input pin is low while its
     /// contact is closed, and high while the contact is open and the pin's pull-up is on.
     pub fn set_contact(&mut self, pin: Pin, is_closed: bool) {
-        // PIND, PINB and PINC (data sheet, 14.4).
-        let (address, bit) = match pin.number() {
-            number @ 0..=7 => (0x29, number),
-            number @ 8..=13 => (0x23, number - 8),
-            number => (0x26, number - 14),
-        };
         // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim keeps two bits.
-        unsafe { ffi::uno_set_contact(self.raw, address, bit, is_closed) }
+        unsafe { ffi::uno_set_contact(self.raw, pin.number(), is_closed) }
     }
 }

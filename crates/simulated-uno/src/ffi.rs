@@ -4,6 +4,8 @@
 
 use std::ffi::{c_char, c_void};
 
+use crate::VectorStats;
+
 /// Opaque `struct uno`, accessed only by the shim.
 #[repr(C)]
 pub struct RawUno {
@@ -20,16 +22,6 @@ pub struct RawList {
     pub capacity: usize,
     /// The size of an item, bytes.
     pub item_size: usize,
-}
-
-/// `struct vector_stats` of the shim: statistics of an interrupt vector.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct RawVectorStats {
-    /// The number of times that the interrupt was served.
-    pub entry_count: u64,
-    /// The cycles spent in the interrupt's handler.
-    pub cycles: u64,
 }
 
 /// The number of interrupt vectors, `CHIP_VECTOR_COUNT` of the shim.
@@ -54,20 +46,17 @@ pub enum StopReason {
 
 unsafe extern "C" {
     pub fn uno_set_logger();
-    pub fn uno_new(follows_data_sheet: bool, pins: u32, baud: f64) -> *mut RawUno;
+    pub fn uno_new(follows_data_sheet: bool, baud: f64) -> *mut RawUno;
     pub fn uno_free(uno: *mut RawUno);
-    pub fn uno_load(uno: *mut RawUno, code: *const u8, size: u32, address: u32) -> bool;
     pub fn uno_set_program_bounds(uno: *mut RawUno, code_end: u32, data_end: u16);
     pub fn uno_set_boot_address(uno: *mut RawUno, address: u32);
     pub fn uno_flash(uno: *mut RawUno) -> *mut u8;
-    pub fn uno_run(uno: *mut RawUno, until: u64) -> StopReason;
-    pub fn uno_set_stop_at_line(uno: *mut RawUno, is_enabled: bool);
+    pub fn uno_run(uno: *mut RawUno, until: u64, stops_at_line: bool) -> StopReason;
     pub fn uno_time_calls(uno: *mut RawUno, is_enabled: bool, entry_address: u32);
     pub fn uno_send(uno: *mut RawUno, bytes: *const u8, length: usize, is_stop_bit_low: bool);
     pub fn uno_set_flood(uno: *mut RawUno, bytes: *const u8, length: usize);
     pub fn uno_set_baud(uno: *mut RawUno, baud: f64);
     pub fn uno_cycles_per_bit(uno: *const RawUno) -> u32;
-    pub fn uno_sample_byte(byte: u8, ratio: f64) -> u8;
     pub fn uno_block_cpu(uno: *mut RawUno, cycles: u64);
     pub fn uno_stall_main(uno: *mut RawUno, until: u64);
     pub fn uno_poke(uno: *mut RawUno, address: u16, value: u8);
@@ -82,8 +71,7 @@ unsafe extern "C" {
     pub fn uno_lowest_stack_address(uno: *const RawUno) -> u16;
     pub fn uno_error_message(uno: *const RawUno) -> *const c_char;
     pub fn uno_data(uno: *const RawUno) -> *const u8;
-    pub fn uno_data_size(uno: *const RawUno) -> u32;
-    pub fn uno_vectors(uno: *const RawUno) -> *const RawVectorStats;
+    pub fn uno_vectors(uno: *const RawUno) -> *const VectorStats;
     pub fn uno_edges(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_transmitted(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_received(uno: *mut RawUno) -> *mut RawList;
@@ -105,6 +93,10 @@ unsafe extern "C" {
     pub fn uno_ramp_supply(uno: *mut RawUno, mv: f64, cycles: u64);
     pub fn uno_set_brown_out(uno: *mut RawUno, mv: f64);
     pub fn uno_set_bandgap(uno: *mut RawUno, mv: f64);
-    pub fn uno_set_contact(uno: *mut RawUno, address: u16, bit: u8, is_closed: bool);
+    pub fn uno_set_contact(uno: *mut RawUno, number: u8, is_closed: bool);
     pub fn uno_set_analog(uno: *mut RawUno, channel: u8, mv: u16);
+    /// Returns the byte that a receiver reads if its bits are `ratio` times as long as the sender's. It is declared in
+    /// `shim/usart.h`.
+    // Safe, because it only computes with two numbers.
+    pub safe fn usart_sample_byte(byte: u8, ratio: f64) -> u8;
 }

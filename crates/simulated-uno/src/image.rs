@@ -109,11 +109,23 @@ impl Symbol {
     }
 }
 
+/// Returns the segment of these bytes at a byte address in flash.
+///
+/// # Errors
+/// Returns [`LoadError::TooLarge`] if the bytes are not inside flash.
+pub(crate) fn flash_segment(address: u64, bytes: Vec<u8>) -> Result<(u32, Vec<u8>), LoadError> {
+    let size = bytes.len() as u64;
+    if address + size > u64::from(FLASH_SIZE) {
+        return Err(LoadError::TooLarge { address, size });
+    }
+    Ok((address as u32, bytes))
+}
+
 /// A firmware image, ready to load.
 #[derive(Debug, Clone)]
 pub struct Image {
     /// The segments in flash: byte address and bytes.
-    pub(crate) segments: Vec<(u32, Vec<u8>)>,
+    segments: Vec<(u32, Vec<u8>)>,
     symbols: Vec<Symbol>,
     data_end: u16,
 }
@@ -171,31 +183,23 @@ impl Image {
             if load_address >= DATA_SPACE || data.is_empty() {
                 continue; // EEPROM and fuses are not flash; .bss has no bytes
             }
-            let size = data.len() as u64;
-            if load_address + size > u64::from(FLASH_SIZE) {
-                let address = load_address;
-                return Err(LoadError::TooLarge { address, size });
-            }
-            segments.push((load_address as u32, data.to_vec()));
+            segments.push(flash_segment(load_address, data.to_vec())?);
         }
         if segments.is_empty() {
             return Err(LoadError::Empty);
         }
-        let mut symbols = Vec::new();
-        for symbol in file.symbols() {
-            let Some(name) = symbol.name().ok().filter(|name| !name.is_empty()) else {
-                continue;
-            };
-            symbols.push(Symbol {
+        let symbols = file.symbols().filter_map(|symbol| {
+            let name = symbol.name().ok().filter(|name| !name.is_empty())?;
+            Some(Symbol {
                 name: name.to_owned(),
                 address: symbol.address(),
                 size: symbol.size(),
                 is_function: symbol.kind() == SymbolKind::Text,
-            });
-        }
+            })
+        });
         Ok(Self {
             segments,
-            symbols,
+            symbols: symbols.collect(),
             data_end,
         })
     }

@@ -30,7 +30,6 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use crate::pty::Pty;
-use crate::serial::sample_byte;
 use crate::{FREQUENCY, Radio, State, Uno};
 
 /// The time between two updates of the port and the chip, the same as in the UNO's USB chip.
@@ -50,8 +49,6 @@ pub struct Port {
     pty: Pty,
     /// The chip's bytes that wait for room in the pseudo terminal.
     unread_bytes: Vec<u8>,
-    /// True if a program had the port open at the last check.
-    is_open: bool,
     /// The radio module between the port and the chip; `None` for a cable.
     radio: Option<Radio>,
     /// An instant of the wall clock and the chip's cycle at that instant, from which the chip's time is computed;
@@ -68,7 +65,6 @@ impl Port {
         Ok(Self {
             pty: Pty::new()?,
             unread_bytes: Vec::new(),
-            is_open: false,
             radio: None,
             anchor: None,
         })
@@ -91,7 +87,7 @@ impl Port {
     /// True if a program had the port open at the last check.
     #[must_use]
     pub fn is_open(&self) -> bool {
-        self.is_open
+        self.pty.is_open
     }
 
     /// Runs `uno` in real time for `duration` of the wall clock, and passes bytes between `uno` and the program that
@@ -144,9 +140,7 @@ impl Port {
     /// Passes bytes in both directions and lets the chip catch up with the wall clock. Must be called every
     /// [`UPDATE_PERIOD`].
     fn update(&mut self, uno: &mut Uno) -> io::Result<()> {
-        let port_state = self.pty.poll_state()?;
-        self.is_open = port_state.is_open;
-        if port_state.was_opened {
+        if self.pty.poll_opening()? {
             self.unread_bytes.clear();
             if self.radio.is_none() {
                 uno.take_transmitted();
@@ -171,15 +165,10 @@ impl Port {
         uno.clear_received_bytes();
         let arrived_bytes = match &mut self.radio {
             Some(radio) => radio.exchange(uno),
-            None => {
-                let ratio = uno.chip_baud() / baud;
-                let sent_bytes = uno.take_transmitted().into_iter();
-                let read_bytes = sent_bytes.map(|sample| sample_byte(sample.byte, ratio));
-                read_bytes.collect()
-            }
+            None => uno.take_bytes_at(baud),
         };
         // The program may have closed the port meanwhile, so check again.
-        if self.is_open && self.pty.is_open()? {
+        if self.pty.is_open && self.pty.is_open_now()? {
             self.unread_bytes.extend(arrived_bytes);
             self.unread_bytes.truncate(MAX_UNREAD_BYTES);
             let written_count = self.pty.write(&self.unread_bytes)?;

@@ -29,15 +29,6 @@ const DEFAULT_BAUD: u32 = 115_200;
 /// The longest time between fork and exec of a new process on a busy machine.
 const MAX_START_TIME: Duration = Duration::from_secs(10);
 
-/// The port's state, and its changes since the last check.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct PortState {
-    /// True while a program has the port open.
-    pub(crate) is_open: bool,
-    /// True if the port has been opened after it was closed.
-    pub(crate) was_opened: bool,
-}
-
 /// A pseudo terminal. It exists until this value is dropped.
 #[derive(Debug)]
 pub(crate) struct Pty {
@@ -47,8 +38,8 @@ pub(crate) struct Pty {
     event_queue: OwnedFd,
     /// The port: the end that other programs open.
     path: PathBuf,
-    /// True if the port was open at the last check.
-    was_open: bool,
+    /// True if a program had the port open at the last check.
+    pub(crate) is_open: bool,
     /// True if a program has closed the port but the port is still open. The system may report a new opening as late as
     /// at the next check.
     may_be_reopened: bool,
@@ -76,7 +67,7 @@ impl Pty {
         drop(other_end);
         let our_end = File::from(our_end);
         // No other program has received the port's name yet.
-        if !wait_until(|| Ok(!is_open(&our_end)?))? {
+        if !wait_until(|| Ok(!is_port_open(&our_end)?))? {
             let message = "a program that was started at the same time keeps the new port open";
             return Err(io::Error::new(ErrorKind::TimedOut, message));
         }
@@ -87,7 +78,7 @@ impl Pty {
             our_end,
             event_queue,
             path,
-            was_open: false,
+            is_open: false,
             may_be_reopened: false,
         })
     }
@@ -97,12 +88,13 @@ impl Pty {
         &self.path
     }
 
-    /// Checks the port. Detects every opening, however short, and however short the pause before it.
+    /// Checks the port. Returns true if it has been opened after it was closed. Detects every opening, however short,
+    /// and however short the pause before it.
     ///
     /// # Errors
     /// Fails if the system is out of memory.
-    pub(crate) fn poll_state(&mut self) -> io::Result<PortState> {
-        let was_open = self.was_open;
+    pub(crate) fn poll_opening(&mut self) -> io::Result<bool> {
+        let was_open = self.is_open;
         let (mut was_closed, mut was_opened) = (!was_open || self.may_be_reopened, false);
         let mut has_close_event = false;
         self.read_events(|event| {
@@ -113,29 +105,26 @@ impl Pty {
                 has_close_event = true;
             }
         })?;
-        let mut is_port_open = self.is_open()?;
-        was_opened |= is_port_open && !was_open;
+        let mut is_open = self.is_open_now()?;
+        was_opened |= is_open && !was_open;
         // Unread bytes are discarded only if all programs have closed the port.
-        if was_open && (was_opened || !is_port_open) {
+        if was_open && (was_opened || !is_open) {
             self.discard_unread()?;
-            let is_port_open_after_discard = self.is_open()?;
-            was_opened |= is_port_open_after_discard && !is_port_open;
-            is_port_open = is_port_open_after_discard;
+            let is_open_after_discard = self.is_open_now()?;
+            was_opened |= is_open_after_discard && !is_open;
+            is_open = is_open_after_discard;
         }
-        self.was_open = is_port_open;
-        self.may_be_reopened = has_close_event && is_port_open && !was_opened;
-        Ok(PortState {
-            is_open: is_port_open,
-            was_opened,
-        })
+        self.is_open = is_open;
+        self.may_be_reopened = has_close_event && is_open && !was_opened;
+        Ok(was_opened)
     }
 
     /// True if a program has the port open at this moment.
     ///
     /// # Errors
     /// Fails if the system is out of memory.
-    pub(crate) fn is_open(&self) -> io::Result<bool> {
-        is_open(&self.our_end)
+    pub(crate) fn is_open_now(&self) -> io::Result<bool> {
+        is_port_open(&self.our_end)
     }
 
     /// Calls `on_event` with each opening and closing of the port since the last call.
@@ -165,7 +154,7 @@ impl Pty {
         let mut was_closed = false;
         wait_until(|| {
             self.read_events(|event| was_closed |= event.contains(ReadFlags::CLOSE_NOWRITE))?;
-            Ok(was_closed || !self.is_open()?)
+            Ok(was_closed || !self.is_open_now()?)
         })?;
         self.read_events(|_rest| {})
     }
@@ -204,7 +193,7 @@ impl Pty {
 }
 
 /// True if a program has the port open at this moment.
-fn is_open(our_end: &File) -> io::Result<bool> {
+fn is_port_open(our_end: &File) -> io::Result<bool> {
     let mut fds = [PollFd::new(our_end, PollFlags::IN)];
     poll(&mut fds, Some(&Timespec::default()))?;
     Ok(!fds[0].revents().contains(PollFlags::HUP))

@@ -20,7 +20,7 @@
 
 use std::collections::VecDeque;
 
-use crate::serial::sample_byte;
+use crate::ffi::usart_sample_byte;
 use crate::{CYCLES_PER_MS, Uno};
 
 /// The largest number of bytes in a packet.
@@ -166,9 +166,7 @@ impl Radio {
     /// the bytes that have arrived at the phone. Must be called every millisecond of the chip's time.
     pub fn exchange(&mut self, uno: &mut Uno) -> Vec<u8> {
         uno.set_baud(self.link.baud);
-        let sent_bytes = uno.take_transmitted().into_iter();
-        let sent_bytes: Vec<u8> = sent_bytes.map(|sample| sample.byte).collect();
-        let received = self.received_bytes(&sent_bytes, uno.chip_baud());
+        let received = uno.take_bytes_at(self.link.baud);
         let [to_uno, to_phone] = self.pass(&received, uno.cycle());
         uno.send(&to_uno);
         to_phone
@@ -178,8 +176,10 @@ impl Radio {
     #[must_use]
     pub fn received_bytes(&self, sent_bytes: &[u8], chip_baud: f64) -> Vec<u8> {
         let ratio = chip_baud / self.link.baud;
-        let received_bytes = sent_bytes.iter().map(|byte| sample_byte(*byte, ratio));
-        received_bytes.collect()
+        sent_bytes
+            .iter()
+            .map(|byte| usart_sample_byte(*byte, ratio))
+            .collect()
     }
 
     /// Takes the bytes that the module has received from the chip, and returns the bytes that have arrived by now at

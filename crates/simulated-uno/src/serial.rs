@@ -108,16 +108,18 @@ impl Uno {
         self.take_items(ffi::uno_transmitted)
     }
 
+    /// Removes the bytes that the UNO has transmitted, and returns the bytes that a receiver with this baud rate reads.
+    pub(crate) fn take_bytes_at(&mut self, baud: f64) -> Vec<u8> {
+        let ratio = self.chip_baud() / baud;
+        let sent_bytes = self.take_transmitted().into_iter();
+        let read_bytes = sent_bytes.map(|sent| ffi::usart_sample_byte(sent.byte, ratio));
+        read_bytes.collect()
+    }
+
     /// All bytes that have arrived at the UNO, including bytes lost by an overrun, each with the cycle at which it was
     /// complete. A byte with a framing error is 0xff.
     #[must_use]
     pub fn received_by_uno(&self) -> Vec<SerialByte> {
         self.copy_items(ffi::uno_received)
     }
-}
-
-/// Returns the byte that a receiver reads if its bits are `ratio` times as long as the sender's.
-pub(crate) fn sample_byte(byte: u8, ratio: f64) -> u8 {
-    // SAFETY: the shim computes with two numbers.
-    unsafe { ffi::uno_sample_byte(byte, ratio) }
 }

@@ -53,7 +53,9 @@ impl Call {
 }
 
 /// Statistics of one interrupt.
+// `struct vector_stats` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C)]
 pub struct VectorStats {
     /// The vector number, counted from 0 (reset); the data sheet's table counts from 1.
     pub vector: u8,

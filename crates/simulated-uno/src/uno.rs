@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Once;
 
 use crate::ffi::{self, RawList, RawUno};
-use crate::image::{Image, LoadError, SRAM_END};
+use crate::image::{FLASH_SIZE, Image, LoadError, SRAM_END};
 use crate::traces::{Call, Mark, VectorStats};
 use crate::{CYCLES_PER_MS, Edge, Pin, Pulse};
 
@@ -72,17 +72,15 @@ impl Uno {
     #[must_use]
     pub fn with_image(image: Image, fidelity: Fidelity) -> Self {
         static LOGGER: Once = Once::new();
-        let recorded_pins = 0xf_fffc;
         let follows_data_sheet = fidelity == Fidelity::DataSheet;
-        // SAFETY: the shim's constructor aborts instead of returning null; each
-        // segment is inside flash, checked by `Image` and again by the shim.
+        let code = image.flash();
+        let fits = code.len() <= FLASH_SIZE as usize;
+        assert!(fits, "every segment of an image is inside flash");
+        // SAFETY: the shim's constructor aborts instead of returning null; the code fits into the chip's flash.
         let raw = unsafe {
             LOGGER.call_once(|| ffi::uno_set_logger());
-            let raw = ffi::uno_new(follows_data_sheet, recorded_pins, Self::DEFAULT_BAUD);
-            for (address, bytes) in &image.segments {
-                let fits = ffi::uno_load(raw, bytes.as_ptr(), bytes.len() as u32, *address);
-                assert!(fits, "every segment of an image is inside flash");
-            }
+            let raw = ffi::uno_new(follows_data_sheet, Self::DEFAULT_BAUD);
+            std::ptr::copy_nonoverlapping(code.as_ptr(), ffi::uno_flash(raw), code.len());
             ffi::uno_set_program_bounds(raw, image.code_end(), image.data_end());
             raw
         };
@@ -158,10 +156,7 @@ impl Uno {
     pub(crate) fn run_until_cycle_or_line(&mut self, end_cycle: u64, stop_at_line: bool) -> bool {
         // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim stops at any cycle, and every
         // value that it returns is one of `StopReason`.
-        let stop_reason = unsafe {
-            ffi::uno_set_stop_at_line(self.raw, stop_at_line);
-            ffi::uno_run(self.raw, end_cycle)
-        };
+        let stop_reason = unsafe { ffi::uno_run(self.raw, end_cycle, stop_at_line) };
         match stop_reason {
             ffi::StopReason::CycleReached => {}
             ffi::StopReason::LineSent => return true,
@@ -278,12 +273,9 @@ impl Uno {
     /// The byte at a data address (registers, I/O or SRAM); 0 beyond SRAM.
     #[must_use]
     pub fn peek(&self, address: u16) -> u8 {
-        // SAFETY: `raw` is valid (see `Uno`). The data space has `uno_data_size` bytes as long
+        // SAFETY: `raw` is valid (see `Uno`). The data space has at least `SRAM_END` bytes as long
         // as the instance lives, and nothing runs while they are borrowed.
-        let data = unsafe {
-            let size = ffi::uno_data_size(self.raw) as usize;
-            std::slice::from_raw_parts(ffi::uno_data(self.raw), size)
-        };
+        let data = unsafe { std::slice::from_raw_parts(ffi::uno_data(self.raw), SRAM_END.into()) };
         data.get(usize::from(address)).copied().unwrap_or(0)
     }
 
@@ -294,14 +286,8 @@ impl Uno {
         // the instance, and nothing runs while they are borrowed.
         let vectors =
             unsafe { std::slice::from_raw_parts(ffi::uno_vectors(self.raw), ffi::VECTOR_COUNT) };
-        let numbered_vectors = vectors.iter().enumerate();
-        let served_vectors = numbered_vectors.filter(|(_, raw_stats)| raw_stats.entry_count > 0);
-        let stats = served_vectors.map(|(vector, raw_stats)| VectorStats {
-            vector: vector as u8,
-            entry_count: raw_stats.entry_count,
-            cycles: raw_stats.cycles,
-        });
-        stats.collect()
+        let served_vectors = vectors.iter().filter(|stats| stats.entry_count > 0);
+        served_vectors.copied().collect()
     }
 
     /// Copies the items of one of the shim's lists.

@@ -33,7 +33,7 @@ pub use goal::Goal;
 pub use plan::GaitKind;
 pub use scorer::BuiltGait;
 pub use search::{Search, trial_count};
-pub use tuning::{ScoredParameters, Tuning, TuningError};
+pub use tuning::{Tuning, TuningError};
 pub use variation::{
     FRICTION_FACTORS, PLAY_SPREAD_TEXT, SPREAD_TEXT, Variation, compute_quantiles,
 };

@@ -47,16 +47,13 @@ impl GaitKind {
         let (duty, start, amplitude_index) = match self {
             Self::Wave => {
                 let lag = round_to_decimals(parameter(1), 2) % 1.0;
-                // The two legs of a pair are half a cycle apart. In a straight gait, the pairs are the hind legs and
-                // the front legs.
-                let [lf, rf] = match goal {
-                    Goal::Straight(_) => [lag, (lag + 0.5) % 1.0],
-                    Goal::Turn(_) => [(lag + 0.5) % 1.0, lag],
-                };
-                // In a turn, the pairs are LH and RF, and LF and RH; therefore RH takes the value `rf`.
+                // The two legs of a pair are half a cycle apart.
+                let opposite = (lag + 0.5) % 1.0;
                 let starts = match goal {
-                    Goal::Straight(_) => [lf, rf, 0.5, 0.0],
-                    Goal::Turn(_) => [lf, 0.5, rf, 0.0],
+                    // The pairs are the hind legs and the front legs.
+                    Goal::Straight(_) => [lag, opposite, 0.5, 0.0],
+                    // The pairs are LH and RF, and LF and RH.
+                    Goal::Turn(_) => [opposite, 0.5, lag, 0.0],
                 };
                 let starts = starts.map(|start| round_to_decimals(start, 2));
                 (round_to_decimals(scale(0, DUTY_RANGE), 2), starts, 2)

@@ -105,8 +105,10 @@ fn round_period(period: f64) -> f64 {
 /// Scores gaits on random robots.
 #[derive(Debug, Clone)]
 pub struct Scorer {
-    robot: Robot,
-    ground: GroundContact,
+    /// The robot without variation.
+    pub robot: Robot,
+    /// The ground without variation.
+    pub ground: GroundContact,
     goal: Goal,
     variations: Vec<Variation>,
 }

@@ -35,22 +35,9 @@ pub enum TuningError {
     },
 }
 
-/// Parameters of a gait and their score.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ScoredParameters {
-    /// The gait's kind.
-    pub kind: GaitKind,
-    /// The gait's score from [`Tuning::score`], mm/s or deg/s.
-    pub score: f64,
-    /// The gait's parameters, each 0 to 1.
-    pub parameters: Vec<f64>,
-}
-
 /// The task of finding a faster gait than a given gait.
 #[derive(Debug, Clone)]
 pub struct Tuning {
-    robot: Robot,
-    ground: GroundContact,
     gait: CheckedGait,
     /// Name of the tuned gait.
     tuned_gait_name: String,
@@ -78,10 +65,14 @@ impl Tuning {
         seed: u64,
     ) -> Result<Self, TuningError> {
         let goal = Goal::from_gait(gait, ground)?;
-        let rate = choose_rate(robot, gait, rate)?;
+        let max_rate = robot.speed_limits().gait_slew;
+        // Without a request, the tuned gait may be as fast as the given gait's fastest servo.
+        let rate = match rate {
+            None => gait.audit().peak_speed.speed,
+            Some(rate) if (MIN_RATE..=max_rate).contains(&rate) => rate,
+            Some(rate) => return Err(TuningError::Rate { rate, max_rate }),
+        };
         Ok(Self {
-            robot: robot.clone(),
-            ground: *ground,
             gait: gait.clone(),
             tuned_gait_name: name.to_owned(),
             rate,
@@ -114,42 +105,48 @@ impl Tuning {
         self.scorer.score(self.build(kind, parameters)?.gait())
     }
 
-    /// Builds the best-scored gait whose movement does not depend on unknown differences between the pads. Returns
+    /// Builds the best-scored gait whose movement does not depend on unknown differences between the pads, from the
+    /// scores and parameters that the searches have found for each kind, in the order of [`GaitKind::ALL`]. Returns
     /// `None` if there is no such gait.
-    pub fn build_best(&self, mut candidates: Vec<ScoredParameters>) -> Option<BuiltGait> {
+    pub fn build_best(
+        &self,
+        results: impl IntoIterator<Item = Vec<(f64, Vec<f64>)>>,
+    ) -> Option<BuiltGait> {
+        /// The parameters of a gait of some kind, and their score.
+        struct Candidate {
+            kind: GaitKind,
+            score: f64,
+            parameters: Vec<f64>,
+        }
+        let mut candidates = Vec::new();
+        for (kind, results) in GaitKind::ALL.into_iter().zip(results) {
+            for (score, parameters) in results {
+                candidates.push(Candidate {
+                    kind,
+                    score,
+                    parameters,
+                });
+            }
+        }
         candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
+        let ground = &self.scorer.ground;
         candidates
             .iter()
             .filter_map(|candidate| self.build(candidate.kind, &candidate.parameters))
-            .find(|candidate| candidate.gait().predict(&self.ground).is_determined())
+            .find(|built| built.gait().predict(ground).is_determined())
     }
 
     /// Compares the tuned gait with the given gait on random robots that the search has not used.
     pub fn compare(&self, tuned_gait: &BuiltGait, robot_count: usize) -> Comparison {
         let seed = self.seed.wrapping_add(COMPARISON_SEED_OFFSET);
-        let scorer = Scorer::new(&self.robot, &self.ground, self.goal(), robot_count, seed);
+        let Scorer { robot, ground, .. } = &self.scorer;
+        let scorer = Scorer::new(robot, ground, self.goal(), robot_count, seed);
         Comparison::simulate(&scorer, self.rate, &self.gait, tuned_gait)
     }
 
     fn build(&self, kind: GaitKind, parameters: &[f64]) -> Option<BuiltGait> {
         let name = &self.tuned_gait_name;
         let bars = kind.plan_gait(self.goal(), self.max_amplitude, name, parameters);
-        BuiltGait::build(&self.robot, &bars, self.rate)
+        BuiltGait::build(&self.scorer.robot, &bars, self.rate)
     }
-}
-
-/// Chooses the servos' speed limit, deg/s: the requested rate or, without a request, the gait's peak speed.
-fn choose_rate(
-    robot: &Robot,
-    gait: &CheckedGait,
-    requested_rate: Option<f64>,
-) -> Result<f64, TuningError> {
-    let Some(rate) = requested_rate else {
-        return Ok(gait.audit().peak_speed.speed);
-    };
-    let max_rate = robot.speed_limits().gait_slew;
-    if (MIN_RATE..=max_rate).contains(&rate) {
-        return Ok(rate);
-    }
-    Err(TuningError::Rate { rate, max_rate })
 }

@@ -114,11 +114,8 @@ impl Variation {
         }
         let mut move_servos = |phase: u16| {
             let targets = compute_targets(phase);
-            sweeps = std::array::from_fn(|i| match model {
-                ServoModel::Unloaded(servo) => {
-                    servo.compute_end_sweep(sweeps[i], targets[i], robot.servos()[i].us_per_degree)
-                }
-                _ => targets[i],
+            sweeps = std::array::from_fn(|i| {
+                model.compute_end_sweep(sweeps[i], targets[i], robot.servos()[i].us_per_degree)
             });
             sweeps
         };

@@ -38,6 +38,15 @@ impl ServoModel {
     pub fn for_robot(robot: &Robot) -> Self {
         Self::Motors(robot.motors())
     }
+
+    /// Computes the sweep at the end of a frame of a servo without load from the sweep `start` and the pulse's sweep
+    /// `target`, all in deg; `us_per_degree` is the servo's gain.
+    pub fn compute_end_sweep(&self, start: f64, target: f64, us_per_degree: f64) -> f64 {
+        match self {
+            Self::Unloaded(servo) => servo.compute_end_sweep(start, target, us_per_degree),
+            Self::Ideal | Self::Motors(_) => target,
+        }
+    }
 }
 
 impl UnloadedServo {
@@ -48,7 +57,7 @@ impl UnloadedServo {
 
     /// Computes the sweep at the end of a frame from the sweep `start` and the pulse's sweep `target`, all in deg;
     /// `us_per_degree` is the servo's gain.
-    pub fn compute_end_sweep(&self, start: f64, target: f64, us_per_degree: f64) -> f64 {
+    fn compute_end_sweep(&self, start: f64, target: f64, us_per_degree: f64) -> f64 {
         let half_band = self.dead_band_us / 2.0 / us_per_degree.abs();
         let max_step = self.max_rate_deg_per_s * FRAME_PERIOD_S;
         let end = start.clamp(target - half_band, target + half_band);

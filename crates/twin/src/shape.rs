@@ -30,7 +30,6 @@ impl Shape {
     /// Computes the joints from a solved pose and the legs' sweeps from neutral (deg, foot forward positive).
     pub fn from_solution(robot: &Robot, solution: &Solution, leg_sweeps: [f64; 4]) -> Self {
         let shafts = robot.lizard().shafts();
-        let crank_tips = solution.crank_tips();
         let angles: [f64; 4] = solution.pose.into();
         let mut arm_tips = shafts;
         for side in Side::ALL {
@@ -41,7 +40,7 @@ impl Shape {
         }
         Self {
             shafts,
-            crank_tips,
+            crank_tips: solution.crank_tips(),
             arm_tips,
             ends: End::ALL.map(|end| solution.point(end)),
             legs: std::array::from_fn(|i| {

@@ -67,16 +67,14 @@ impl Twin {
                 contacts
             }
             ServoModel::Ideal | ServoModel::Unloaded(_) => {
-                for i in 0..4 {
-                    let Some(target) = targets[i] else { continue };
-                    self.sweeps[i] = match self.servo_model {
-                        ServoModel::Unloaded(servo) => servo.compute_end_sweep(
+                for (i, servo) in servos.iter().enumerate() {
+                    if let Some(target) = targets[i] {
+                        self.sweeps[i] = self.servo_model.compute_end_sweep(
                             previous_sweeps[i],
                             target,
-                            servos[i].us_per_degree,
-                        ),
-                        _ => target,
-                    };
+                            servo.us_per_degree,
+                        );
+                    }
                 }
                 // The legs' sweeps without lag.
                 let leg_sweeps = std::array::from_fn(|i| FORWARD_TURN_SIGN[i] * self.sweeps[i]);

@@ -153,26 +153,23 @@ mod tests {
     #[test]
     fn blank_flash_an_incomplete_program_and_another_program_are_distinguished() {
         let image = Image::new(vec![1, 2, 3]).expect("the image fits");
-        let describe_after = |changes: &[(usize, u8)]| {
+        let cases: [(&[(usize, u8)], &str); 4] = [
+            (&[], "no program"),
+            (
+                &[(1, 0xcf), (0x1000, 7)],
+                "an incomplete program, which does nothing",
+            ),
+            (&[(0, 1), (1, 2), (2, 4)], "another program, of 3 bytes"),
+            (&[(0, 1), (0x1fff, 7)], "another program, of 8192 bytes"),
+        ];
+        for (changes, description) in cases {
             let mut flash = vec![0xff; BOOT_ADDRESS];
             for &(address, byte) in changes {
                 flash[address] = byte;
             }
-            FlashContents::compare(&flash, &image).to_string()
-        };
-        assert_eq!(describe_after(&[]), "the board has no program");
-        assert_eq!(
-            describe_after(&[(1, 0xcf), (0x1000, 7)]),
-            "the board has an incomplete program, which does nothing"
-        );
-        assert_eq!(
-            describe_after(&[(0, 1), (1, 2), (2, 4)]),
-            "the board has another program, of 3 bytes"
-        );
-        assert_eq!(
-            describe_after(&[(0, 1), (0x1fff, 7)]),
-            "the board has another program, of 8192 bytes"
-        );
+            let contents = FlashContents::compare(&flash, &image).to_string();
+            assert_eq!(contents, format!("the board has {description}"));
+        }
     }
 
     #[test]

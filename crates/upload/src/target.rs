@@ -40,14 +40,7 @@ pub struct ImageTooLong {
     /// The address after the image's last byte.
     end_address: usize,
     /// True if the board may also be a UNO, which has enough room.
-    is_model_uncertain: bool,
-}
-
-impl ImageTooLong {
-    /// True if the board may also be a UNO, which has enough room.
-    pub fn is_model_uncertain(self) -> bool {
-        self.is_model_uncertain
-    }
+    pub is_model_uncertain: bool,
 }
 
 impl Target {

@@ -13,6 +13,7 @@
 //! Pages that are already correct are not written: this saves time and wear (flash endures 10 000 writes, ATmega328P
 //! data sheet, "Features").
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::ops::Range;
 
@@ -172,15 +173,12 @@ pub async fn upload<B: Board>(
         has_answered: false,
         has_reported: false,
         flash_state: FlashState::Unchanged,
+        written_addresses: BTreeSet::new(),
     };
-    let mut is_page_written = vec![false; BOOT_ADDRESS / PAGE_BYTES];
-    let mut loaders = target.loaders().iter().copied().cycle();
-    let mut kind = LoaderKind::Optiboot;
+    let mut kinds = target.loaders().iter().copied().cycle();
+    let mut kind = kinds.next().unwrap_or_default();
     for attempt in 1.. {
-        if !upload.has_answered {
-            kind = loaders.next().unwrap_or(kind);
-        }
-        let error = match upload.run_attempt(kind, &mut is_page_written).await {
+        let error = match upload.run_attempt(kind).await {
             Ok(()) => break,
             Err(AttemptError::UploadFailed(error)) => return Err(error),
             Err(AttemptError::Loader(error)) => error,
@@ -188,18 +186,17 @@ pub async fn upload<B: Board>(
         if attempt == MAX_ATTEMPTS || !error.is_transient() {
             return Err(upload.to_upload_error(error));
         }
-        let next_kind = match upload.has_answered {
-            true => kind,
-            false => loaders.clone().next().unwrap_or(kind),
-        };
+        let tried_kind = kind;
+        if !upload.has_answered {
+            kind = kinds.next().unwrap_or(kind);
+        }
         (upload.report)(Event::Retry {
             error: &error,
-            tried_kind: kind,
-            next_kind,
+            tried_kind,
+            next_kind: kind,
         });
     }
-    let written_pages = is_page_written.into_iter().filter(|is_written| *is_written);
-    let written = written_pages.count();
+    let written = upload.written_addresses.len();
     let kept = image.pages().len() - written;
     Ok(PageCounts { written, kept })
 }
@@ -258,15 +255,13 @@ struct Upload<'a, B> {
     has_reported: bool,
     /// The state of flash if the upload fails now.
     flash_state: FlashState,
+    /// The addresses of the pages that were written in any attempt.
+    written_addresses: BTreeSet<usize>,
 }
 
 impl<B: Board> Upload<'_, B> {
-    /// Makes one attempt, from the reset to the start of the program. Marks the written pages.
-    async fn run_attempt(
-        &mut self,
-        kind: LoaderKind,
-        is_page_written: &mut [bool],
-    ) -> AttemptResult {
+    /// Makes one attempt, from the reset to the start of the program.
+    async fn run_attempt(&mut self, kind: LoaderKind) -> AttemptResult {
         self.loader.reset_and_sync(kind).await?;
         self.has_answered = true;
         let chip = Chip(self.loader.read_signature().await?);
@@ -279,11 +274,11 @@ impl<B: Board> Upload<'_, B> {
         let mut pages_to_write = self.image.pages();
         pages_to_write.retain(|page| flash[page.range()] != page.bytes);
         if !pages_to_write.is_empty() {
-            for page in &pages_to_write {
-                is_page_written[page.address / PAGE_BYTES] = true;
-            }
+            let addresses = pages_to_write.iter().map(|page| page.address);
+            self.written_addresses.extend(addresses);
             // The first page is replaced during the upload, so it is always written.
-            is_page_written[self.first_page().address / PAGE_BYTES] = true;
+            let first_address = self.first_page().address;
+            self.written_addresses.insert(first_address);
             self.write_pages(pages_to_write, &flash).await?;
         }
         // An error can be ignored: everything is written, and the program starts after a second in any case.
@@ -378,7 +373,8 @@ impl<B: Board> Upload<'_, B> {
                 self.write_page(page.address, &page.bytes).await?;
                 read_back = self.loader.read_page(page.address).await?;
             }
-            if let Some(offset) = find_first_difference(&read_back, &page.bytes) {
+            let mut byte_pairs = read_back.iter().zip(&page.bytes);
+            if let Some(offset) = byte_pairs.position(|(read, written)| read != written) {
                 let error = UploadError::ByteNotKept {
                     address: page.address + offset,
                     written: page.bytes[offset],
@@ -420,11 +416,6 @@ fn find_robot_end(flash: &[u8], boot_address: usize) -> usize {
     let end = ROBOT_ADDRESS + usize::from(header.length);
     let is_valid = header.magic == MAGIC && end <= boot_address;
     if is_valid { end } else { ROBOT_ADDRESS }
-}
-
-/// Returns the index of the first byte in which two pages differ; `None` if the pages are equal.
-fn find_first_difference(a: &[u8], b: &[u8]) -> Option<usize> {
-    a.iter().zip(b).position(|(a, b)| a != b)
 }
 
 #[cfg(test)]

@@ -2,13 +2,13 @@
 
 use lizard_contact::Travel;
 
-use crate::camera::Camera;
 use crate::cycles::{self, Cycles};
 use crate::frame_tags::FrameTags;
 use crate::gait::Gait;
 use crate::gait_match::{self, GaitMatch};
+use crate::least_squares::propagate_variance;
 use crate::measured_gait::MeasuredGait;
-use crate::path::{PathPoint, unwrap_headings};
+use crate::path::{self, PathPoint, unwrap_headings};
 use crate::scene::{POSE_PARAMETER_COUNT, SHARED_PARAMETER_COUNT, Scene};
 use crate::video_error::VideoError;
 use crate::walk::{Walk, travel_components};
@@ -46,8 +46,6 @@ pub struct AnalysedVideo {
     pub(crate) scene: Scene,
     /// The tags of each frame of the path.
     pub(crate) frames: Vec<FrameTags>,
-    /// Given height of the deck tag above the floor, mm.
-    pub(crate) given_deck_height: f64,
 }
 
 impl AnalysedVideo {
@@ -60,11 +58,13 @@ impl AnalysedVideo {
         gait: &Gait,
         interval: Option<[f64; 2]>,
     ) -> Result<MeasuredGait, VideoError> {
-        let path = self.path_between(interval);
+        let path = interval.map_or(&self.path[..], |interval| {
+            path::between(&self.path, interval)
+        });
         let cycles = cycles::find_cycles(path, gait)?;
         // A deck tag that is higher than given seems to move farther.
-        let scale_error =
-            (HEIGHT_SIGMA / (self.camera.height - self.given_deck_height)).hypot(RULER_SIGMA);
+        let distance = self.camera.height - self.scene.dimensions.deck_height;
+        let scale_error = (HEIGHT_SIGMA / distance).hypot(RULER_SIGMA);
         let deviations = cycle_path::compute_deviations(path, &cycles, gait);
         let walk = Walk {
             scene_variances: self.compute_scene_variances(&cycles),
@@ -84,22 +84,7 @@ impl AnalysedVideo {
 
     /// Finds the gait that the robot's path shows between two times, s.
     pub fn match_gait(&self, gaits: &[Gait], interval: [f64; 2]) -> GaitMatch {
-        gait_match::match_gait(self.path_between(Some(interval)), gaits)
-    }
-
-    /// Returns the camera in each frame of the path.
-    pub(crate) fn frame_cameras(&self) -> impl Iterator<Item = Camera> {
-        let find_camera =
-            |frame: &FrameTags| frame.find_camera(&self.scene, self.camera.has_camera_moved);
-        self.frames.iter().filter_map(find_camera)
-    }
-
-    /// Returns the path between two times, s, or the entire path.
-    fn path_between(&self, interval: Option<[f64; 2]>) -> &[PathPoint] {
-        let [from, to] = interval.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-        let begin = self.path.partition_point(|point| point.seconds < from);
-        let end = self.path.partition_point(|point| point.seconds <= to);
-        &self.path[begin..end.max(begin)]
+        gait_match::match_gait(path::between(&self.path, interval), gaits)
     }
 
     /// Computes the variances of the mean cycle that result from the scene's covariance: forward and left, mm^2, and
@@ -119,10 +104,7 @@ impl AnalysedVideo {
         let boundaries = cycles.boundaries.iter();
         let frames: Vec<&FrameTags> = boundaries.filter_map(find_nearest_frame).collect();
         let mean_movement = |scene: &Scene| -> [f64; 3] {
-            let to_point = |frame: &&FrameTags| {
-                let pose = frame.find_body_pose(scene, self.camera.has_camera_moved)?;
-                Some(PathPoint { seconds: 0.0, pose })
-            };
+            let to_point = |frame: &&FrameTags| frame.find_path_point(scene);
             let mut points: Vec<PathPoint> = frames.iter().filter_map(to_point).collect();
             unwrap_headings(&mut points);
             let travel = |pair: &[PathPoint]| pair[1].pose.travel_from(pair[0].pose);
@@ -139,12 +121,8 @@ impl AnalysedVideo {
             })
             .collect();
         [0, 1, 2].map(|axis| {
-            let pairs =
-                (0..parameter_count).flat_map(|i| (0..parameter_count).map(move |j| (i, j)));
-            let variance_term = |(i, j): (usize, usize)| {
-                jacobian[i][axis] * scene.covariance[(i, j)] * jacobian[j][axis]
-            };
-            pairs.map(variance_term).sum::<f64>().max(0.0)
+            let gradient: Vec<f64> = jacobian.iter().map(|slopes| slopes[axis]).collect();
+            propagate_variance(&gradient, &scene.covariance)
         })
     }
 }

@@ -9,7 +9,7 @@ use crate::frame::{Frame, Pixel};
 /// Half the edge of the window whose mean a pixel is compared with, as a fraction of the frame's height.
 const HALF_WINDOW_FRACTION: f64 = 1.0 / 24.0;
 /// Largest grey of a dark pixel, percent of its window's mean.
-const MAX_DARK_PERCENT: u32 = 88;
+const MAX_DARK_PERCENT: u64 = 88;
 /// Smallest width and height of a candidate blob, px: two pixels for each cell of a tag.
 const MIN_SIDE_PX: usize = 16;
 /// Smallest distance of the two other corners from the longest diagonal, as a fraction of the diagonal.
@@ -43,26 +43,20 @@ pub(crate) fn find_quads(frame: &Frame, half_window: usize) -> Vec<Quad> {
         while let Some(index) = to_visit.pop() {
             blob.push(index);
             let column = index % width;
-            let mut visit = |next: usize| {
+            let neighbours = [
+                (column > 0).then(|| index - 1),
+                (column + 1 < width).then_some(index + 1),
+                index.checked_sub(width),
+                (index + width < is_dark.len()).then_some(index + width),
+            ];
+            for next in neighbours.into_iter().flatten() {
                 if is_dark[next] {
                     is_dark[next] = false;
                     to_visit.push(next);
                 }
-            };
-            if column > 0 {
-                visit(index - 1);
-            }
-            if column + 1 < width {
-                visit(index + 1);
-            }
-            if index >= width {
-                visit(index - width);
-            }
-            if index + width < width * height {
-                visit(index + width);
             }
         }
-        quads.extend(find_corners(&blob, width, height));
+        quads.extend(find_corners(&blob, [width, height]));
     }
     quads
 }
@@ -95,21 +89,20 @@ fn find_dark_pixels(frame: &Frame, half_window: usize) -> Vec<bool> {
                 .wrapping_sub(integral_image[below + left])
                 .wrapping_sub(integral_image[above + right])
                 .wrapping_add(integral_image[above + left]);
-            let window_area = ((right - left) * (bottom - top)) as u32;
-            is_dark.push(
-                u64::from(*grey) * u64::from(window_area) * 100
-                    < u64::from(window_sum) * u64::from(MAX_DARK_PERCENT),
-            );
+            let window_area = ((right - left) * (bottom - top)) as u64;
+            let max_dark_sum = u64::from(window_sum) * MAX_DARK_PERCENT;
+            is_dark.push(u64::from(*grey) * window_area * 100 < max_dark_sum);
         }
     }
     is_dark
 }
 
 /// Finds the corners of a blob; `None` if the blob is small, touches the frame's border, or is not a quadrilateral.
-fn find_corners(blob: &[usize], width: usize, height: usize) -> Option<Quad> {
+fn find_corners(blob: &[usize], frame_size: [usize; 2]) -> Option<Quad> {
     if blob.len() < MIN_SIDE_PX * MIN_SIDE_PX / 4 {
         return None;
     }
+    let width = frame_size[0];
     let to_pixel = |index: usize| [(index % width) as f64, (index / width) as f64];
     let (mut min, mut max) = ([f64::INFINITY; 2], [0.0f64; 2]);
     for &index in blob {
@@ -119,8 +112,7 @@ fn find_corners(blob: &[usize], width: usize, height: usize) -> Option<Quad> {
             max[i] = max[i].max(pixel[i]);
         }
     }
-    let is_inside =
-        min[0] > 0.0 && min[1] > 0.0 && max[0] < (width - 1) as f64 && max[1] < (height - 1) as f64;
+    let is_inside = (0..2).all(|i| min[i] > 0.0 && max[i] < (frame_size[i] - 1) as f64);
     let is_large = (0..2).all(|i| max[i] - min[i] >= MIN_SIDE_PX as f64);
     if !is_inside || !is_large {
         return None;

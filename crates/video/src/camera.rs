@@ -89,13 +89,8 @@ pub(crate) fn camera_pose_from_homography(
     let rotation = Matrix3::from_columns(&[x, y, x.cross(&y)]);
     let rotation_vector = Rotation3::from_matrix_unchecked(rotation).scaled_axis();
     let translation = third * scale;
-    let pose = [
-        rotation_vector.x,
-        rotation_vector.y,
-        rotation_vector.z,
-        translation.x,
-        translation.y,
-        translation.z,
-    ];
+    let mut pose = CameraPose::default();
+    pose[..3].copy_from_slice(rotation_vector.as_slice());
+    pose[3..].copy_from_slice(translation.as_slice());
     pose.iter().all(|value| value.is_finite()).then_some(pose)
 }

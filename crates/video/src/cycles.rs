@@ -47,8 +47,7 @@ pub(crate) struct Cycles {
 /// Fails if the robot does not move, does not move like the gait, changes its movement, or walks for less than two
 /// cycles.
 pub(crate) fn find_cycles(path: &[PathPoint], gait: &Gait) -> Result<Cycles, VideoError> {
-    let (walk, [begin, end]) = select_even_walk(path, gait)?;
-    let movements = Movements::from_path(walk, gait.period);
+    let (walk, [begin, end], movements) = select_even_walk(path, gait)?;
     let CycleTiming { start, period } = movements.fit_timing(gait)?;
     if let Some(seconds) = movements.find_change(period.value) {
         let seconds = seconds - path[0].seconds;
@@ -73,16 +72,25 @@ pub(crate) fn find_cycles(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Vid
     if calm_points.len() < 3 {
         return Err(too_short_error(end - begin, gait));
     }
-    let start_to_calm =
-        mean_displacement_to_calm(walk, &calm_points, calm_phase, period.value, gait)
-            .unwrap_or_else(|| gait.pose_at(calm_phase));
+    let seconds_at_start = |point: &PathPoint| point.seconds - calm_phase * period.value;
+    let displacement_to = |point: &PathPoint| {
+        let start_pose = pose_at_start(walk, seconds_at_start(point), period.value, gait)?;
+        Some(path::pose_from_travel(point.pose.travel_from(start_pose)))
+    };
+    let displacements: Vec<BodyPose> = calm_points.iter().filter_map(displacement_to).collect();
+    // The mean displacement from the start of a cycle to its calm phase, or the predicted one if no cycle has frames
+    // both before and after its start.
+    let start_to_calm = match displacements.is_empty() {
+        true => gait.pose_at(calm_phase),
+        false => mean_pose(&displacements),
+    };
     let calm_to_start = path::inverse(start_to_calm);
     let cycle_travel = |pair: &[PathPoint]| {
         let cycle = path::pose_from_travel(pair[1].pose.travel_from(pair[0].pose));
         path::compose(path::compose(start_to_calm, cycle), calm_to_start).travel()
     };
     let cycle_start = |point: &PathPoint| PathPoint {
-        seconds: point.seconds - calm_phase * period.value,
+        seconds: seconds_at_start(point),
         pose: path::compose(point.pose, calm_to_start),
     };
     Ok(Cycles {
@@ -95,25 +103,19 @@ pub(crate) fn find_cycles(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Vid
     })
 }
 
-/// Computes the movements while the robot walks evenly; fails if they are too few for a comparison with a gait.
-pub(crate) fn compute_movements(path: &[PathPoint], gait: &Gait) -> Result<Movements, VideoError> {
-    let (walk, _) = select_even_walk(path, gait)?;
-    Ok(Movements::from_path(walk, gait.period))
-}
-
-/// Selects the part of a path on which the robot walks evenly; returns it with the times of its start and end, s.
-fn select_even_walk<'a>(
+/// Selects the part of a path on which the robot walks evenly; returns it with the times of its start and end, s, and
+/// its movements. Fails if the movements are too few for a comparison with a gait.
+pub(crate) fn select_even_walk<'a>(
     path: &'a [PathPoint],
     gait: &Gait,
-) -> Result<(&'a [PathPoint], [f64; 2]), VideoError> {
+) -> Result<(&'a [PathPoint], [f64; 2], Movements), VideoError> {
     let [begin, end] = find_even_walk(path, gait)?;
-    let first = path.partition_point(|point| point.seconds < begin);
-    let last = path.partition_point(|point| point.seconds <= end);
-    let walk = &path[first..last.max(first)];
-    if end - begin < 2.0 * gait.period || Movements::from_path(walk, gait.period).are_too_few() {
+    let walk = path::between(path, [begin, end]);
+    let movements = Movements::from_path(walk, gait.period);
+    if end - begin < 2.0 * gait.period || movements.are_too_few() {
         return Err(too_short_error(end - begin, gait));
     }
-    Ok((walk, [begin, end]))
+    Ok((walk, [begin, end], movements))
 }
 
 fn too_short_error(seconds: f64, gait: &Gait) -> VideoError {
@@ -123,29 +125,16 @@ fn too_short_error(seconds: f64, gait: &Gait) -> VideoError {
     }
 }
 
-/// Computes the mean displacement from the start of a cycle to its calm phase; `None` if no cycle has frames both
-/// before and after its start.
-fn mean_displacement_to_calm(
-    path: &[PathPoint],
-    calm_points: &[PathPoint],
-    calm_phase: f64,
-    period: f64,
-    gait: &Gait,
-) -> Option<BodyPose> {
-    let displacement_to = |point: &PathPoint| {
-        let start_seconds = point.seconds - calm_phase * period;
-        let start = pose_at_start(path, start_seconds, period, gait)?;
-        Some(path::pose_from_travel(point.pose.travel_from(start)))
-    };
-    let displacements: Vec<BodyPose> = calm_points.iter().filter_map(displacement_to).collect();
+/// Computes the mean of poses, coordinate by coordinate.
+fn mean_pose(poses: &[BodyPose]) -> BodyPose {
     let mean_coordinate = |coordinate: fn(&BodyPose) -> f64| {
-        displacements.iter().map(coordinate).sum::<f64>() / displacements.len() as f64
+        poses.iter().map(coordinate).sum::<f64>() / poses.len() as f64
     };
-    (!displacements.is_empty()).then(|| BodyPose {
-        forward: mean_coordinate(|displacement| displacement.forward),
-        left: mean_coordinate(|displacement| displacement.left),
-        heading: mean_coordinate(|displacement| displacement.heading),
-    })
+    BodyPose {
+        forward: mean_coordinate(|pose| pose.forward),
+        left: mean_coordinate(|pose| pose.left),
+        heading: mean_coordinate(|pose| pose.heading),
+    }
 }
 
 /// Computes the pose at the start of a cycle: shifts the poses in the frames before and after the start to that time
@@ -185,10 +174,9 @@ fn find_even_walk(path: &[PathPoint], gait: &Gait) -> Result<[f64; 2], VideoErro
             let sizes = travels.iter().map(|(_, travel)| size(travel));
             sizes.fold(0.0, f64::max)
         };
-        return Err(VideoError::NoMovement {
-            distance: max(|travel| travel.forward.hypot(travel.left)),
-            turn: max(|travel| travel.turn.abs()),
-        });
+        let distance = max(|travel| travel.forward.hypot(travel.left));
+        let turn = max(|travel| travel.turn.abs());
+        return Err(VideoError::NoMovement { distance, turn });
     }
     let mut large_lengths = movement_lengths.clone();
     large_lengths.retain(|length| *length > max_length / 2.0);

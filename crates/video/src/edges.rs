@@ -48,17 +48,11 @@ pub(crate) fn refine_quad(frame: &Frame, quad: Quad) -> Option<TagOutline> {
     };
     for _ in 0..ITERATION_COUNT {
         let corners = outline.corners;
-        let edges: [Option<(Line, f64)>; 4] =
-            std::array::from_fn(|i| fit_edge(frame, corners[i], corners[(i + 1) % 4]));
-        let mut lines = Vec::with_capacity(4);
-        outline.mid_grey = 0.0;
-        for edge in edges {
-            let (line, mid_grey) = edge?;
-            lines.push(line);
-            outline.mid_grey += mid_grey / 4.0;
-        }
+        let fit_edge_from = |i: usize| fit_edge(frame, corners[i], corners[(i + 1) % 4]);
+        let edges: Vec<(Line, f64)> = (0..4).map(fit_edge_from).collect::<Option<_>>()?;
+        outline.mid_grey = edges.iter().map(|(_, mid_grey)| mid_grey / 4.0).sum();
         for i in 0..4 {
-            outline.corners[i] = intersect(&lines[(i + 3) % 4], &lines[i])?;
+            outline.corners[i] = intersect(&edges[(i + 3) % 4].0, &edges[i].0)?;
         }
     }
     Some(outline)

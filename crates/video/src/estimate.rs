@@ -10,15 +10,11 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    pub(crate) fn new(value: f64, standard_error: f64) -> Self {
+    /// Creates an estimate from its value and standard error.
+    pub fn new(value: f64, standard_error: f64) -> Self {
         Self {
             value,
             standard_error,
         }
-    }
-
-    /// True if this estimate exceeds `value` by more than two standard errors.
-    pub fn is_significantly_above(&self, value: f64) -> bool {
-        self.value - value > 2.0 * self.standard_error
     }
 }

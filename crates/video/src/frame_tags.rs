@@ -1,9 +1,8 @@
 //! The tags detected in a frame, and the robot's pose that follows from them.
 
-use lizard_contact::BodyPose;
-
 use crate::camera::Camera;
 use crate::frame::Pixel;
+use crate::path::PathPoint;
 use crate::scene::{FloorCorners, Scene};
 use crate::sheet::{CODES, DECK_TAG_ID};
 
@@ -26,18 +25,29 @@ impl FrameTags {
         Some([a?, b?, c?, d?])
     }
 
-    /// Returns the scene's camera, or finds it from the frame's floor tags if `has_camera_moved`; `None` if these do
-    /// not determine it.
-    pub(crate) fn find_camera(&self, scene: &Scene, has_camera_moved: bool) -> Option<Camera> {
-        match has_camera_moved {
+    /// Returns the scene's camera, or finds it from the frame's floor tags if the camera moved; `None` if these do not
+    /// determine it.
+    pub(crate) fn find_camera(&self, scene: &Scene) -> Option<Camera> {
+        match scene.has_camera_moved {
             false => Some(scene.camera()),
             true => Some(scene.camera_at(&scene.find_camera_pose(&self.floor_corners()?)?)),
         }
     }
 
-    /// Finds the robot's pose; `None` if the required tags are not visible or do not determine it.
-    pub(crate) fn find_body_pose(&self, scene: &Scene, has_camera_moved: bool) -> Option<BodyPose> {
-        let camera = self.find_camera(scene, has_camera_moved)?;
-        scene.find_body_pose(&camera, self.corners[DECK_TAG_ID].as_ref()?)
+    /// Finds the robot's pose at the time of the frame; `None` if the required tags are not visible or do not
+    /// determine it.
+    pub(crate) fn find_path_point(&self, scene: &Scene) -> Option<PathPoint> {
+        let camera = self.find_camera(scene)?;
+        let pose = scene.find_body_pose(&camera, self.corners[DECK_TAG_ID].as_ref()?)?;
+        Some(PathPoint {
+            seconds: self.seconds,
+            pose,
+        })
+    }
+
+    /// Finds the deck tag's height, mm, from its size; `None` if the visible tags do not determine it.
+    pub(crate) fn find_deck_height(&self, scene: &Scene) -> Option<f64> {
+        let camera = self.find_camera(scene)?;
+        scene.find_deck_height(&camera, self.corners[DECK_TAG_ID].as_ref()?)
     }
 }

@@ -37,8 +37,8 @@ pub(crate) fn match_gait(path: &[PathPoint], gaits: &[Gait]) -> GaitMatch {
     let (mut best_slow_misfit, mut pace_ratio) = (f64::INFINITY, 1);
     let mut first_error = None;
     for (index, gait) in gaits.iter().enumerate() {
-        match cycles::compute_movements(path, gait) {
-            Ok(movements) => {
+        match cycles::select_even_walk(path, gait) {
+            Ok((_, _, movements)) => {
                 fits.push((movements.compute_misfit(gait), index));
                 let (slow_misfit, multiple) = movements.misfit_at_best_multiple(gait);
                 if slow_misfit < best_slow_misfit {

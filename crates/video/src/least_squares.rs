@@ -66,6 +66,15 @@ pub(crate) fn squared_norm(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
 }
 
+/// Computes the variance of a value that is computed from parameters with this covariance. `gradient` has the value's
+/// derivative with respect to each parameter.
+pub(crate) fn propagate_variance(gradient: &[f64], covariance: &DMatrix<f64>) -> f64 {
+    let count = gradient.len();
+    let pairs = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
+    let terms = pairs.map(|(i, j)| gradient[i] * covariance[(i, j)] * gradient[j]);
+    terms.sum::<f64>().max(0.0)
+}
+
 /// Computes the derivatives of the residuals with respect to the parameters, from central differences.
 fn compute_jacobian(
     parameters: &[f64],

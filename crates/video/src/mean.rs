@@ -142,21 +142,34 @@ mod tests {
         move || (0..12).map(|_| uniform()).sum::<f64>() - 6.0
     }
 
+    /// Returns the values of a walk whose cycles scatter around `mean`.
+    fn scattered_walk(
+        cycle_count: usize,
+        mean: f64,
+        noise: &mut impl FnMut() -> f64,
+    ) -> WalkValues {
+        WalkValues {
+            cycles: (0..cycle_count).map(|_| mean + noise()).collect(),
+            systematic_error: 0.0,
+        }
+    }
+
+    /// Returns the fraction of videos in which the true value, 3, lies within two standard errors of the mean.
+    fn hit_fraction(video_count: u32, mut record_video: impl FnMut() -> Vec<WalkValues>) -> f64 {
+        let hits = (0..video_count).filter(|_| {
+            let mean = compute_mean(&record_video());
+            (mean.value - 3.0).abs() < 2.0 * mean.standard_error
+        });
+        hits.count() as f64 / f64::from(video_count)
+    }
+
     #[test]
     fn the_true_value_lies_within_two_standard_errors_in_95_percent_of_videos_of_three_to_ten_cycles()
      {
         let mut noise = noise_source();
         for cycle_count in [3, 5, 10] {
-            let video_count = 4000;
-            let hits = (0..video_count).filter(|_| {
-                let cycles: Vec<f64> = (0..cycle_count).map(|_| 3.0 + noise()).collect();
-                let mean = compute_mean(&[WalkValues {
-                    cycles,
-                    systematic_error: 0.0,
-                }]);
-                (mean.value - 3.0).abs() < 2.0 * mean.standard_error
-            });
-            let hit_fraction = hits.count() as f64 / f64::from(video_count);
+            let record_video = || vec![scattered_walk(cycle_count, 3.0, &mut noise)];
+            let hit_fraction = hit_fraction(4000, record_video);
             assert!(
                 (0.945..0.965).contains(&hit_fraction),
                 "{cycle_count} cycles: {hit_fraction}"
@@ -171,20 +184,12 @@ mod tests {
         for (walk_spread, walk_count) in
             [(0.0, 2), (0.0, 3), (1.0, 2), (1.0, 3), (3.0, 2), (3.0, 3)]
         {
-            let video_count = 2000;
-            let hits = (0..video_count).filter(|_| {
-                let mut walk_values = |_| {
-                    let walk_offset = walk_spread * noise();
-                    WalkValues {
-                        cycles: (0..4).map(|_| 3.0 + walk_offset + noise()).collect(),
-                        systematic_error: 0.0,
-                    }
-                };
-                let walks: Vec<_> = (0..walk_count).map(&mut walk_values).collect();
-                let mean = compute_mean(&walks);
-                (mean.value - 3.0).abs() < 2.0 * mean.standard_error
-            });
-            let hit_fraction = hits.count() as f64 / f64::from(video_count);
+            let mut record_walk = |_| {
+                let mean = 3.0 + walk_spread * noise();
+                scattered_walk(4, mean, &mut noise)
+            };
+            let record_video = || (0..walk_count).map(&mut record_walk).collect();
+            let hit_fraction = hit_fraction(2000, record_video);
             // Two or three walks hardly show whether walks differ, so the bounds are wide.
             assert!(
                 (0.9..0.99).contains(&hit_fraction),

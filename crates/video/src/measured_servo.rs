@@ -5,6 +5,8 @@
 //! video is unknown. This time is found from the angles at which the horn rests, which must depend linearly on the
 //! commands.
 
+use std::ops::Range;
+
 use crate::estimate::Estimate;
 use crate::least_squares;
 use crate::mean::{self, WalkValues, small_sample_factor};
@@ -99,35 +101,32 @@ impl MeasuredServo {
         let horn_path = HornPath::new(path);
         let commands = servo_commands::list_commands(jig.side);
         let first_command_seconds = horn_path.find_first_command(&commands)?;
-        let rest_angle = |i| horn_path.rest_angle(first_command_seconds, COMMAND_INTERVAL, i);
-        let rests: Vec<Option<f64>> = (0..commands.len()).map(rest_angle).collect();
+        let rests = horn_path.find_rests(&commands, first_command_seconds, COMMAND_INTERVAL);
         let [gain, hysteresis] =
             fit_gain_and_hysteresis(&commands, &rests).ok_or(ServoError::StepMismatch)?;
-        let large_steps = horn_path.find_large_steps(first_command_seconds, &rests);
+        let large_steps = horn_path.find_large_steps(&rests);
         let frame_rate = horn_path.frame_rate();
         let too_few_frames = ServoError::TooFewFrames { rate: frame_rate };
-        let groups: Vec<&[LargeStep]> = large_steps.iter().map(Vec::as_slice).collect();
-        let fit = Rates::fit(&groups, jig.rotor_time_constant).ok_or(too_few_frames)?;
-        let (rate_ccw, rate_cw) = (fit.rates[0], fit.rates[1]);
-        let rate = fit.propagate_error((rate_ccw + rate_cw) / 2.0, &[0.5, 0.5]);
+        let groups = large_steps.each_ref().map(Vec::as_slice);
+        let fit = Rates::fit(groups, jig.rotor_time_constant).ok_or(too_few_frames)?;
+        let [rate_ccw, rate_cw] = fit.rates;
+        let rate = fit.propagate_error((rate_ccw + rate_cw) / 2.0, [0.5, 0.5]);
         if rate.value > MAX_OWN_RATE_FRACTION * jig.slew {
             return Err(ServoError::AtSlewLimit {
                 rate: rate.value,
                 slew: jig.slew,
             });
         }
-        let dead_band =
-            horn_path.find_dead_band(first_command_seconds, &commands, &rests, gain.value);
+        let rates = [
+            fit.propagate_error(rate_ccw, [1.0, 0.0]),
+            fit.propagate_error(rate_cw, [0.0, 1.0]),
+        ];
         Ok(Self {
             gain,
             hysteresis,
-            dead_band,
+            dead_band: horn_path.find_dead_band(&commands, &rests, gain.value),
             rate: add_model_error(rate),
-            rates: [
-                fit.propagate_error(rate_ccw, &[1.0, 0.0]),
-                fit.propagate_error(rate_cw, &[0.0, 1.0]),
-            ]
-            .map(add_model_error),
+            rates: rates.map(add_model_error),
             rotor_time_constant: fit.rotor_time_constant,
             first_command_seconds,
             frame_rate,
@@ -147,23 +146,21 @@ impl MeasuredServo {
         let too_few_frames = ServoError::TooFewFrames {
             rate: self.frame_rate.min(loaded.frame_rate),
         };
-        let rate_loss = |direction: usize| {
-            let fit = Rates::fit(
-                &[&self.large_steps[direction], &loaded.large_steps[direction]],
-                self.expected_time_constant,
-            )?;
-            let (free_rate, loaded_rate) = (fit.rates[0], fit.rates[1]);
-            Some(fit.propagate_error(
-                1.0 - loaded_rate / free_rate,
-                &[loaded_rate / free_rate.powi(2), -1.0 / free_rate],
-            ))
+        let rate_loss = |direction: usize| -> Result<Estimate, ServoError> {
+            let groups = [self, loaded].map(|servo| &servo.large_steps[direction][..]);
+            let fit = Rates::fit(groups, self.expected_time_constant).ok_or(too_few_frames)?;
+            let [free_rate, loaded_rate] = fit.rates;
+            let gradient = [loaded_rate / free_rate.powi(2), -1.0 / free_rate];
+            Ok(fit.propagate_error(1.0 - loaded_rate / free_rate, gradient))
         };
-        let losses = [
-            rate_loss(0).ok_or(too_few_frames)?,
-            rate_loss(1).ok_or(too_few_frames)?,
-        ];
-        let loss = losses[usize::from(losses[1].value > losses[0].value)];
-        if !loss.is_significantly_above(0.0) {
+        let ccw_loss = rate_loss(0)?;
+        let cw_loss = rate_loss(1)?;
+        let loss = match cw_loss.value > ccw_loss.value {
+            true => cw_loss,
+            false => ccw_loss,
+        };
+        let is_significant = loss.value > 2.0 * loss.standard_error;
+        if !is_significant {
             return Err(ServoError::LoadTooSmall {
                 percent: 100.0 * loss.value,
                 error: 100.0 * loss.standard_error,
@@ -192,14 +189,12 @@ fn add_relative_error(estimate: Estimate, relative_sigma: f64) -> Estimate {
 
 /// Fits gain and hysteresis to the angles at which the horn rests in the visited poses; `None` if too few of these
 /// angles are visible. Moves of the same length lead to all these poses, so the horn stops in the same way.
-fn fit_gain_and_hysteresis(
-    commands: &[ServoCommand],
-    rests: &[Option<f64>],
-) -> Option<[Estimate; 2]> {
+fn fit_gain_and_hysteresis(commands: &[ServoCommand], rests: &[Rest]) -> Option<[Estimate; 2]> {
     let visits: Vec<(f64, f64, f64)> = servo_commands::visit_indices()
         .filter_map(|i| {
             let (previous, current) = (commands[i - 1].pulse_angle(), commands[i].pulse_angle());
-            (current != previous).then_some((current, (current - previous).signum(), rests[i]?))
+            let direction = (current - previous).signum();
+            (current != previous).then_some((current, direction, rests[i].angle?))
         })
         .collect();
     let start = [visits.first()?.2, 1.0, 0.0];
@@ -220,6 +215,38 @@ fn fit_gain_and_hysteresis(
     let hysteresis_error = standard_error(2) / gain.value.abs();
     let hysteresis = Estimate::new(fit.parameters[2] / gain.value, hysteresis_error);
     Some([gain, hysteresis])
+}
+
+/// The horn's rest after a command.
+struct Rest {
+    /// Indices of the frames that show the rest.
+    frames: Range<usize>,
+    /// Mean angle of the horn, deg; `None` if no frame shows the rest.
+    angle: Option<f64>,
+}
+
+/// Computes the fraction of the rest angles' variance that the commands leave unexplained; `None` if too few rests are
+/// visible.
+fn unexplained_fraction(commands: &[ServoCommand], rests: &[Rest]) -> Option<f64> {
+    let command_and_rest =
+        |(command, rest): (&ServoCommand, &Rest)| Some((command.pulse_angle(), rest.angle?));
+    let pairs = commands.iter().zip(rests).filter_map(command_and_rest);
+    let pairs: Vec<(f64, f64)> = pairs.collect();
+    if (pairs.len() as f64) < MIN_VISIBLE_FRACTION * commands.len() as f64 {
+        return None;
+    }
+    let mean = |component: fn(&(f64, f64)) -> f64| {
+        pairs.iter().map(component).sum::<f64>() / pairs.len() as f64
+    };
+    let (mean_command, mean_rest) = (mean(|pair| pair.0), mean(|pair| pair.1));
+    let (mut command_square_sum, mut product_sum, mut rest_square_sum) = (0.0, 0.0, 0.0);
+    for (a, b) in &pairs {
+        let (a, b) = (a - mean_command, b - mean_rest);
+        command_square_sum += a * a;
+        product_sum += a * b;
+        rest_square_sum += b * b;
+    }
+    Some(1.0 - product_sum * product_sum / (command_square_sum * rest_square_sum).max(1e-9))
 }
 
 /// The horn's angles in a video, and their prefix sums.
@@ -250,61 +277,26 @@ impl HornPath {
         mean::median(intervals.collect()).map_or(0.0, |interval| 1.0 / interval)
     }
 
-    /// Returns the indices of the frames in which the horn rests after a command. The first command is at
-    /// `first_command_seconds`, and the command interval is `interval`, s.
-    fn rest_indices(
-        &self,
-        first_command_seconds: f64,
-        interval: f64,
-        command_index: usize,
-    ) -> std::ops::Range<usize> {
-        let [from, to] = REST_FRACTIONS.map(|fraction| {
-            let time = first_command_seconds + interval * (command_index as f64 + fraction);
-            self.angles.partition_point(|(seconds, _)| *seconds < time)
-        });
-        from..to
-    }
-
-    /// Computes the mean angle at which the horn rests after a command, deg; `None` if no frame shows it.
-    fn rest_angle(
-        &self,
-        first_command_seconds: f64,
-        interval: f64,
-        command_index: usize,
-    ) -> Option<f64> {
-        let indices = self.rest_indices(first_command_seconds, interval, command_index);
-        let sum = self.prefix_sums[indices.end] - self.prefix_sums[indices.start];
-        (!indices.is_empty()).then(|| sum / indices.len() as f64)
-    }
-
-    /// Computes the fraction of the rest angles' variance that the commands leave unexplained if the first command is
-    /// at `first_command_seconds`; `None` if too few rests are visible.
-    fn unexplained_fraction(
+    /// Finds the horn's rest after each command. The first command is at `first_command_seconds`, and the command
+    /// interval is `interval`, s.
+    fn find_rests(
         &self,
         commands: &[ServoCommand],
         first_command_seconds: f64,
         interval: f64,
-    ) -> Option<f64> {
-        let command_and_rest = |i: usize| {
-            let rest = self.rest_angle(first_command_seconds, interval, i)?;
-            Some((commands[i].pulse_angle(), rest))
+    ) -> Vec<Rest> {
+        let rest_after = |command_index: usize| {
+            let [from, to] = REST_FRACTIONS.map(|fraction| {
+                let time = first_command_seconds + interval * (command_index as f64 + fraction);
+                self.angles.partition_point(|(seconds, _)| *seconds < time)
+            });
+            let sum = self.prefix_sums[to] - self.prefix_sums[from];
+            Rest {
+                frames: from..to,
+                angle: (from < to).then(|| sum / (to - from) as f64),
+            }
         };
-        let pairs: Vec<(f64, f64)> = (0..commands.len()).filter_map(command_and_rest).collect();
-        if (pairs.len() as f64) < MIN_VISIBLE_FRACTION * commands.len() as f64 {
-            return None;
-        }
-        let mean = |component: fn(&(f64, f64)) -> f64| {
-            pairs.iter().map(component).sum::<f64>() / pairs.len() as f64
-        };
-        let (mean_command, mean_rest) = (mean(|pair| pair.0), mean(|pair| pair.1));
-        let (mut command_square_sum, mut product_sum, mut rest_square_sum) = (0.0, 0.0, 0.0);
-        for (a, b) in &pairs {
-            let (a, b) = (a - mean_command, b - mean_rest);
-            command_square_sum += a * a;
-            product_sum += a * b;
-            rest_square_sum += b * b;
-        }
-        Some(1.0 - product_sum * product_sum / (command_square_sum * rest_square_sum).max(1e-9))
+        (0..commands.len()).map(rest_after).collect()
     }
 
     /// Finds the time of the first command, s, that minimises the unexplained fraction. Returns the time and the
@@ -320,8 +312,8 @@ impl HornPath {
             ((end - first + interval) / (SEARCH_STEP_FRACTION * interval)).max(0.0) as usize;
         let candidates = (0..=step_count).filter_map(|i| {
             let seconds = first - interval + i as f64 * SEARCH_STEP_FRACTION * interval;
-            let unexplained = self.unexplained_fraction(commands, seconds, interval)?;
-            Some((seconds, unexplained))
+            let rests = self.find_rests(commands, seconds, interval);
+            Some((seconds, unexplained_fraction(commands, &rests)?))
         });
         candidates.min_by(|a, b| a.1.total_cmp(&b.1))
     }
@@ -329,8 +321,8 @@ impl HornPath {
     /// Finds the time of the first command, s.
     fn find_first_command(&self, commands: &[ServoCommand]) -> Result<f64, ServoError> {
         let angle_values = || self.angles.iter().map(|(_, angle)| *angle);
-        let turn =
-            angle_values().fold(f64::MIN, f64::max) - angle_values().fold(f64::MAX, f64::min);
+        let max_angle = angle_values().fold(f64::MIN, f64::max);
+        let turn = max_angle - angle_values().fold(f64::MAX, f64::min);
         if turn <= MIN_TURN {
             return Err(ServoError::NoTurn {
                 turn: turn.max(0.0),
@@ -339,7 +331,7 @@ impl HornPath {
         let is_explained = |(_, unexplained): &(f64, f64)| *unexplained < MAX_UNEXPLAINED_FRACTION;
         let best = self.find_best_first_command(commands, COMMAND_INTERVAL);
         if let Some((first_command_seconds, _)) = best.filter(is_explained) {
-            return Ok(self.refine_first_command(first_command_seconds));
+            return Ok(self.refine_first_command(commands, first_command_seconds));
         }
         for multiple in INTERVAL_MULTIPLES {
             let best = self.find_best_first_command(commands, multiple * COMMAND_INTERVAL);
@@ -356,12 +348,12 @@ impl HornPath {
     }
 
     /// Refines the time of the first command, s, from the times at which the large steps are half complete.
-    fn refine_first_command(&self, first_command_seconds: f64) -> f64 {
+    fn refine_first_command(&self, commands: &[ServoCommand], first_command_seconds: f64) -> f64 {
+        let rests = self.find_rests(commands, first_command_seconds, COMMAND_INTERVAL);
         let estimate_from_step = |i: usize| {
-            let rest_angle = |i| self.rest_angle(first_command_seconds, COMMAND_INTERVAL, i);
-            let half_way_angle = (rest_angle(i - 1)? + rest_angle(i)?) / 2.0;
-            let rest_indices = |i| self.rest_indices(first_command_seconds, COMMAND_INTERVAL, i);
-            let pairs = self.angles[rest_indices(i - 1).start..rest_indices(i).end].windows(2);
+            let [before, after] = [&rests[i - 1], &rests[i]];
+            let half_way_angle = (before.angle? + after.angle?) / 2.0;
+            let pairs = self.angles[before.frames.start..after.frames.end].windows(2);
             let mut crossings =
                 pairs.filter(|pair| (pair[0].1 < half_way_angle) != (pair[1].1 < half_way_angle));
             let pair = crossings.next()?;
@@ -375,18 +367,14 @@ impl HornPath {
     }
 
     /// Finds the large steps, counter-clockwise and clockwise.
-    fn find_large_steps(
-        &self,
-        first_command_seconds: f64,
-        rests: &[Option<f64>],
-    ) -> [Vec<LargeStep>; 2] {
+    fn find_large_steps(&self, rests: &[Rest]) -> [Vec<LargeStep>; 2] {
         let mut steps = [Vec::new(), Vec::new()];
         for i in servo_commands::large_step_indices() {
-            let (Some(from), Some(to)) = (rests[i - 1], rests[i]) else {
+            let [before, after] = [&rests[i - 1], &rests[i]];
+            let (Some(from), Some(to)) = (before.angle, after.angle) else {
                 continue;
             };
-            let rest_indices = |i| self.rest_indices(first_command_seconds, COMMAND_INTERVAL, i);
-            let angles = self.angles[rest_indices(i - 1).end..rest_indices(i).end].iter();
+            let angles = self.angles[before.frames.end..after.frames.end].iter();
             let angles = angles.map(|(time, angle)| (*time, angle - from));
             steps[usize::from(to < from)].push(LargeStep::new(angles, to - from));
         }
@@ -395,23 +383,18 @@ impl HornPath {
 
     /// Finds the dead band from the small steps: in each step, the servo moves less than commanded by the dead band's
     /// width.
-    fn find_dead_band(
-        &self,
-        first_command_seconds: f64,
-        commands: &[ServoCommand],
-        rests: &[Option<f64>],
-        gain: f64,
-    ) -> DeadBand {
+    fn find_dead_band(&self, commands: &[ServoCommand], rests: &[Rest], gain: f64) -> DeadBand {
         // Sums up the squared deviations of the frames from the mean angle of their rest.
         let (mut squares, mut degrees_of_freedom, mut frame_count) = (0.0, 0usize, 0usize);
-        for (i, rest) in rests.iter().enumerate() {
-            let rest_angles =
-                &self.angles[self.rest_indices(first_command_seconds, COMMAND_INTERVAL, i)];
-            let Some(rest) = rest else { continue };
-            let square = |(_, angle): &(f64, f64)| (angle - rest).powi(2);
-            squares += rest_angles.iter().map(square).sum::<f64>();
-            degrees_of_freedom += rest_angles.len().saturating_sub(1);
-            frame_count += rest_angles.len();
+        for rest in rests {
+            let Some(mean_angle) = rest.angle else {
+                continue;
+            };
+            let square = |(_, angle): &(f64, f64)| (angle - mean_angle).powi(2);
+            let angles = self.angles[rest.frames.clone()].iter();
+            squares += angles.map(square).sum::<f64>();
+            degrees_of_freedom += rest.frames.len() - 1;
+            frame_count += rest.frames.len();
         }
         let frames_per_rest = frame_count as f64 / rests.len() as f64;
         let variance = squares / degrees_of_freedom.max(1) as f64;
@@ -420,7 +403,7 @@ impl HornPath {
         let (mut lost_angles, mut largest_ignored_step, mut has_moved) =
             (Vec::new(), 0.0f64, false);
         for i in servo_commands::small_step_indices() {
-            let (Some(from), Some(to)) = (rests[i - 1], rests[i]) else {
+            let (Some(from), Some(to)) = (rests[i - 1].angle, rests[i].angle) else {
                 continue;
             };
             let commanded = commands[i].pulse_angle() - commands[i - 1].pulse_angle();

@@ -12,6 +12,7 @@ use nalgebra::Vector3;
 use crate::analysed_video::AnalysedVideo;
 use crate::camera::Camera;
 use crate::estimate::Estimate;
+use crate::frame_tags::FrameTags;
 use crate::least_squares;
 use crate::mean::small_sample_factor;
 use crate::path::PathPoint;
@@ -124,7 +125,7 @@ struct Observation {
     heading: f64,
 }
 
-/// A point of a slide.
+/// The board's tilt and the robot's position along its slide, in one frame.
 struct SlidePoint {
     /// Time of the frame, s.
     seconds: f64,
@@ -140,7 +141,8 @@ impl MeasuredSlide {
     /// # Errors
     /// Fails if the video does not show a robot that slides down a board.
     pub fn from_video(video: &AnalysedVideo) -> Result<Self, SlideError> {
-        let cameras: Vec<Camera> = video.frame_cameras().collect();
+        let find_camera = |frame: &FrameTags| frame.find_camera(&video.scene);
+        let cameras: Vec<Camera> = video.frames.iter().filter_map(find_camera).collect();
         let first_seconds = video.path.first().map_or(0.0, |point| point.seconds);
         let is_level = |point: &&PathPoint| point.seconds < first_seconds + LEVEL_SECONDS;
         let level_count = video.path.iter().take_while(is_level).count();
@@ -167,17 +169,20 @@ impl MeasuredSlide {
         if angle > MAX_LEVEL_TILT {
             return Err(SlideError::NotAtRest { angle });
         }
-        let rest_position = mean_position(&observations[..level_count]);
+        let rest_position = [0, 1].map(|i| {
+            let positions = observations[..level_count].iter();
+            let coordinates = positions.map(|observation| observation.position[i]);
+            coordinates.sum::<f64>() / level_count as f64
+        });
         let distance = |observation: &Observation| {
             (observation.position[0] - rest_position[0])
                 .hypot(observation.position[1] - rest_position[1])
         };
         let has_slid = |observation: &Observation| distance(observation) > MIN_SLIDE;
         let Some(sliding_index) = observations.iter().position(has_slid) else {
-            return Err(SlideError::NoSlide {
-                distance: observations.iter().map(distance).fold(0.0, f64::max),
-                tilt: max_tilt(&observations).to_degrees(),
-            });
+            let distance = observations.iter().map(distance).fold(0.0, f64::max);
+            let tilt = max_tilt(&observations).to_degrees();
+            return Err(SlideError::NoSlide { distance, tilt });
         };
         let has_rested = |observation: &Observation| distance(observation) < FIT_RANGE[0];
         let last_rest = observations[..sliding_index].iter().rposition(has_rested);
@@ -186,45 +191,42 @@ impl MeasuredSlide {
         let displacement = [0, 1].map(|i| sliding.position[i] - rest_position[i]);
         check_directions(sliding, displacement)?;
         let slide_distance = displacement[0].hypot(displacement[1]);
-        let distance_along = |observation: &Observation| {
+        let to_slide_point = |observation: &Observation| {
             let product = |i: usize| (observation.position[i] - rest_position[i]) * displacement[i];
-            (0..2).map(product).sum::<f64>() / slide_distance
+            SlidePoint {
+                seconds: observation.seconds,
+                tilt: smooth_tilt(&observations, observation.seconds),
+                distance: (0..2).map(product).sum::<f64>() / slide_distance,
+            }
         };
-        let smoothed_tilts = smooth_tilts(&observations);
+        let points: Vec<SlidePoint> = observations.iter().map(to_slide_point).collect();
         // The slide ends when it is long enough or when something stops the robot.
         let mut last_index = sliding_index;
         let speed_at = |i: usize| {
-            (distance_along(&observations[i]) - distance_along(&observations[i - 1]))
-                / (observations[i].seconds - observations[i - 1].seconds)
+            (points[i].distance - points[i - 1].distance)
+                / (points[i].seconds - points[i - 1].seconds)
         };
-        while last_index + 1 < observations.len()
-            && distance_along(&observations[last_index]) < FIT_RANGE[1]
+        while last_index + 1 < points.len()
+            && points[last_index].distance < FIT_RANGE[1]
             && speed_at(last_index + 1) > 0.8 * speed_at(last_index)
         {
             last_index += 1;
         }
-        let points: Vec<SlidePoint> = (first_index..=last_index)
-            .map(|i| SlidePoint {
-                seconds: observations[i].seconds,
-                tilt: smoothed_tilts[i],
-                distance: distance_along(&observations[i]),
-            })
-            .collect();
-        let sliding_friction = fit_sliding(&points)?;
-        let previous_seconds = observations[first_index.max(1) - 1].seconds;
+        let slide = &points[first_index..=last_index];
+        let sliding_friction = fit_sliding(slide)?;
+        let previous_seconds = points[first_index.max(1) - 1].seconds;
         let (begin_seconds, begin_error) =
-            extrapolate_begin(&points, sliding_friction.value, previous_seconds);
+            extrapolate_begin(&slide[0], sliding_friction.value, previous_seconds);
         let index_near = |seconds: f64| {
-            let index = observations.partition_point(|observation| observation.seconds < seconds);
-            index.min(observations.len() - 1)
+            let index = points.partition_point(|point| point.seconds < seconds);
+            index.min(points.len() - 1)
         };
-        let begin_index = index_near(begin_seconds);
+        let begin = &points[index_near(begin_seconds)];
         let earlier_index = index_near(begin_seconds - 2.0 * HALF_AVERAGING_TIME);
-        let earlier_index = earlier_index.saturating_sub(1);
-        let tilt = smoothed_tilts[begin_index].to_degrees();
-        let interval = observations[begin_index].seconds - observations[earlier_index].seconds;
-        let rate =
-            (tilt - smoothed_tilts[earlier_index].to_degrees()) / interval.max(HALF_AVERAGING_TIME);
+        let earlier = &points[earlier_index.saturating_sub(1)];
+        let tilt = begin.tilt.to_degrees();
+        let interval = begin.seconds - earlier.seconds;
+        let rate = (tilt - earlier.tilt.to_degrees()) / interval.max(HALF_AVERAGING_TIME);
         if rate > MAX_LIFT_RATE {
             return Err(SlideError::LiftedTooFast { rate });
         }
@@ -264,36 +266,24 @@ fn angle_between(heading: f64, [x, y]: [f64; 2]) -> f64 {
     sin.atan2(cos).to_degrees().abs()
 }
 
-/// Computes the mean position of the robot on the board, mm.
-fn mean_position(observations: &[Observation]) -> [f64; 2] {
-    [0, 1].map(|i| {
-        let coordinate = |observation: &Observation| observation.position[i];
-        observations.iter().map(coordinate).sum::<f64>() / observations.len() as f64
-    })
-}
-
-/// Computes the tilt in each frame, rad, from a straight line fitted to the frames around it.
-fn smooth_tilts(observations: &[Observation]) -> Vec<f64> {
-    let index_at =
-        |seconds: f64| observations.partition_point(|observation| observation.seconds < seconds);
-    let smooth_tilt = |observation: &Observation| {
-        let nearby = &observations[index_at(observation.seconds - HALF_AVERAGING_TIME)
-            ..index_at(observation.seconds + HALF_AVERAGING_TIME)];
-        let count = nearby.len() as f64;
-        let (mut mean_time, mut mean_tilt) = (0.0, 0.0);
-        for neighbour in nearby {
-            mean_time += (neighbour.seconds - observation.seconds) / count;
-            mean_tilt += neighbour.tilt / count;
-        }
-        let (mut products, mut squares) = (0.0, 1e-12);
-        for neighbour in nearby {
-            let offset = neighbour.seconds - observation.seconds - mean_time;
-            products += offset * (neighbour.tilt - mean_tilt);
-            squares += offset * offset;
-        }
-        mean_tilt - mean_time * products / squares
-    };
-    observations.iter().map(smooth_tilt).collect()
+/// Computes the tilt at a time, rad, from a straight line fitted to the frames around it.
+fn smooth_tilt(observations: &[Observation], seconds: f64) -> f64 {
+    let [begin, end] = [-HALF_AVERAGING_TIME, HALF_AVERAGING_TIME]
+        .map(|shift| observations.partition_point(|frame| frame.seconds < seconds + shift));
+    let nearby = &observations[begin..end];
+    let count = nearby.len() as f64;
+    let (mut mean_time, mut mean_tilt) = (0.0, 0.0);
+    for neighbour in nearby {
+        mean_time += (neighbour.seconds - seconds) / count;
+        mean_tilt += neighbour.tilt / count;
+    }
+    let (mut products, mut squares) = (0.0, 1e-12);
+    for neighbour in nearby {
+        let offset = neighbour.seconds - seconds - mean_time;
+        products += offset * (neighbour.tilt - mean_tilt);
+        squares += offset * offset;
+    }
+    mean_tilt - mean_time * products / squares
 }
 
 /// Fits the coefficient of sliding friction to the points of a slide.
@@ -342,8 +332,7 @@ fn fit_sliding(points: &[SlidePoint]) -> Result<Estimate, SlideError> {
 
 /// Extrapolates the start of a slide backward from the first frame that shows a movement. Returns the time of the start
 /// and its standard error, s. `previous_seconds` is the time of the frame before the movement.
-fn extrapolate_begin(points: &[SlidePoint], friction: f64, previous_seconds: f64) -> (f64, f64) {
-    let first = &points[0];
+fn extrapolate_begin(first: &SlidePoint, friction: f64, previous_seconds: f64) -> (f64, f64) {
     let acceleration = 1000.0 * GRAVITY * (first.tilt.sin() - friction * first.tilt.cos());
     let elapsed_seconds = (2.0 * first.distance / acceleration.max(1.0)).sqrt();
     let gap = first.seconds - previous_seconds;

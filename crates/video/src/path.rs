@@ -50,6 +50,13 @@ pub(crate) fn unwrap_headings(path: &mut [PathPoint]) {
     }
 }
 
+/// Returns the part of a path between two times, s.
+pub(crate) fn between(path: &[PathPoint], [from, to]: [f64; 2]) -> &[PathPoint] {
+    let begin = path.partition_point(|point| point.seconds < from);
+    let end = path.partition_point(|point| point.seconds <= to);
+    &path[begin..end.max(begin)]
+}
+
 /// Interpolates the pose at a time between two frames; `None` before the first or after the last frame.
 pub(crate) fn interpolate_at(path: &[PathPoint], seconds: f64) -> Option<BodyPose> {
     let next_index = path.partition_point(|point| point.seconds < seconds);

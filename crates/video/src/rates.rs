@@ -8,7 +8,7 @@
 use nalgebra::DMatrix;
 
 use crate::estimate::Estimate;
-use crate::least_squares;
+use crate::least_squares::{self, propagate_variance};
 use crate::mean::small_sample_factor;
 
 /// Range of a step from which frames are used, as fractions of the step. Above this range, the servo begins to brake.
@@ -21,6 +21,8 @@ const MAX_LOG_ERROR: f64 = 0.25;
 const MOTOR_SIGMA: f64 = 0.02;
 /// First estimate of an angle's standard error in one frame, deg; the residuals give the true value.
 const ANGLE_SIGMA: f64 = 0.3;
+/// Number of groups of steps that are fitted together: both directions, or without and with a load.
+const GROUP_COUNT: usize = 2;
 /// Smallest number of steps with at least two frames in a group.
 const MIN_STEPS: usize = 2;
 /// Smallest number of frames in a group, not counting the first frame of each step.
@@ -46,11 +48,11 @@ impl LargeStep {
     }
 }
 
-/// The rates of groups of steps, and their common time constant.
+/// The rates of two groups of steps, and their common time constant.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Rates {
     /// The rate of each group, deg/s.
-    pub rates: Vec<f64>,
+    pub rates: [f64; GROUP_COUNT],
     /// The covariance of the rates.
     covariance: DMatrix<f64>,
     /// The common time constant, s; `None` if the video does not determine it.
@@ -60,32 +62,32 @@ pub(crate) struct Rates {
 impl Rates {
     /// Fits groups of steps, each with its own rate; `None` if there are too few frames or the fit fails.
     /// `expected_time_constant` is in s.
-    pub(crate) fn fit(groups: &[&[LargeStep]], expected_time_constant: f64) -> Option<Self> {
+    pub(crate) fn fit(
+        groups: [&[LargeStep]; GROUP_COUNT],
+        expected_time_constant: f64,
+    ) -> Option<Self> {
         let mut start = Vec::new();
-        for group in groups {
-            let usable_steps = || group.iter().filter(|step| step.frames.len() > 1);
-            let frame_count: usize = usable_steps().map(|step| step.frames.len() - 1).sum();
-            if usable_steps().count() < MIN_STEPS || frame_count < MIN_FRAMES {
+        let mut steps: Vec<(usize, &LargeStep)> = Vec::new();
+        for (group_index, group) in groups.into_iter().enumerate() {
+            let usable_steps = group.iter().filter(|step| step.frames.len() > 1);
+            let usable_steps: Vec<&LargeStep> = usable_steps.collect();
+            let frame_count: usize = usable_steps.iter().map(|step| step.frames.len() - 1).sum();
+            if usable_steps.len() < MIN_STEPS || frame_count < MIN_FRAMES {
                 return None;
             }
-            start.push(usable_steps().map(mean_rate).sum::<f64>() / usable_steps().count() as f64);
+            let rates = usable_steps.iter().map(|step| mean_rate(step));
+            start.push(rates.sum::<f64>() / usable_steps.len() as f64);
+            steps.extend(usable_steps.into_iter().map(|step| (group_index, step)));
         }
-        let group_count = start.len();
         start.push(0.0);
-        let steps: Vec<(usize, &LargeStep)> = groups
-            .iter()
-            .enumerate()
-            .flat_map(|(group, steps)| steps.iter().map(move |step| (group, step)))
-            .filter(|(_, step)| step.frames.len() > 1)
-            .collect();
         for (group, step) in &steps {
             let (time, angle) = step.frames[0];
             start.push(time - angle / start[*group] - expected_time_constant);
         }
         let residuals = |parameters: &[f64], sigma: f64| {
-            let time_constant = expected_time_constant * parameters[group_count].exp();
-            let mut all_residuals = vec![parameters[group_count] / LOG_SIGMA];
-            for ((group, step), begin) in steps.iter().zip(&parameters[group_count + 1..]) {
+            let time_constant = expected_time_constant * parameters[GROUP_COUNT].exp();
+            let mut all_residuals = vec![parameters[GROUP_COUNT] / LOG_SIGMA];
+            for ((group, step), begin) in steps.iter().zip(&parameters[GROUP_COUNT + 1..]) {
                 let residual = |(time, angle): &(f64, f64)| {
                     (angle_after(parameters[*group], time_constant, time - begin) - angle) / sigma
                 };
@@ -97,20 +99,20 @@ impl Rates {
             least_squares::fit(&start, |parameters| residuals(parameters, ANGLE_SIGMA))?;
         let total_frame_count: usize = steps.iter().map(|(_, step)| step.frames.len()).sum();
         let degrees_of_freedom = total_frame_count
-            .checked_sub(steps.len() + group_count)
+            .checked_sub(steps.len() + GROUP_COUNT)
             .filter(|n| *n > 0)?;
         let variance = first_fit.sum_of_squares / degrees_of_freedom as f64;
         let sigma = ANGLE_SIGMA * variance.sqrt().max(0.05);
         let model = |parameters: &[f64]| residuals(parameters, sigma);
         let fit = least_squares::fit(&first_fit.parameters, model)?;
         let variance_factor = small_sample_factor(degrees_of_freedom).powi(2);
-        let covariance = fit.covariance.view((0, 0), (group_count, group_count));
-        let log_error = fit.covariance[(group_count, group_count)].sqrt();
-        let time_constant = expected_time_constant * fit.parameters[group_count].exp();
+        let covariance = fit.covariance.view((0, 0), (GROUP_COUNT, GROUP_COUNT));
+        let log_error = fit.covariance[(GROUP_COUNT, GROUP_COUNT)].sqrt();
+        let time_constant = expected_time_constant * fit.parameters[GROUP_COUNT].exp();
         let rotor_time_constant =
             Estimate::new(time_constant, time_constant * log_error.hypot(MOTOR_SIGMA));
         Some(Self {
-            rates: fit.parameters[..group_count].to_vec(),
+            rates: std::array::from_fn(|group| fit.parameters[group]),
             covariance: covariance * variance_factor,
             rotor_time_constant: (log_error < MAX_LOG_ERROR).then_some(rotor_time_constant),
         })
@@ -118,11 +120,9 @@ impl Rates {
 
     /// Propagates the errors of the rates to a value that is computed from them. `gradient` has the value's derivative
     /// with respect to each rate.
-    pub(crate) fn propagate_error(&self, value: f64, gradient: &[f64]) -> Estimate {
-        let count = gradient.len();
-        let pairs = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
-        let terms = pairs.map(|(i, j)| gradient[i] * self.covariance[(i, j)] * gradient[j]);
-        Estimate::new(value, terms.sum::<f64>().max(0.0).sqrt())
+    pub(crate) fn propagate_error(&self, value: f64, gradient: [f64; GROUP_COUNT]) -> Estimate {
+        let variance = propagate_variance(&gradient, &self.covariance);
+        Estimate::new(value, variance.sqrt())
     }
 }
 

@@ -12,7 +12,7 @@ use nalgebra::DMatrix;
 use crate::camera::{Camera, CameraPose, camera_pose_from_homography};
 use crate::frame::Pixel;
 use crate::homography::Homography;
-use crate::least_squares::{self, Fit};
+use crate::least_squares::{self, Fit, squared_norm};
 use crate::sheet::{self, DECK_TAG_ID, FLOOR_TAG_COUNT, TAGS_PER_STRIP};
 use crate::video_error::VideoError;
 
@@ -36,6 +36,7 @@ const MAX_INK_SPREAD: f64 = 0.6;
 pub(crate) type FloorCorners = [[Pixel; 4]; FLOOR_TAG_COUNT];
 
 /// Frames taken from one camera position.
+#[derive(Clone)]
 pub(crate) struct View {
     /// The corners of the floor tags.
     pub floor_corners: FloorCorners,
@@ -57,7 +58,9 @@ pub(crate) struct Dimensions {
 /// The parameters that all views have in common, and the camera of the first view.
 #[derive(Debug, Clone)]
 pub(crate) struct Scene {
-    dimensions: Dimensions,
+    pub dimensions: Dimensions,
+    /// True if the camera moved, so that each frame has its own pose of the camera.
+    pub has_camera_moved: bool,
     /// The common parameters, then the first view's pose.
     parameters: Vec<f64>,
     /// The covariance of these parameters.
@@ -71,7 +74,11 @@ impl Scene {
     ///
     /// # Errors
     /// Fails if no camera fits the tags, or if their arrangement or size differs from the sheet's.
-    pub(crate) fn fit(views: &[View], dimensions: Dimensions) -> Result<Self, VideoError> {
+    pub(crate) fn fit(
+        views: &[View],
+        dimensions: Dimensions,
+        has_camera_moved: bool,
+    ) -> Result<Self, VideoError> {
         let width = dimensions.frame_size[0] as f64;
         let fit_from = |start: &f64| fit_parameters(views, &dimensions, start * width);
         let fits = START_FOCAL_RATIOS.iter().filter_map(fit_from);
@@ -79,8 +86,8 @@ impl Scene {
         let best_fit = best_fit.ok_or(VideoError::NoCamera)?;
         let corner_count = views.len() * FLOOR_TAG_COUNT * 4;
         let floor_residuals = compute_residuals(&best_fit.parameters, views, &dimensions, false);
-        let corner_error = FLOOR_SIGMA
-            * (floor_residuals.iter().map(|r| r * r).sum::<f64>() / corner_count as f64).sqrt();
+        let mean_square = squared_norm(&floor_residuals) / corner_count as f64;
+        let corner_error = FLOOR_SIGMA * mean_square.sqrt();
         if !corner_error.is_finite() || corner_error > MAX_CORNER_ERROR {
             return Err(VideoError::SheetMismatch {
                 error: corner_error,
@@ -88,9 +95,8 @@ impl Scene {
         }
         let ink_spread = best_fit.parameters[1];
         if ink_spread.abs() > MAX_INK_SPREAD * dimensions.print_scale {
-            return Err(VideoError::WrongTagSize {
-                edge: sheet::FLOOR_TAG_EDGE + 2.0 * ink_spread / dimensions.print_scale,
-            });
+            let edge = sheet::FLOOR_TAG_EDGE + 2.0 * ink_spread / dimensions.print_scale;
+            return Err(VideoError::WrongTagSize { edge });
         }
         let kept_parameter_count = SHARED_PARAMETER_COUNT + POSE_PARAMETER_COUNT;
         let deck_residual_counts = views.iter().map(|view| 8 * view.deck_corners.len());
@@ -100,6 +106,7 @@ impl Scene {
             (best_fit.sum_of_squares / degrees_of_freedom.max(1) as f64).max(1.0);
         Ok(Self {
             dimensions,
+            has_camera_moved,
             parameters: best_fit.parameters[..kept_parameter_count].to_vec(),
             covariance: best_fit
                 .covariance
@@ -328,15 +335,10 @@ fn fit_parameters(views: &[View], dimensions: &Dimensions, focal_length: f64) ->
         let corners = first_view.floor_corners[id].map(|corner| to_floor.map(corner));
         [0, 1].map(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 4.0)
     };
-    let centres = [TAGS_PER_STRIP, TAGS_PER_STRIP + 1].map(find_centre);
-    let heading = (centres[1][1] - centres[0][1]).atan2(centres[1][0] - centres[0][0]);
-    let mut start = vec![
-        focal_length,
-        0.0,
-        (centres[0][0] + centres[1][0]) / 2.0,
-        (centres[0][1] + centres[1][1]) / 2.0,
-        heading,
-    ];
+    let [first, second] = [TAGS_PER_STRIP, TAGS_PER_STRIP + 1].map(find_centre);
+    let heading = (second[1] - first[1]).atan2(second[0] - first[0]);
+    let [x, y] = [0, 1].map(|i| (first[i] + second[i]) / 2.0);
+    let mut start = vec![focal_length, 0.0, x, y, heading];
     let mut deck_poses = Vec::new();
     for view in views {
         let pose = estimate_camera_pose(&view.floor_corners, dimensions, focal_length)?;

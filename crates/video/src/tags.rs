@@ -82,14 +82,12 @@ fn decode(frame: &Frame, outline: &TagOutline) -> Option<Tag> {
             });
             grey.iter().sum::<f64>() / offsets.len() as f64 > outline.mid_grey
         };
-        let white_cells: [[bool; CELLS_PER_SIDE]; CELLS_PER_SIDE] =
-            std::array::from_fn(|row| std::array::from_fn(|column| appears_white(row, column)));
+        let white_cells: [bool; CELLS_PER_SIDE * CELLS_PER_SIDE] =
+            std::array::from_fn(|i| appears_white(i / CELLS_PER_SIDE, i % CELLS_PER_SIDE));
         let count_misread_cells = |id: usize| {
-            let cells = (0..CELLS_PER_SIDE * CELLS_PER_SIDE)
-                .map(|i| (i / CELLS_PER_SIDE, i % CELLS_PER_SIDE));
-            cells
-                .filter(|&(row, column)| white_cells[row][column] != is_white(id, row, column))
-                .count()
+            let is_misread =
+                |&i: &usize| white_cells[i] != is_white(id, i / CELLS_PER_SIDE, i % CELLS_PER_SIDE);
+            (0..white_cells.len()).filter(is_misread).count()
         };
         let id = (0..CODES.len()).find(|&id| count_misread_cells(id) <= MAX_MISREAD_CELLS)?;
         Some(Tag { id, corners })

@@ -90,11 +90,9 @@ impl Video {
         }
         let mut corners = [None; CODES.len()];
         for tag in self.find_tags(frame) {
-            if corners[tag.id].replace(tag.corners).is_some() {
-                return Err(VideoError::DuplicateTag {
-                    id: tag.id,
-                    frame_number,
-                });
+            let id = tag.id;
+            if corners[id].replace(tag.corners).is_some() {
+                return Err(VideoError::DuplicateTag { id, frame_number });
             }
         }
         self.frames.push(FrameTags { seconds, corners });
@@ -122,24 +120,17 @@ impl Video {
             deck_height: setup.deck_height,
             frame_size: self.frame_size,
         };
-        let scene = Scene::fit(&self.select_views(has_camera_moved)?, dimensions)?;
-        let mut frames = Vec::with_capacity(self.frames.len());
-        let mut path: Vec<PathPoint> = Vec::with_capacity(self.frames.len());
-        let mut heights = Vec::with_capacity(self.frames.len());
+        let views = self.select_views(has_camera_moved)?;
+        let scene = Scene::fit(&views, dimensions, has_camera_moved)?;
+        let mut frames = Vec::new();
+        let mut path = Vec::new();
+        let mut heights = Vec::new();
         for frame in &self.frames {
-            if let Some(pose) = frame.find_body_pose(&scene, has_camera_moved) {
+            if let Some(point) = frame.find_path_point(&scene) {
                 frames.push(frame.clone());
-                path.push(PathPoint {
-                    seconds: frame.seconds,
-                    pose,
-                });
+                path.push(point);
             }
-            if let (Some(camera), Some(corners)) = (
-                frame.find_camera(&scene, has_camera_moved),
-                frame.corners[DECK_TAG_ID],
-            ) {
-                heights.extend(scene.find_deck_height(&camera, &corners));
-            }
+            heights.extend(frame.find_deck_height(&scene));
         }
         unwrap_headings(&mut path);
         let deck_height = heights.iter().sum::<f64>() / heights.len().max(1) as f64;
@@ -150,10 +141,10 @@ impl Video {
             });
         }
         self.check_distance(&scene, &path)?;
-        let [camera_height, tilt] = scene.camera().height_and_tilt();
+        let [height, tilt] = scene.camera().height_and_tilt();
         let camera = CameraEstimate {
             focal_length: scene.focal_length(),
-            height: camera_height,
+            height,
             tilt,
             corner_error: scene.corner_error,
             has_camera_moved,
@@ -164,7 +155,6 @@ impl Video {
             camera,
             scene,
             frames,
-            given_deck_height: setup.deck_height,
         })
     }
 
@@ -215,10 +205,8 @@ impl Video {
     fn has_camera_moved(&self) -> bool {
         let usual_corners = self.find_usual_floor_corners();
         let is_displaced = |tag: &[Pixel; 4], usual: &[Pixel; 4]| {
-            let pairs = tag.iter().zip(usual);
-            pairs
-                .map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]))
-                .any(|distance| distance > MIN_CAMERA_SHIFT)
+            let mut pairs = tag.iter().zip(usual);
+            pairs.any(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]) > MIN_CAMERA_SHIFT)
         };
         let shows_camera_shift = |frame: &&FrameTags| {
             let tags = (0..FLOOR_TAG_COUNT).filter_map(|id| Some((id, frame.corners[id]?)));
@@ -230,25 +218,19 @@ impl Video {
 
     /// Selects the frames to which the scene is fitted.
     fn select_views(&self, has_camera_moved: bool) -> Result<Vec<View>, VideoError> {
-        let complete_views: Vec<(FloorCorners, [Pixel; 4])> = self
-            .frames
-            .iter()
-            .filter_map(|frame| Some((frame.floor_corners()?, frame.corners[DECK_TAG_ID]?)))
-            .collect();
-        let evenly_spaced_indices = |count: usize| {
-            let sample_count = SAMPLE_COUNT.min(count).max(1);
-            (0..sample_count)
-                .map(move |i| i * count.saturating_sub(1) / sample_count.saturating_sub(1).max(1))
-        };
         if !has_camera_moved {
-            let deck_corners = self.visible_tags(DECK_TAG_ID);
             return Ok(vec![View {
                 floor_corners: self.find_usual_floor_corners(),
-                deck_corners: evenly_spaced_indices(deck_corners.len())
-                    .map(|i| deck_corners[i])
-                    .collect(),
+                deck_corners: select_evenly(&self.visible_tags(DECK_TAG_ID)),
             }]);
         }
+        let to_complete_view = |frame: &FrameTags| {
+            Some(View {
+                floor_corners: frame.floor_corners()?,
+                deck_corners: vec![frame.corners[DECK_TAG_ID]?],
+            })
+        };
+        let complete_views: Vec<View> = self.frames.iter().filter_map(to_complete_view).collect();
         let is_incomplete = |frame: &&FrameTags| frame.floor_corners().is_none();
         let frame_count = self.frames.iter().filter(is_incomplete).count();
         if frame_count as f64 > MAX_MISSING_FRACTION * self.frames.len() as f64
@@ -256,15 +238,7 @@ impl Video {
         {
             return Err(VideoError::CameraMoved { frame_count });
         }
-        let to_view = |i: usize| {
-            let (floor_corners, deck_corners) = complete_views[i];
-            View {
-                floor_corners,
-                deck_corners: vec![deck_corners],
-            }
-        };
-        let views = evenly_spaced_indices(complete_views.len()).map(to_view);
-        Ok(views.collect())
+        Ok(select_evenly(&complete_views))
     }
 
     /// Checks that the robot stays in the area in which the floor tags give valid poses.
@@ -284,6 +258,14 @@ impl Video {
         }
         Ok(())
     }
+}
+
+/// Selects at most [`SAMPLE_COUNT`] evenly spaced values, from the first to the last; there must be at least one.
+fn select_evenly<T: Clone>(values: &[T]) -> Vec<T> {
+    let sample_count = SAMPLE_COUNT.min(values.len());
+    let interval_count = (sample_count - 1).max(1);
+    let value_at = |i: usize| values[i * (values.len() - 1) / interval_count].clone();
+    (0..sample_count).map(value_at).collect()
 }
 
 /// Computes the mean of the middle half of the values; there must be at least one.

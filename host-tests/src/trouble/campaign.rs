@@ -11,6 +11,7 @@ use lizard_rules::{Rule, Violation};
 use simulated_uno::Image;
 
 use super::activity::Activity;
+use super::record::Record;
 use super::rule_checks::find_violations;
 use super::scenario::Scenario;
 use super::scenario_run::run_scenario;
@@ -72,31 +73,35 @@ impl fmt::Display for Summary {
     }
 }
 
-/// Runs and checks one scenario. Returns its duration in cycles, and the failure if a rule is violated.
+/// Runs and checks one scenario. Returns its record, and the failure if a rule is violated.
 #[must_use]
-pub fn run_and_check(image: &Image, robot: &Robot, scenario: &Scenario) -> (u64, Option<Failure>) {
+pub fn run_and_check(
+    image: &Image,
+    robot: &Robot,
+    scenario: &Scenario,
+) -> (Record, Option<Failure>) {
     let record = run_scenario(image, robot, scenario);
     let violations = find_violations(&record, robot, scenario);
     let failure = (!violations.is_empty()).then(|| Failure {
         scenario: scenario.clone(),
         violations,
     });
-    (record.end_cycle, failure)
+    (record, failure)
 }
 
-/// Runs and checks the scenarios `0..count` of a seed on `thread_count` threads. After each scenario, calls
-/// `report_progress` with the number of scenarios done, and the failure if the scenario failed.
+/// Runs and checks the scenarios `0..count` of a seed on as many threads as there are processors. After each scenario,
+/// calls `report_progress` with the number of scenarios done, and the failure if the scenario failed.
 pub fn run_campaign(
     image: &Image,
     robot: &Robot,
     seed: u64,
     count: u64,
-    thread_count: usize,
     report_progress: impl Fn(u64, Option<&Failure>) + Sync,
 ) -> Summary {
     let next_number = AtomicU64::new(0);
     let done_count = AtomicU64::new(0);
     let summary = Mutex::new(Summary::default());
+    let thread_count = thread::available_parallelism().map_or(1, usize::from);
     thread::scope(|scope| {
         for _ in 0..thread_count {
             scope.spawn(|| {
@@ -106,7 +111,7 @@ pub fn run_campaign(
                         return;
                     }
                     let scenario = Scenario::generate(seed, number, robot);
-                    let (cycle_count, failure) = run_and_check(image, robot, &scenario);
+                    let (record, failure) = run_and_check(image, robot, &scenario);
                     let new_count = done_count.fetch_add(1, Ordering::Relaxed) + 1;
                     report_progress(new_count, failure.as_ref());
                     let mut summary = summary.lock().expect("no thread has panicked");
@@ -114,7 +119,7 @@ pub fn run_campaign(
                     let (run_count, failed_count) = counts.entry(scenario.activity).or_default();
                     *run_count += 1;
                     *failed_count += u64::from(failure.is_some());
-                    summary.cycle_count += cycle_count;
+                    summary.cycle_count += record.end_cycle;
                     summary.failures.extend(failure);
                 }
             });

@@ -6,12 +6,11 @@ use std::time::{Duration, Instant};
 use fastrand::Rng;
 use lizard_host::patrol::PATROL;
 use lizard_host::session::Session;
-use lizard_host::sim::gait_choice;
-use lizard_robot::{Robot, to_command};
+use lizard_robot::Robot;
 use simulated_uno::{Radio, RadioLink, Uno, Wire};
 
 use super::random_commands;
-use super::record::{MS, Record, Span};
+use super::record::{MS, Record};
 
 /// Average number of bytes on the wire per byte that loses its stop bit.
 const BYTES_PER_GARBLED_BYTE: u16 = 300;
@@ -92,10 +91,7 @@ impl<'a> Drive<'a> {
         if self.radio.is_linked() {
             match record.radio_spans.last_mut() {
                 Some(span) if span.end + 2 * MS > now => span.end = now,
-                _ => record.radio_spans.push(Span {
-                    start: now,
-                    end: now,
-                }),
+                _ => record.radio_spans.push(now..now),
             }
         }
     }
@@ -130,9 +126,7 @@ impl<'a> Drive<'a> {
 
     /// Returns a random line for the person to send.
     fn random_line(&mut self) -> String {
-        let gaits = gait_choice::list_moving_gaits(self.robot);
-        let gait = self.rng.choice(&gaits).unwrap_or(&"stand");
-        let gait = to_command(gait);
+        let gait = random_commands::random_gait(&mut self.rng, self.robot);
         match self.rng.u8(..24) {
             0 | 1 => random_commands::random_pose(&mut self.rng, self.robot),
             2 | 3 => format!("speed {}", self.rng.u8(10..=100)),

@@ -3,17 +3,29 @@
 
 use fastrand::Rng;
 use lizard_host::patrol::PATROL;
-use lizard_robot::Robot;
+use lizard_host::sim::gait_choice;
+use lizard_robot::{Robot, to_command};
 
 use super::record::MS;
 use super::step::Step;
 
+/// Returns the command for a random gait that moves.
+pub fn random_gait(rng: &mut Rng, robot: &Robot) -> String {
+    let gaits = gait_choice::list_moving_gaits(robot);
+    to_command(rng.choice(&gaits).unwrap_or(&"stand"))
+}
+
 /// Returns the command for a random pose in which each servo is within 9 degrees of neutral.
 pub fn random_pose(rng: &mut Rng, robot: &Robot) -> String {
-    let angles = robot.servos().each_ref().map(|servo| {
+    format_pose(robot.servos().each_ref().map(|servo| {
         let sweep = f64::from(rng.i32(-900..900)) / 100.0;
-        format!("{:.2}", (servo.neutral + sweep).rem_euclid(360.0))
-    });
+        (servo.neutral + sweep).rem_euclid(360.0)
+    }))
+}
+
+/// Returns the command for the pose with these angles, deg.
+fn format_pose(angles: [f64; 4]) -> String {
+    let angles = angles.map(|angle| format!("{angle:.2}"));
     format!("pose {}", angles.join(" "))
 }
 
@@ -28,13 +40,6 @@ fn say(line: impl Into<String>) -> Step {
     Step::Say(line.into())
 }
 
-/// Returns the command that limits a servo's travel to this many degrees on either side of neutral.
-fn limit_command(servo: usize, degrees: f64, robot: &Robot) -> String {
-    let neutral = robot.servos()[servo].neutral;
-    let [min, max] = [-degrees, degrees].map(|sweep| (neutral + sweep).rem_euclid(360.0));
-    format!("limit {} {min:.2} {max:.2}", servo + 1)
-}
-
 /// A servo scale that is larger than any in robot.toml, us per degree, as text for the console.
 pub const LARGE_SCALE: &str = "17.77";
 
@@ -44,11 +49,11 @@ pub fn random_adjustment(rng: &mut Rng) -> String {
         0 => "load".into(),
         1 => "factory".into(),
         2 => format!("scale {} {LARGE_SCALE}", rng.u8(1..=4)),
-        3 => format!(
-            "dir {} {}",
-            rng.u8(1..=4),
-            if rng.bool() { '+' } else { '-' }
-        ),
+        3 => {
+            let servo = rng.u8(1..=4);
+            let sign = if rng.bool() { '+' } else { '-' };
+            format!("dir {servo} {sign}")
+        }
         _ => random_trim(rng),
     }
 }
@@ -71,19 +76,18 @@ pub fn random_settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
         // The saved travel is narrower than the travel in use.
         7 => {
             let servo = rng.usize(0..4);
+            let mut angles = robot.servos().map(|servo| servo.neutral);
+            let neutral = angles[servo];
             // The gaits need 23 degrees of travel. Beyond 23.9 degrees, the margin of a leg is too small.
-            let degrees = 23.2;
-            let limit_line = limit_command(servo, degrees, robot);
-            let neutral = robot.servos().map(|servo| servo.neutral);
-            let mut pose = neutral;
-            pose[servo] = (pose[servo] + if rng.bool() { 23.7 } else { -23.7 }).rem_euclid(360.0);
-            let pose = pose.map(|angle| format!("{angle:.2}")).join(" ");
+            let [min, max] = [-23.2, 23.2].map(|sweep| (neutral + sweep).rem_euclid(360.0));
+            let sweep = if rng.bool() { 23.7 } else { -23.7 };
+            angles[servo] = (neutral + sweep).rem_euclid(360.0);
             vec![
-                say(limit_line),
+                say(format!("limit {} {min:.2} {max:.2}", servo + 1)),
                 say("save"),
                 say("factory"),
                 wait(200),
-                say(format!("pose {pose}")),
+                say(format_pose(angles)),
                 wait(400),
             ]
         }

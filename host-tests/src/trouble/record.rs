@@ -1,6 +1,8 @@
 //! Record of a scenario: the outputs that are visible from outside (pulses, lines, the LED, resets, writes to the
 //! EEPROM), and the injected faults.
 
+use std::ops::Range;
+
 use lizard_core::console::word::Effect;
 use lizard_host::sim::lines::Line;
 use lizard_rules::Pulse;
@@ -12,20 +14,12 @@ use simulated_uno::{
 pub const MS: u64 = CYCLES_PER_MS;
 
 /// A range of cycles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Span {
-    /// The first cycle.
-    pub start: u64,
-    /// The cycle after the last.
-    pub end: u64,
-}
+pub type Span = Range<u64>;
 
-impl Span {
-    /// True if the span has a cycle in common with `start..end`.
-    #[must_use]
-    pub fn overlaps(&self, start: u64, end: u64) -> bool {
-        self.start < end && start < self.end
-    }
+/// True if two spans have a cycle in common.
+#[must_use]
+pub fn overlap(first: &Span, second: &Span) -> bool {
+    first.start < second.end && second.start < first.end
 }
 
 /// A line sent to the board, and its answer.
@@ -53,10 +47,13 @@ impl Exchange {
     /// answer, or if the answer does not have the key.
     #[must_use]
     pub fn status_value(&self, key: &str) -> Option<&str> {
+        if self.line != "status" {
+            return None;
+        }
         let text = self.answer.as_ref()?.text.strip_prefix("ok ")?;
-        let pairs = text.split(' ').filter_map(|pair| pair.split_once('='));
-        let mut matching_pairs = pairs.filter(|(name, _)| *name == key);
-        (self.line == "status").then(|| matching_pairs.next().map(|(_, value)| value))?
+        let mut pairs = text.split(' ').filter_map(|pair| pair.split_once('='));
+        let (_, value) = pairs.find(|(name, _)| *name == key)?;
+        Some(value)
     }
 }
 
@@ -132,7 +129,7 @@ impl Record {
                 let is_cut_at = |cycle: &u64| {
                     (*cycle..*cycle + RELEASE_CYCLES).contains(&end) || (start..end).contains(cycle)
                 };
-                let is_delayed_by = |block: &Span| block.overlaps(start, end + MS);
+                let is_delayed_by = |block: &Span| overlap(block, &(start..end + MS));
                 let pulse = Pulse {
                     servo,
                     width: pulse.width as u32,
@@ -144,11 +141,11 @@ impl Record {
         }
     }
 
-    /// True if the main loop was stalled or interrupts were blocked in `start..end`.
+    /// True if the main loop was stalled or interrupts were blocked in this span.
     #[must_use]
-    pub fn is_stalled_or_blocked(&self, start: u64, end: u64) -> bool {
-        let mut spans = self.stalls.iter().chain(&self.interrupt_blocks);
-        spans.any(|span| span.overlaps(start, end))
+    pub fn is_stalled_or_blocked(&self, span: &Span) -> bool {
+        let mut disturbances = self.stalls.iter().chain(&self.interrupt_blocks);
+        disturbances.any(|disturbance| overlap(disturbance, span))
     }
 
     /// Returns the lines that command the robot to move, to stop or to rest, each with its outcome: `Some(true)` if the
@@ -179,22 +176,21 @@ impl Record {
     /// in the next 300 ms. Returns `Some(true)` if the board carried out the line, `Some(false)` if it refused the
     /// line, `None` if the outcome is unknown.
     fn derive_outcome(&self, received: &ReceivedLine) -> Option<bool> {
-        let (start, end) = (received.cycle, received.cycle + 300 * MS);
+        let span = received.cycle..received.cycle + 300 * MS;
         // A reset may have cut off the beginning of the line.
         let is_ok = |text: &str| {
             let echo = text.strip_prefix("ok ");
             echo.is_some_and(|echo| received.text.ends_with(echo))
         };
         let lines = self.printed_lines.iter();
-        let next_lines = lines.filter(|line| (start..end).contains(&line.cycle));
+        let mut next_lines = lines.filter(|line| span.contains(&line.cycle));
         if next_lines.clone().any(|line| is_ok(&line.text)) {
             return Some(true);
         }
         // After these errors, the board refuses every motion command.
         let is_refusal = |text: &str| text.starts_with("err 7 ") || text.starts_with("err 8 ");
-        let is_refused =
-            !self.is_disturbed(start, end) && next_lines.clone().any(|line| is_refusal(&line.text));
-        is_refused.then_some(false)
+        let is_refused = next_lines.any(|line| is_refusal(&line.text));
+        (is_refused && !self.is_disturbed(&span)).then_some(false)
     }
 
     /// True if the answer to a `save` that arrived at this cycle was `ok`.
@@ -222,12 +218,11 @@ impl Record {
         lines.any(|line| line.is_answer() && (search_start..cycle).contains(&line.cycle))
     }
 
-    /// True if there was a reset, a power cut, a stall or a block of interrupts in `start..end`.
+    /// True if there was a reset, a power cut, a stall or a block of interrupts in this span.
     #[must_use]
-    pub fn is_disturbed(&self, start: u64, end: u64) -> bool {
-        let span = start..end;
+    pub fn is_disturbed(&self, span: &Span) -> bool {
         self.starts.iter().any(|reset| span.contains(&reset.cycle))
             || self.cut_cycles.iter().any(|cut| span.contains(cut))
-            || self.is_stalled_or_blocked(start, end)
+            || self.is_stalled_or_blocked(span)
     }
 }

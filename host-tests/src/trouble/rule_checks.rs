@@ -12,7 +12,7 @@ use simulated_uno::{Pin, ResetCause, State};
 use crate::{CYCLES_PER_US, FRAME_CYCLES};
 
 use super::random_commands::LARGE_SCALE;
-use super::record::{Exchange, MS, Record, Span};
+use super::record::{Exchange, MS, Record, Span, overlap};
 use super::scenario::Scenario;
 
 /// The LED's pin, D13.
@@ -70,7 +70,7 @@ pub fn find_violations(record: &Record, robot: &Robot, scenario: &Scenario) -> V
             violations.push(violation);
         }
     }
-    let checks: [(Rule, Result<(), String>); 7] = [
+    for (rule, result) in [
         (Rule::KeepsRunning, check_alive(record)),
         (Rule::StandWorks, check_stand(record)),
         (Rule::RefusalChangesNothing, check_refusals(record)),
@@ -78,8 +78,7 @@ pub fn find_violations(record: &Record, robot: &Robot, scenario: &Scenario) -> V
         (Rule::PulsePeriod, check_pulse_times(record)),
         (Rule::OnlySentLines, check_only_sent_lines(record)),
         (Rule::StopRepeated, check_stops_are_answered(record)),
-    ];
-    for (rule, result) in checks {
+    ] {
         if let Err(observation) = result {
             violations.push(Violation::new(rule, observation));
         }
@@ -145,31 +144,30 @@ pub fn collect_events(record: &Record) -> Vec<(Time, Event<'_>)> {
     }
     for exchange in &record.exchanges {
         let (sent_at, line) = (to_time(exchange.sent_cycle), exchange.line.as_str());
-        let effect = exchange.effect;
-        let timeout = sent_at + to_time(400 * MS);
-        events.push(match &exchange.answer {
-            Some(Line { cycle, text, .. }) => (
-                to_time(*cycle),
-                Event::Answer {
-                    line,
-                    effect,
-                    sent_at,
-                    answer: text,
-                },
-            ),
-            None => (timeout, Event::Unanswered(sent_at, line)),
-        });
+        if let Some(answer) = &exchange.answer {
+            let event = Event::Answer {
+                line,
+                effect: exchange.effect,
+                sent_at,
+                answer: &answer.text,
+            };
+            add(answer.cycle, event);
+        } else {
+            let timeout = exchange.sent_cycle + 400 * MS;
+            add(timeout, Event::Unanswered(sent_at, line));
+        }
     }
     for (cycle, pulse) in &record.pulses {
-        events.push((to_time(*cycle), Event::Pulse(*pulse)));
+        add(*cycle, Event::Pulse(*pulse));
     }
     for write in &record.eeprom_writes {
-        events.push((to_time(write.cycle), Event::ByteWritten));
+        add(write.cycle, Event::ByteWritten);
     }
     // Some rules have time limits, which may expire between other events.
     let check_cycles = (0..record.end_cycle).step_by(100 * MS as usize);
-    events.extend(check_cycles.map(|cycle| (to_time(cycle), Event::TimePasses)));
-    events.push((to_time(record.end_cycle), Event::TimePasses));
+    for cycle in check_cycles.chain([record.end_cycle]) {
+        add(cycle, Event::TimePasses);
+    }
     events.sort_by_key(|(time, _)| *time);
     events
 }
@@ -237,9 +235,7 @@ fn check_refusals(record: &Record) -> Result<(), String> {
         });
         // A routine continues by itself, for example from a motion to a rest.
         let is_routine = gaits.contains(&Some(PATROL));
-        let may_have_changed = has_motion_ended
-            || is_routine
-            || record.is_disturbed(answer_before.cycle, answer_after.cycle);
+        let may_have_changed = has_motion_ended || is_routine || record.is_disturbed(&span);
         if !is_refused || !have_status || may_have_changed {
             continue;
         }
@@ -265,12 +261,13 @@ fn check_pulse_times(record: &Record) -> Result<(), String> {
         let start_cycles: Vec<u64> = pulses.map(|(cycle, _)| *cycle).collect();
         for pair in start_cycles.windows(2) {
             let (from, to) = (pair[0], pair[1]);
+            let span = from..to;
             // A longer interval means a missing frame, which another rule covers.
             let is_next_frame = to - from < FRAME_CYCLES + FRAME_CYCLES / 2;
             let mut blocks = record.interrupt_blocks.iter();
-            let is_delayed = blocks.any(|block| block.overlaps(from, to));
+            let is_delayed = blocks.any(|block| overlap(block, &span));
             let mut starts = record.starts.iter();
-            let was_reset = starts.any(|start| (from..to).contains(&start.cycle));
+            let was_reset = starts.any(|start| span.contains(&start.cycle));
             if is_next_frame && to - from != FRAME_CYCLES && !is_delayed && !was_reset {
                 let late_cycles = to as i64 - (from + FRAME_CYCLES) as i64;
                 let (number, ms) = (servo + 1, to / MS);
@@ -340,7 +337,7 @@ fn check_stops_are_answered(record: &Record) -> Result<(), String> {
                 true => start + ANSWER_CYCLES,
                 false => start + RATE_SEARCH_CYCLES,
             };
-            let is_undisturbed = !record.is_disturbed(start.saturating_sub(300 * MS), deadline);
+            let is_undisturbed = !record.is_disturbed(&(start.saturating_sub(300 * MS)..deadline));
             (link.end >= deadline && is_undisturbed).then_some(deadline)
         };
         let deadline = record.radio_spans.iter().find_map(find_deadline);
@@ -377,7 +374,7 @@ fn check_led(record: &Record) -> Result<(), String> {
         // A flash of the LED that began before the last change belongs to the previous pattern.
         let last_change = changes.iter().filter(|change| **change < cycle).max();
         let start = last_change.unwrap_or(&0) + 60 * MS;
-        if !record.is_stalled_or_blocked(start.saturating_sub(100 * MS), cycle) {
+        if !record.is_stalled_or_blocked(&(start.saturating_sub(100 * MS)..cycle)) {
             led::check_pattern(&led_edges, start as Time, cycle as Time, code?)?;
         }
     }

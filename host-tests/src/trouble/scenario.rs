@@ -7,8 +7,7 @@ use std::fmt;
 use fastrand::Rng;
 use lizard_core::numbers::rate::BaudRate;
 use lizard_host::patrol::PATROL;
-use lizard_host::sim::gait_choice;
-use lizard_robot::{Robot, to_command};
+use lizard_robot::Robot;
 use simulated_uno::RadioLink;
 
 use super::activity::Activity;
@@ -55,7 +54,12 @@ impl Scenario {
     pub fn generate(seed: u64, number: u64, robot: &Robot) -> Self {
         let mut rng = Rng::with_seed(seed.wrapping_mul(1_000_003).wrapping_add(number));
         let activity = Activity::for_scenario(number);
-        let mut script = Script::new(&mut rng, robot);
+        let mut script = Script {
+            rng: &mut rng,
+            robot,
+            steps: Vec::new(),
+            is_driven: false,
+        };
         script.start_activity(activity);
         script.add_fault(activity);
         script.end_drive();
@@ -81,16 +85,7 @@ struct Script<'a> {
     is_driven: bool,
 }
 
-impl<'a> Script<'a> {
-    fn new(rng: &'a mut Rng, robot: &'a Robot) -> Self {
-        Self {
-            rng,
-            robot,
-            steps: Vec::new(),
-            is_driven: false,
-        }
-    }
-
+impl Script<'_> {
     fn say(&mut self, line: impl Into<String>) {
         let step = match self.is_driven {
             true => Step::Send,
@@ -109,8 +104,7 @@ impl<'a> Script<'a> {
 
     /// Waits for a random number of cycles, less than `ms` milliseconds.
     fn wait_up_to(&mut self, ms: u64) {
-        let cycles = self.rng.u64(1..ms * MS);
-        self.steps.push(Step::Wait(cycles));
+        self.steps.push(Step::Wait(self.rng.u64(1..ms * MS)));
     }
 
     fn random_pose(&mut self) -> String {
@@ -123,9 +117,7 @@ impl<'a> Script<'a> {
     }
 
     fn random_gait(&mut self) -> String {
-        let gaits = gait_choice::list_moving_gaits(self.robot);
-        let name = self.rng.choice(&gaits);
-        name.map_or("stand".into(), |name| to_command(name))
+        random_commands::random_gait(self.rng, self.robot)
     }
 
     /// Starts an activity and waits until a random cycle during the activity.
@@ -212,11 +204,10 @@ impl<'a> Script<'a> {
                 _ => {}
             }
             self.wait_up_to(700);
-            let start_step = match self.rng.u8(0..3) {
+            self.steps.push(match self.rng.u8(0..3) {
                 0 => Step::PowerCycle,
                 _ => Step::Reset,
-            };
-            self.steps.push(start_step);
+            });
         }
         let ms = *self.rng.choice(&[5, 100, 500]).unwrap_or(&5);
         self.wait_up_to(ms);
@@ -331,9 +322,8 @@ impl<'a> Script<'a> {
     /// Adds noise on the serial line for a random time, then a reset, as when a computer opens the port.
     fn add_noise(&mut self) {
         let cycles = self.rng.u64(MS..3_000 * MS);
-        self.steps.push(Step::Noise(cycles));
-        self.steps.push(Step::Wait(cycles));
-        self.steps.push(Step::Reset);
+        let noise = [Step::Noise(cycles), Step::Wait(cycles), Step::Reset];
+        self.steps.extend(noise);
         self.wait(600);
     }
 
@@ -369,11 +359,10 @@ impl<'a> Script<'a> {
         self.steps.push(Step::SayOrStand("walk".into()));
         self.wait(700);
         self.say("status");
-        self.say("rest");
-        self.wait(150);
-        self.say("status");
-        self.say("stand");
-        self.wait(1_300);
-        self.say("status");
+        for (line, ms) in [("rest", 150), ("stand", 1_300)] {
+            self.say(line);
+            self.wait(ms);
+            self.say("status");
+        }
     }
 }

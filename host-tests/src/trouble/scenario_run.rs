@@ -11,7 +11,7 @@ use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Image, Pin, State, Uno};
 
 use super::drive::Drive;
-use super::record::{Exchange, ReceivedLine, Record, Span};
+use super::record::{Exchange, ReceivedLine, Record};
 use super::scenario::Scenario;
 use super::step::Step;
 
@@ -95,14 +95,13 @@ impl ScenarioRun<'_> {
             Step::Wait(cycles) => self.run_to(now + cycles),
             Step::Stall(cycles) => {
                 self.uno.stall_main(*cycles);
-                let end = now + cycles;
-                self.record.stalls.push(Span { start: now, end });
+                self.record.stalls.push(now..now + cycles);
             }
             Step::BlockInterrupts(cycles) => {
                 self.uno.block_interrupts(*cycles);
                 // The block begins only when interrupts are enabled, so the recorded span is a millisecond longer.
                 let end = now + cycles + CYCLES_PER_MS;
-                self.record.interrupt_blocks.push(Span { start: now, end });
+                self.record.interrupt_blocks.push(now..end);
             }
             Step::Reset => {
                 self.record.cut_cycles.push(now);
@@ -256,9 +255,8 @@ impl ScenarioRun<'_> {
         if starts.len() > self.start_count {
             self.start_count = starts.len();
             self.uno.stall_main(0);
-            let now = self.uno.cycle();
             if let Some(stall) = self.record.stalls.last_mut() {
-                stall.end = stall.end.min(now);
+                stall.end = stall.end.min(self.uno.cycle());
             }
         }
         if self.is_supply_weak {
@@ -302,11 +300,10 @@ impl ScenarioRun<'_> {
 fn parse_received_line(bytes: &[u8], cycle: u64, robot: &Robot) -> ReceivedLine {
     let is_undamaged = bytes.len() <= MAX_LINE_BYTES && bytes.is_ascii();
     let text = String::from_utf8_lossy(bytes.trim_ascii()).to_ascii_lowercase();
-    let is_known = parse(text.as_bytes(), robot.firmware()).is_ok();
     ReceivedLine {
         cycle,
         effect: find_suffix_effect(&text, robot),
-        is_command: is_undamaged && is_known,
+        is_command: is_undamaged && parse(text.as_bytes(), robot.firmware()).is_ok(),
         text,
     }
 }

@@ -45,10 +45,10 @@ impl fmt::Display for Step {
             Self::Say(line) => write!(f, "say {line}"),
             Self::Send(line) => write!(f, "send {line} and do not wait"),
             Self::SayOrStand(line) => write!(f, "say {line}; if the robot rests, say stand"),
-            Self::Wait(cycles) => write!(f, "wait {}", CyclesAsTime(*cycles)),
-            Self::Stall(cycles) => write!(f, "stall main for {}", CyclesAsTime(*cycles)),
+            Self::Wait(cycles) => write!(f, "wait {}", format_time(*cycles)),
+            Self::Stall(cycles) => write!(f, "stall main for {}", format_time(*cycles)),
             Self::BlockInterrupts(cycles) => {
-                write!(f, "block interrupts for {}", CyclesAsTime(*cycles))
+                write!(f, "block interrupts for {}", format_time(*cycles))
             }
             Self::Reset => write!(f, "pull RESET"),
             Self::PowerCycle => write!(f, "cut the power and restore it"),
@@ -71,27 +71,23 @@ impl fmt::Display for Step {
             Self::AskUntilAnswered => write!(f, "ask for the status until there is an answer"),
             Self::Leave => write!(f, "the person leaves with the phone"),
             Self::Noise(cycles) => {
-                write!(f, "noise on the serial line for {}", CyclesAsTime(*cycles))
+                write!(f, "noise on the serial line for {}", format_time(*cycles))
             }
             Self::WeakSupply(false) => write!(f, "strong supply again"),
         }
     }
 }
 
-/// A number of cycles that is printed as a time, followed by the number of cycles unless the time is a whole number of
+/// Formats a number of cycles as a time, followed by the number of cycles unless the time is a whole number of
 /// milliseconds.
-pub struct CyclesAsTime(pub u64);
-
-impl fmt::Display for CyclesAsTime {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.0.is_multiple_of(CYCLES_PER_MS) {
-            write!(f, "{} ms", self.0 / CYCLES_PER_MS)
-        } else if self.0 < 10 * CYCLES_PER_MS {
-            let us = self.0 as f64 / CYCLES_PER_US as f64;
-            write!(f, "{us:.1} us ({} cycles)", self.0)
-        } else {
-            let ms = self.0 as f64 / CYCLES_PER_MS as f64;
-            write!(f, "{ms:.3} ms ({} cycles)", self.0)
-        }
+fn format_time(cycles: u64) -> String {
+    if cycles.is_multiple_of(CYCLES_PER_MS) {
+        format!("{} ms", cycles / CYCLES_PER_MS)
+    } else if cycles < 10 * CYCLES_PER_MS {
+        let us = cycles as f64 / CYCLES_PER_US as f64;
+        format!("{us:.1} us ({cycles} cycles)")
+    } else {
+        let ms = cycles as f64 / CYCLES_PER_MS as f64;
+        format!("{ms:.3} ms ({cycles} cycles)")
     }
 }

@@ -12,14 +12,11 @@ const PINS: [u8; 8] = [2, 3, 7, 8, 9, 12, 14, 19];
 /// The text that a test sends repeatedly, without gaps.
 const FLOOD: &[u8] = b"The quick brown fox jumps over the lazy dog. ";
 
-fn load_elf(path: &str) -> Uno {
-    Uno::load(root().join(path), Fidelity::DataSheet)
-        .unwrap_or_else(|error| panic!("`make arduino-test` builds it: {error}"))
-}
-
 /// Loads the sketch with this name, which is an example of the library or a sketch of the tests.
 fn load_sketch(name: &str) -> Uno {
-    load_elf(&format!("target/arduino/{name}/{name}.ino.elf"))
+    let path = format!("target/arduino/{name}/{name}.ino.elf");
+    Uno::load(root().join(path), Fidelity::DataSheet)
+        .unwrap_or_else(|error| panic!("`make arduino-test` builds it: {error}"))
 }
 
 /// Returns all edges of the servos' pins, each with the number of cycles since the first edge.
@@ -32,7 +29,7 @@ fn collect_relative_edges(uno: &Uno) -> Vec<(u64, Pin, bool)> {
 }
 
 /// Records each pin's pulse widths in cycles for 10 s, while the sketch echoes bytes that arrive without gaps.
-fn record_widths_in_flood(uno: &mut Uno, pins: &[u8]) -> Vec<Vec<u64>> {
+fn record_widths_in_flood<const N: usize>(uno: &mut Uno, pins: [u8; N]) -> [Vec<u64>; N] {
     uno.run_ms(100);
     uno.take_edges();
     uno.take_transmitted();
@@ -41,9 +38,7 @@ fn record_widths_in_flood(uno: &mut Uno, pins: &[u8]) -> Vec<Vec<u64>> {
     assert_eq!(*uno.state(), State::Alive);
     let echoed_count = uno.transmitted().len();
     assert!(echoed_count > 100_000, "{echoed_count} bytes echoed");
-    pins.iter()
-        .map(|pin| pulse_widths(uno, Pin::arduino(*pin)))
-        .collect()
+    pins.map(|pin| pulse_widths(uno, Pin::arduino(pin)))
 }
 
 /// Returns the difference between the longest and the shortest width.
@@ -76,7 +71,7 @@ fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
     let mut uno = load_sketch("BesideSerial");
     // 90 degrees is the middle of the range between 544 and 2400 us.
     let expected_cycles = (544 + (2400 - 544) / 2) * u64::from(CYCLES_PER_US);
-    for widths in record_widths_in_flood(&mut uno, &PINS) {
+    for widths in record_widths_in_flood(&mut uno, PINS) {
         assert!(widths.len() > 440, "{} pulses", widths.len());
         assert!(
             widths.iter().all(|actual| *actual == expected_cycles),
@@ -86,27 +81,21 @@ fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
     assert_eq!(uno.overrun_count(), 0);
     let readme = std::fs::read_to_string(root().join("arduino/ServoPulses/README.md"));
     let readme = readme.expect("the README exists");
-    for row in [
-        format!(
-            "| flash of the whole sketch, bytes | {} |",
-            uno.image().flash_used()
-        ),
-        format!(
-            "| static RAM of the whole sketch, bytes | {} |",
-            uno.image().static_ram()
-        ),
+    for (memory, bytes) in [
+        ("flash", uno.image().flash_used()),
+        ("static RAM", uno.image().static_ram().into()),
     ] {
+        let row = format!("| {memory} of the whole sketch, bytes | {bytes} |");
         assert!(readme.contains(&row), "the README has no {row}");
     }
 }
 
 /// Returns the cycles per second spent in the handlers of Timer1's compare matches.
 fn handler_cycles_per_second(uno: &Uno) -> u64 {
-    let handlers = uno.interrupt_stats().into_iter();
-    let cycles = handlers
-        .filter(|handler| [11, 12].contains(&handler.vector))
-        .map(|handler| handler.cycles);
-    cycles.sum::<u64>() * FREQUENCY / uno.cycle()
+    let mut handlers = uno.interrupt_stats();
+    handlers.retain(|handler| [11, 12].contains(&handler.vector));
+    let cycles: u64 = handlers.iter().map(|handler| handler.cycles).sum();
+    cycles * FREQUENCY / uno.cycle()
 }
 
 #[test]
@@ -114,9 +103,8 @@ fn handler_cycles_per_second(uno: &Uno) -> u64 {
 fn the_servo_library_has_jitter_in_the_same_flood() {
     for (name, allowed_jitters) in [("ServoBesideSerial", 50..200), ("BesideSerial", 0..1)] {
         let mut uno = load_sketch(name);
-        let widths = record_widths_in_flood(&mut uno, &PINS);
-        let measured_jitters: Vec<u64> =
-            widths.iter().map(|widths| compute_jitter(widths)).collect();
+        let widths = record_widths_in_flood(&mut uno, PINS);
+        let measured_jitters = widths.map(|widths| compute_jitter(&widths));
         let image = uno.image();
         println!(
             "{name}: jitter {measured_jitters:?} cycles, {} bytes of flash, {} bytes of RAM, {} cycles per second",
@@ -148,10 +136,7 @@ fn a_late_pulse_is_left_out_and_no_pulse_is_too_short() {
 #[test]
 fn every_change_of_a_width_is_atomic_and_no_pulse_is_cut() {
     let mut uno = load_sketch("Restless");
-    let widths = record_widths_in_flood(&mut uno, &[9, 14]);
-    let [rewritten_widths, attached_widths] = &widths[..] else {
-        unreachable!("two pins have two lists of widths")
-    };
+    let [rewritten_widths, attached_widths] = record_widths_in_flood(&mut uno, [9, 14]);
     for width in [0x5dff, 0x5e00] {
         let widths = rewritten_widths.iter();
         let pulse_count = widths.filter(|actual| **actual == width).count();

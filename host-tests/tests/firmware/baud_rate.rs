@@ -5,7 +5,13 @@ use lizard_host_tests::FirmwareBench;
 use simulated_uno::{CYCLES_PER_MS, Fidelity};
 
 use crate::pulses::servo_edges;
-use crate::{Status, boot_and_command, boot_to_stand, first_moving_gait, run_in_both_simulations};
+use crate::watchdog::run_until_reset;
+use crate::{
+    Status, boot_to_stand, boot_to_walk, expect_answer, first_moving_gait, run_in_both_simulations,
+};
+
+/// The answer to a line of which the robot received a byte with a framing error.
+pub const GARBLED_ANSWER: &str = "err 1 the line was garbled; send it again";
 
 /// The baud rates, each with the number of `status` lines until the first answer after a cold start. One line is lost
 /// at each rate that the robot tries first, and one more because the robot receives only part of it.
@@ -23,6 +29,12 @@ pub fn ask_until_answered(bench: &mut FirmwareBench) -> u32 {
         }
     }
     panic!("no answer at any rate");
+}
+
+/// Checks that the robot answers the first line, a second after an event that followed communication at `baud`.
+fn assert_answered_at_once(bench: &mut FirmwareBench, baud: f64, event: &str) {
+    bench.run_ms(1_000);
+    assert_eq!(ask_until_answered(bench), 1, "{baud} baud, {event}");
 }
 
 /// Boots a board and lets its robot find this baud rate.
@@ -54,18 +66,17 @@ fn a_robot_finds_each_baud_rate_within_a_few_lines() {
 fn a_command_at_another_rate_is_reported_as_garbled_and_not_executed() {
     let mut bench = boot_to_stand(Fidelity::DataSheet);
     bench.uno.set_baud(9_600.0);
-    let garbled_answer = "err 1 the line was garbled; send it again";
     let line_count = bench.lines().len();
     for _ in 0..12 {
         bench.uno.send(b"cal\n");
         bench.run_ms(350);
     }
     let answers = bench.texts_from(line_count);
-    let garbled_answers = answers.iter().filter(|answer| *answer == garbled_answer);
+    let garbled_answers = answers.iter().filter(|answer| *answer == GARBLED_ANSWER);
     assert!(garbled_answers.count() >= 2, "{answers:?}");
     assert!(answers.iter().all(|answer| !answer.starts_with("ok")));
     ask_until_answered(&mut bench);
-    assert!(bench.say("cal").starts_with("ok"));
+    expect_answer(&mut bench, "cal", "ok");
 }
 
 #[test]
@@ -83,38 +94,26 @@ fn a_robot_that_has_found_one_rate_finds_any_other() {
 fn a_reset_or_power_on_restores_115_200_baud_and_a_hang_keeps_the_rate() {
     for (baud, _) in BAUD_RATES {
         let mut bench = boot_at(baud);
-        let resets_before = bench.uno.watchdog_resets();
         bench.uno.stall_main(1_000 * CYCLES_PER_MS);
-        let was_reset = bench.uno.run_until(400 * CYCLES_PER_MS, 1_000, |uno| {
-            uno.watchdog_resets() > resets_before
-        });
-        assert!(was_reset, "no reset");
-        bench.uno.stall_main(0);
-        bench.run_ms(1_000);
-        let line_count = ask_until_answered(&mut bench);
-        assert_eq!(line_count, 1, "{baud} baud after a hang");
-        assert_eq!(Status::read(&mut bench).text("reset"), "watchdog");
+        run_until_reset(&mut bench);
+        assert_answered_at_once(&mut bench, baud, "after a hang");
+        Status::read(&mut bench).assert_has("reset=watchdog");
         bench.uno.reset();
         bench.uno.set_baud(115_200.0);
-        bench.run_ms(1_000);
-        let line_count = ask_until_answered(&mut bench);
-        assert_eq!(line_count, 1, "{baud} baud, then a reset");
+        assert_answered_at_once(&mut bench, baud, "then a reset");
         bench.uno.set_baud(baud);
         ask_until_answered(&mut bench);
         bench.uno.power_cycle();
         bench.uno.set_baud(115_200.0);
-        bench.run_ms(1_000);
-        let line_count = ask_until_answered(&mut bench);
-        assert_eq!(line_count, 1, "{baud} baud, then power-on");
+        assert_answered_at_once(&mut bench, baud, "then power-on");
     }
 }
 
 #[test]
 fn the_baud_rate_search_moves_no_pulse_by_a_cycle() {
     run_in_both_simulations(|fidelity| {
-        let gait = first_moving_gait();
         let [undisturbed_edges, disturbed_edges] = [false, true].map(|is_disturbed| {
-            let mut bench = boot_and_command(&gait, fidelity);
+            let mut bench = boot_to_walk(fidelity);
             bench.uno.take_edges();
             let mut rng = Rng::with_seed(3);
             let mut used_rates = std::collections::BTreeSet::new();
@@ -156,13 +155,12 @@ fn noise_is_never_executed_and_the_rate_is_found_again() {
 
 #[test]
 fn garbled_bytes_between_commands_do_not_change_the_rate() {
-    let gait = first_moving_gait();
     let mut bench = boot_at(9_600.0);
     for _ in 0..40 {
         bench.uno.send_with_framing_error(&[0x55; 31]);
         bench.run_ms(100);
-        assert_eq!(bench.say(""), "err 1 the line was garbled; send it again");
-        bench.expect_ok(&gait);
+        assert_eq!(bench.say(""), GARBLED_ANSWER);
+        bench.expect_ok(&first_moving_gait());
         bench.uno.send_with_framing_error(&[0x55; 31]);
         bench.uno.send(b"\n");
         bench.run_ms(100);

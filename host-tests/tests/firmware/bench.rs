@@ -45,13 +45,9 @@ fn load_program(program: &str) -> FirmwareBench {
     FirmwareBench::with_uno(uno)
 }
 
-fn load_servo_program() -> FirmwareBench {
-    load_program(SERVO_PROGRAM)
-}
-
 #[test]
 fn the_answer_to_a_line_is_distinguished_from_the_notes_before_it() {
-    let mut bench = load_servo_program();
+    let mut bench = load_program(SERVO_PROGRAM);
     assert_eq!(bench.next_line(500).as_deref(), Some("# lizard test"));
     let (notes, answer) = bench.ask("?");
     assert_eq!(notes, ["# one", "# two"]);
@@ -63,12 +59,12 @@ fn the_answer_to_a_line_is_distinguished_from_the_notes_before_it() {
 #[test]
 #[should_panic(expected = "no answer to \"x\"")]
 fn a_line_without_an_answer_panics() {
-    load_servo_program().say("x");
+    load_program(SERVO_PROGRAM).say("x");
 }
 
 #[test]
 fn each_frame_has_one_pulse_of_each_servo() {
-    let mut bench = load_servo_program();
+    let mut bench = load_program(SERVO_PROGRAM);
     bench.run_ms(100);
     let mut frames = bench.run_for_frames(10);
     frames.extend(bench.run_for_frames(5));
@@ -96,20 +92,21 @@ fn the_calls_of_a_named_function_are_timed() {
     );
     let calls = bench.time_calls("work", 10);
     assert!(calls.len() > 100);
-    // 1000 cycles of delay and 4 of `ret`.
-    let all_take_1004 = calls.iter().all(|call| call.cycles() == 1004);
-    assert!(all_take_1004, "{:?}", calls[0]);
+    for call in calls {
+        // 1000 cycles of delay and 4 of `ret`.
+        assert_eq!(call.cycles(), 1004, "{call:?}");
+    }
 }
 
 #[test]
 #[should_panic(expected = "exactly one function walk")]
 fn timing_a_function_that_does_not_exist_panics() {
-    load_servo_program().time_calls("walk", 1);
+    load_program(SERVO_PROGRAM).time_calls("walk", 1);
 }
 
 #[test]
 fn a_resting_robot_has_silent_frames() {
-    let mut bench = load_servo_program();
+    let mut bench = load_program(SERVO_PROGRAM);
     bench.run_ms(100);
     bench.say("r");
     let frames = bench.run_for_frames(3);

@@ -7,7 +7,7 @@ use simulated_uno::{CYCLES_PER_MS, max_pins_high};
 
 use crate::pulses::servo_edges;
 use crate::reference_run::{ReferenceRun, SLOT_CYCLES};
-use crate::{neutral_widths, run_in_both_simulations};
+use crate::{neutral_widths, start_in_both_simulations};
 
 /// Longest time for which other handlers and code with interrupts disabled may delay a servo interrupt, cycles.
 const MAX_BLOCKED_CYCLES: u64 = 160;
@@ -20,35 +20,32 @@ struct BlockedInterval {
     length: u64,
 }
 
-/// The pulse edges that the blocked intervals delay.
-#[derive(Clone, Copy, PartialEq)]
-enum DelayedEdges {
+/// An edge of each servo's pulse.
+#[derive(Clone, Copy)]
+enum PulseEdge {
     Rising,
     Falling,
-    Both,
 }
 
 /// Runs one frame for each blocked interval, which delays the chosen edges of all servos. Returns the frames, each with
-/// its interval and its expected widths.
+/// its expected widths.
 fn run_blocked_frames(
     run: &mut ReferenceRun,
-    edges: DelayedEdges,
+    edges: &[PulseEdge],
     intervals: &[BlockedInterval],
-) -> Vec<(BlockedInterval, Frame, [u64; 4])> {
+) -> Vec<(Frame, [u64; 4])> {
     let start = run.run_to_next_frame();
-    let expected_widths = run.expected_widths(start, intervals.len() as u64);
+    let expected_widths = run.expected_widths(start, intervals.len());
     for (frame_index, (interval, expected)) in intervals.iter().zip(expected_widths).enumerate() {
         for (servo, width) in expected.into_iter().enumerate() {
             let rise = start + frame_index as u64 * FRAME_CYCLES + servo as u64 * SLOT_CYCLES;
-            let edge_cycles = [
-                (DelayedEdges::Rising, rise),
-                (DelayedEdges::Falling, rise + width),
-            ];
-            for (edge, cycle) in edge_cycles {
-                if edges == DelayedEdges::Both || edges == edge {
-                    run.run_to(cycle - interval.cycles_before_edge);
-                    run.bench.uno.block_interrupts(interval.length);
-                }
+            for edge in edges {
+                let cycle = match edge {
+                    PulseEdge::Rising => rise,
+                    PulseEdge::Falling => rise + width,
+                };
+                run.run_to(cycle - interval.cycles_before_edge);
+                run.bench.uno.block_interrupts(interval.length);
             }
         }
     }
@@ -56,47 +53,56 @@ fn run_blocked_frames(
     let frames = run.frames_since(start);
     let count = frames.len();
     assert_eq!(count, intervals.len(), "not every interval has a frame");
-    let with_interval =
-        |(interval, (frame, expected)): (&BlockedInterval, _)| (*interval, frame, expected);
-    intervals.iter().zip(frames).map(with_interval).collect()
+    frames
 }
 
-/// Returns blocked intervals of several lengths above [`MAX_BLOCKED_CYCLES`]. For each length, the starts are seven
-/// cycles apart, from an interval that begins at the edge to an interval that ends before the edge.
-fn generate_too_long_intervals() -> Vec<BlockedInterval> {
-    [200, 230, 300, 500, 900]
-        .into_iter()
-        .flat_map(|length| {
-            let starts = (0..length + 300).step_by(7);
-            starts.map(move |cycles_before_edge| BlockedInterval {
-                cycles_before_edge,
-                length,
-            })
-        })
-        .collect()
+/// Returns blocked intervals of this length, from an interval that begins at the edge to an interval that begins just
+/// less than `max_start` cycles before the edge. The starts are `step` cycles apart.
+fn generate_intervals(length: u64, max_start: u64, step: usize) -> Vec<BlockedInterval> {
+    let starts = (0..max_start).step_by(step);
+    let to_interval = |cycles_before_edge| BlockedInterval {
+        cycles_before_edge,
+        length,
+    };
+    starts.map(to_interval).collect()
 }
 
-/// Checks that a quarter to three quarters of the edges are late.
-fn assert_about_half_late(count: u64, edge_count: u64) {
-    let allowed_counts = edge_count / 4..edge_count * 3 / 4;
-    assert!(
-        allowed_counts.contains(&count),
-        "{count} of {edge_count} edges are late"
-    );
+/// Delays one edge of each pulse of a standing robot by blocked intervals of several lengths above
+/// [`MAX_BLOCKED_CYCLES`], each of which begins at the edge, ends before the edge or begins between these times. Checks
+/// that about half of the edges are late and counted. `is_possible` decides whether a late edge can give this width.
+fn assert_late_edges_counted(
+    edge: PulseEdge,
+    is_possible: impl Fn(&BlockedInterval, Option<u64>, u64) -> bool + Sync,
+) {
+    start_in_both_simulations(ReferenceRun::start_standing, |mut run| {
+        let lengths = [200, 230, 300, 500, 900].into_iter();
+        let intervals = lengths.flat_map(|length| generate_intervals(length, length + 300, 7));
+        let intervals: Vec<BlockedInterval> = intervals.collect();
+        let mut late_count = 0;
+        let frames = run_blocked_frames(&mut run, &[edge], &intervals);
+        for (interval, (frame, expected)) in intervals.iter().zip(frames) {
+            for (sent, expected) in frame.widths.into_iter().zip(expected) {
+                let is_late = sent != Some(expected);
+                late_count += u64::from(is_late);
+                let is_allowed = !is_late || is_possible(interval, sent, expected);
+                assert!(is_allowed, "{interval:?}: {frame:?}");
+            }
+        }
+        // A quarter to three quarters of the edges are late.
+        let edge_count = 4 * intervals.len() as u64;
+        let is_about_half = (edge_count / 4..edge_count * 3 / 4).contains(&late_count);
+        assert!(is_about_half, "{late_count} of {edge_count} edges are late");
+        assert_eq!(run.late_edge_count(), late_count);
+    });
 }
 
 #[test]
 fn interrupts_blocked_for_the_allowed_time_move_no_edge() {
-    run_in_both_simulations(|fidelity| {
-        let mut run = ReferenceRun::start_walking(fidelity);
-        let length = MAX_BLOCKED_CYCLES;
-        let intervals = (0..450).map(|cycles_before_edge| BlockedInterval {
-            cycles_before_edge,
-            length,
-        });
-        let intervals: Vec<BlockedInterval> = intervals.collect();
-        let frames = run_blocked_frames(&mut run, DelayedEdges::Both, &intervals);
-        for (interval, frame, expected) in frames {
+    start_in_both_simulations(ReferenceRun::start_walking, |mut run| {
+        let intervals = generate_intervals(MAX_BLOCKED_CYCLES, 450, 1);
+        let edges = [PulseEdge::Rising, PulseEdge::Falling];
+        let frames = run_blocked_frames(&mut run, &edges, &intervals);
+        for (interval, (frame, expected)) in intervals.iter().zip(frames) {
             let widths = frame.all_widths();
             assert_eq!(widths, Some(expected), "{interval:?}: {frame:?}");
         }
@@ -108,65 +114,38 @@ fn interrupts_blocked_for_the_allowed_time_move_no_edge() {
 
 #[test]
 fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
-    run_in_both_simulations(|fidelity| {
-        let mut run = ReferenceRun::start_standing(fidelity);
-        let intervals = generate_too_long_intervals();
-        let mut dropped_count = 0;
-        let frames = run_blocked_frames(&mut run, DelayedEdges::Rising, &intervals);
-        for (interval, frame, expected) in frames {
-            for (sent_width, expected) in frame.widths.into_iter().zip(expected) {
-                dropped_count += u64::from(sent_width.is_none());
-                let is_exact = sent_width.is_none_or(|sent_width| sent_width == expected);
-                assert!(is_exact, "{interval:?}: {frame:?}");
-            }
-        }
-        assert_about_half_late(dropped_count, 4 * intervals.len() as u64);
-        assert_eq!(run.late_edge_count(), dropped_count);
-    });
+    assert_late_edges_counted(PulseEdge::Rising, |_, sent, _| sent.is_none());
 }
 
 #[test]
 fn a_late_falling_edge_occurs_at_once_and_is_counted() {
-    run_in_both_simulations(|fidelity| {
-        let mut run = ReferenceRun::start_standing(fidelity);
-        let intervals = generate_too_long_intervals();
-        let mut late_count = 0;
-        let frames = run_blocked_frames(&mut run, DelayedEdges::Falling, &intervals);
-        for (interval, frame, expected) in frames {
-            // After the blocked interval, the handler's prologue takes up to 90 cycles.
-            let max_delay = (interval.length + 90).saturating_sub(interval.cycles_before_edge);
-            for (sent_width, expected) in frame.expect_all_widths().into_iter().zip(expected) {
-                late_count += u64::from(sent_width != expected);
-                let is_allowed = (expected..=expected + max_delay).contains(&sent_width);
-                assert!(is_allowed, "{interval:?}: {frame:?}");
-            }
-        }
-        assert_about_half_late(late_count, 4 * intervals.len() as u64);
-        assert_eq!(run.late_edge_count(), late_count);
+    assert_late_edges_counted(PulseEdge::Falling, |interval, sent, expected| {
+        // After the blocked interval, the handler's prologue takes up to 90 cycles.
+        let max_delay = (interval.length + 90).saturating_sub(interval.cycles_before_edge);
+        sent.is_some_and(|width| (expected..=expected + max_delay).contains(&width))
     });
 }
 
 #[test]
 fn interrupts_blocked_for_most_of_a_slot_drop_only_its_pulse() {
-    run_in_both_simulations(|fidelity| {
-        let mut run = ReferenceRun::start_standing(fidelity);
+    start_in_both_simulations(ReferenceRun::start_standing, |mut run| {
         for (servo, length) in (0..4).zip([20_000, 30_000, 45_000, 62_000]) {
             let start = run.run_to_next_frame();
             let late_count_before = run.late_edge_count();
             run.run_to(start + servo * SLOT_CYCLES - 600);
             run.bench.uno.block_interrupts(length);
             run.run_to(start + 3 * FRAME_CYCLES - SLOT_CYCLES / 2);
-            for (frame_index, (frame, commanded)) in run.frames_since(start).into_iter().enumerate()
-            {
+            for (frame, commanded) in run.frames_since(start) {
                 let mut expected = commanded.map(Some);
-                if frame_index == 0 {
+                if frame.start == start {
                     expected[servo as usize] = None;
                 }
                 assert_eq!(frame.widths, expected, "A{} and {length}", servo + 1);
                 // Each pulse starts exactly at the start of its slot.
-                let slot_starts = [0, 1, 2, 3].map(|slot| frame.start + slot * SLOT_CYCLES);
-                for (start, slot_start) in frame.starts.into_iter().zip(slot_starts) {
-                    assert!(start.is_none_or(|start| start == slot_start), "{frame:?}");
+                for (slot, pulse_start) in (0..).zip(frame.starts) {
+                    let slot_start = frame.start + slot * SLOT_CYCLES;
+                    let is_exact = pulse_start.is_none_or(|start| start == slot_start);
+                    assert!(is_exact, "{frame:?}");
                 }
             }
             assert_eq!(run.late_edge_count(), late_count_before + 1);
@@ -176,8 +155,7 @@ fn interrupts_blocked_for_most_of_a_slot_drop_only_its_pulse() {
 
 #[test]
 fn a_missed_falling_edge_occurs_when_the_next_slot_begins() {
-    run_in_both_simulations(|fidelity| {
-        let mut run = ReferenceRun::start_standing(fidelity);
+    start_in_both_simulations(ReferenceRun::start_standing, |mut run| {
         let pins = run.bench.pins();
         let neutral = neutral_widths();
         // The blocked interval ends between 220 cycles before the next slot's edge and 360 cycles after it.
@@ -186,15 +164,14 @@ fn a_missed_falling_edge_occurs_when_the_next_slot_begins() {
                 run.bench.run_for_frames(1);
                 run.bench.uno.take_edges();
                 let servo_pin = pins[servo];
-                let is_high = |uno: &simulated_uno::Uno| uno.is_high(servo_pin);
-                assert!(run.bench.uno.run_until(2 * FRAME_CYCLES, 100, is_high));
-                run.bench.uno.run_cycles(neutral[servo] - 500);
-                let edges = run.bench.uno.edges();
+                let uno = &mut run.bench.uno;
+                assert!(uno.run_until(2 * FRAME_CYCLES, 100, |uno| uno.is_high(servo_pin)));
+                uno.run_cycles(neutral[servo] - 500);
+                let edges = uno.edges();
                 let rise_cycle = edges.last().expect("the pulse has risen").cycle;
-                let late_count_before = run.late_edge_count();
                 let end_cycle = rise_cycle + SLOT_CYCLES - 220 + excess_cycles;
-                let length = end_cycle - run.bench.uno.cycle();
-                run.bench.uno.block_interrupts(length);
+                uno.block_interrupts(end_cycle - uno.cycle());
+                let late_count_before = run.late_edge_count();
                 run.bench.run_ms(40);
                 let message = format!("A{} and {excess_cycles}", servo + 1);
                 assert_eq!(run.late_edge_count(), late_count_before + 1, "{message}");
@@ -217,8 +194,7 @@ fn a_missed_falling_edge_occurs_when_the_next_slot_begins() {
 
 #[test]
 fn milliseconds_without_interrupts_shorten_no_pulse_and_never_raise_two_pins_at_once() {
-    run_in_both_simulations(|fidelity| {
-        let mut run = ReferenceRun::start_standing(fidelity);
+    start_in_both_simulations(ReferenceRun::start_standing, |mut run| {
         let mut rng = Rng::with_seed(5);
         for _ in 0..200 {
             run.bench.run_for_frames(0);

@@ -1,16 +1,17 @@
 //! Tests of the servo settings, measured at the pins, and of the settings saved across a loss of power.
 
 use lizard_host::sim::frame::FRAME_CYCLES;
-use lizard_host_tests::{CYCLES_PER_US, robot};
-use simulated_uno::{CYCLES_PER_MS, Fidelity, PowerCut, Pulse, State};
+use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, robot};
+use simulated_uno::{CYCLES_PER_MS, Fidelity, PowerCut, State};
 
 use crate::measurements::{
-    assert_within_slew_limit, assert_within_slew_limit_for_scales, measure_widths, power_cycle,
-    read_calibration, recorded_pulses, run_and_record_pulses, servo_slew_limit,
+    assert_steady, assert_within_slew_limit, measure_widths, power_cycle, read_calibration,
+    recorded_pulses, run_and_record_pulses, servo_scales, servo_slew_limit,
 };
 use crate::reference_run::{ReferenceRun, SLOT_CYCLES};
 use crate::{
-    Status, boot_to_stand, first_moving_gait, neutral_widths, pose_command, run_in_both_simulations,
+    Status, boot_to_stand, expect_answer, first_moving_gait, neutral_widths, pose_command,
+    run_in_both_simulations, start_in_both_simulations,
 };
 
 /// Returns A1's pulse width in cycles for a trim, a scale and a sweep from neutral.
@@ -25,25 +26,15 @@ fn a1_us_per_degree() -> f64 {
 }
 
 /// Asserts that a pulse width in cycles matches the expected width, except for the rounding of angles.
+#[track_caller]
 fn assert_near(width: u64, expected: u64, message: &str) {
     // An angle is stored in steps of 0.0055 deg and commanded with two decimals.
-    assert!(
-        width.abs_diff(expected) <= 4,
-        "{message}: expected {expected} cycles, got {width}"
-    );
-}
-
-/// Checks that each servo has at least `min_count` pulses, all of its expected width.
-fn assert_steady(pulses: &[Vec<Pulse>; 4], widths: [u64; 4], min_count: usize) {
-    for (pulses, width) in pulses.iter().zip(widths) {
-        assert!(pulses.len() >= min_count && pulses.iter().all(|pulse| pulse.width == width));
-    }
+    crate::assert_near(width as f64, expected as f64, 4.0, message);
 }
 
 #[test]
 fn a_trim_turns_only_its_servo_within_the_slew_limit() {
-    run_in_both_simulations(|fidelity| {
-        let mut bench = boot_to_stand(fidelity);
+    start_in_both_simulations(boot_to_stand, |mut bench| {
         let trim = [20, 10, 5, 2]
             .into_iter()
             .find(|trim| bench.say(&format!("trim 1 {trim}")) == format!("ok trim 1 {trim}"))
@@ -54,13 +45,15 @@ fn a_trim_turns_only_its_servo_within_the_slew_limit() {
         bench.say(&format!("trim 1 {trim}"));
         bench.run_ms(1000);
         let pulses = recorded_pulses(&bench);
-        assert_within_slew_limit(&pulses);
-        let is_fast =
-            |pair: &[Pulse]| pair[0].width.abs_diff(pair[1].width) + 6 > servo_slew_limit(0);
-        let has_fast_change = pulses[0].windows(2).any(is_fast);
+        assert_within_slew_limit(&pulses, servo_scales());
+        let steps = pulses[0].windows(2);
+        let max_step = steps
+            .map(|pair| pair[0].width.abs_diff(pair[1].width))
+            .max();
+        let has_fast_step = max_step.is_some_and(|step| step + 6 > servo_slew_limit(0));
         assert!(
-            has_fast_change || trim < 10,
-            "no change reaches the slew limit"
+            has_fast_step || trim < 10,
+            "no step reaches the slew limit, the largest is {max_step:?}"
         );
         let last_width = pulses[0].last().expect("A1 has a pulse").width;
         let expected_width = calibrated_width(trim.into(), a1_us_per_degree(), 0.0);
@@ -75,14 +68,12 @@ fn a_trim_turns_only_its_servo_within_the_slew_limit() {
 
 #[test]
 fn a_new_scale_or_direction_changes_the_pulses_within_half_a_second() {
-    run_in_both_simulations(|fidelity| {
-        let mut bench = boot_to_stand(fidelity);
-        let scale_magnitude = a1_us_per_degree().abs();
+    start_in_both_simulations(boot_to_stand, |mut bench| {
         bench.say(&pose_command([5.0, 0.0, 0.0, 0.0]));
         bench.run_ms(1000);
         let expected_width = calibrated_width(0.0, a1_us_per_degree(), 5.0);
         assert_near(measure_widths(&mut bench)[0], expected_width, "before");
-        let scale = scale_magnitude + 1.25;
+        let scale = a1_us_per_degree().abs() + 1.25;
         bench.expect_ok(&format!("scale 1 {scale:.2}"));
         bench.run_ms(500);
         let expected_width = calibrated_width(0.0, scale.copysign(a1_us_per_degree()), 5.0);
@@ -91,12 +82,11 @@ fn a_new_scale_or_direction_changes_the_pulses_within_half_a_second() {
         bench.expect_ok(&format!("dir 1 {other_direction}"));
         bench.uno.take_edges();
         bench.run_ms(500);
-        let mut scales = robot().servos().each_ref().map(|servo| servo.us_per_degree);
+        let mut scales = servo_scales();
         scales[0] = scale;
-        assert_within_slew_limit_for_scales(&recorded_pulses(&bench), scales);
+        assert_within_slew_limit(&recorded_pulses(&bench), scales);
         let expected_width = calibrated_width(0.0, -scale.copysign(a1_us_per_degree()), 5.0);
-        let reversed_width = measure_widths(&mut bench)[0];
-        assert_near(reversed_width, expected_width, "in the other direction");
+        assert_near(measure_widths(&mut bench)[0], expected_width, "reversed");
     });
 }
 
@@ -107,8 +97,7 @@ fn limits_that_cut_off_a_gait_and_poses_beyond_a_limit_are_refused() {
     let calibration_before = read_calibration(&mut bench);
     let too_narrow_line = format!("limit 1 {:.2} {:.2}", neutral - 0.5, neutral + 0.5);
     if robot().gaits().iter().any(|gait| gait.has_movement()) {
-        let refusal = bench.say(&too_narrow_line);
-        assert!(refusal.starts_with("err 3 "), "{refusal}");
+        expect_answer(&mut bench, &too_narrow_line, "err 3 ");
         let calibration = read_calibration(&mut bench);
         assert_eq!(
             calibration, calibration_before,
@@ -117,14 +106,12 @@ fn limits_that_cut_off_a_gait_and_poses_beyond_a_limit_are_refused() {
     }
     let narrow_line = format!("limit 1 {:.2} {:.2}", neutral - 40.0, neutral + 40.0);
     bench.expect_ok(&narrow_line);
-    let refusal = bench.say(&pose_command([41.0, 0.0, 0.0, 0.0]));
-    assert!(refusal.starts_with("err 3 "), "{refusal}");
+    expect_answer(&mut bench, &pose_command([41.0, 0.0, 0.0, 0.0]), "err 3 ");
 }
 
 #[test]
 fn saved_settings_apply_from_the_first_pulse_after_power_on() {
-    run_in_both_simulations(|fidelity| {
-        let mut bench = boot_to_stand(fidelity);
+    start_in_both_simulations(boot_to_stand, |mut bench| {
         bench.say("trim 1 1.5");
         bench.say("trim 3 -2");
         bench.say("deadman 2500");
@@ -150,8 +137,7 @@ fn saved_settings_apply_from_the_first_pulse_after_power_on() {
 fn load_factory_and_power_on_discard_unsaved_settings() {
     let mut bench = boot_to_stand(Fidelity::DataSheet);
     let factory_calibration = read_calibration(&mut bench);
-    let refusal = bench.say("load");
-    assert!(refusal.starts_with("err 9 "), "{refusal}");
+    expect_answer(&mut bench, "load", "err 9 ");
     bench.say("trim 1 1");
     let saved_calibration = read_calibration(&mut bench);
     assert_eq!(bench.say("save"), "ok save");
@@ -189,7 +175,7 @@ fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
             assert_eq!(run.bench.last_text(), "ok save");
         }
         let operations = run.bench.uno.eeprom_operations();
-        if run.is_data_sheet_simulation() {
+        if fidelity == Fidelity::DataSheet {
             assert!(operations.len() > 6 * 6, "{}", operations.len());
         }
         for operation in &operations {
@@ -201,7 +187,7 @@ fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
             assert!(are_separate, "two bytes were written at once");
         }
         assert_eq!(run.late_edge_count(), 0);
-        assert_eq!(Status::read(&mut run.bench).number("rx_lost"), 0.0);
+        Status::read(&mut run.bench).assert_has("rx_lost=0");
     });
 }
 
@@ -219,13 +205,9 @@ fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
             run.run_to(run.bench.uno.cycle() + FRAME_CYCLES);
         }
         run.run_to(start + 40 * FRAME_CYCLES - SLOT_CYCLES / 2);
-        let frames = run.frames_since(start);
-        assert!(frames.len() >= 40);
-        for (frame, expected) in frames {
-            assert_eq!(frame.all_widths(), Some(expected), "{frame:?}");
-        }
+        assert!(run.assert_exact_since(start, "saving") >= 40);
         assert_eq!(run.late_edge_count(), 0);
-        if run.is_data_sheet_simulation() {
+        if fidelity == Fidelity::DataSheet {
             assert!(run.bench.uno.eeprom_operations().len() > operations_before + 40);
         }
     });
@@ -233,8 +215,7 @@ fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
 
 #[test]
 fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_arrives() {
-    run_in_both_simulations(|fidelity| {
-        let mut bench = boot_to_stand(fidelity);
+    start_in_both_simulations(boot_to_stand, |mut bench| {
         let gait = first_moving_gait();
         bench.expect_ok(&format!("boot {gait}"));
         assert_eq!(bench.say("save"), "ok save");
@@ -243,8 +224,8 @@ fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_arrives() {
         assert_steady(&pulses, neutral_widths(), 1);
         bench.run_ms(300);
         assert_eq!(bench.last_text(), format!("# boot: {gait}"));
-        let status = Status::read(&mut bench);
-        assert_eq!(status.text("gait"), gait.replace(' ', "-"));
+        let gait_pair = format!("gait={}", gait.replace(' ', "-"));
+        Status::read(&mut bench).assert_has(&gait_pair);
         power_cycle(&mut bench);
         bench.run_ms(2000);
         bench.uno.send(b" ");
@@ -254,7 +235,7 @@ fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_arrives() {
 }
 
 /// Moves the robot to a pose near neutral and returns its pulse widths.
-fn move_to_nearby_pose(bench: &mut lizard_host_tests::FirmwareBench) -> [u64; 4] {
+fn move_to_nearby_pose(bench: &mut FirmwareBench) -> [u64; 4] {
     bench.say(&pose_command([6.0, -6.0, 6.0, -6.0]));
     bench.run_ms(1000);
     let widths = measure_widths(bench);
@@ -264,26 +245,24 @@ fn move_to_nearby_pose(bench: &mut lizard_host_tests::FirmwareBench) -> [u64; 4]
 
 #[test]
 fn at_power_on_the_servos_wake_one_by_one_in_the_pose_of_the_last_rest() {
-    run_in_both_simulations(|fidelity| {
-        let mut bench = boot_to_stand(fidelity);
+    start_in_both_simulations(boot_to_stand, |mut bench| {
         let rest_widths = move_to_nearby_pose(&mut bench);
         assert_eq!(bench.say("rest"), "ok rest");
         bench.run_ms(400);
         power_cycle(&mut bench);
         bench.run_ms(1500);
         let pulses = recorded_pulses(&bench);
-        for servo in 0..4 {
-            assert_eq!(pulses[servo][0].width, rest_widths[servo]);
-            if servo > 0 {
-                let interval = pulses[servo][0].start - pulses[servo - 1][0].start;
-                let expected_interval = 5 * FRAME_CYCLES + SLOT_CYCLES;
-                assert_eq!(
-                    interval, expected_interval,
-                    "the servos do not wake a tenth of a second apart"
-                );
-            }
+        let first_pulses = pulses.each_ref().map(|pulses| pulses[0]);
+        assert_eq!(first_pulses.map(|pulse| pulse.width), rest_widths);
+        for pair in first_pulses.windows(2) {
+            let interval = pair[1].start - pair[0].start;
+            let expected_interval = 5 * FRAME_CYCLES + SLOT_CYCLES;
+            assert_eq!(
+                interval, expected_interval,
+                "the servos do not wake a tenth of a second apart: {pair:?}"
+            );
         }
-        assert_within_slew_limit(&pulses);
+        assert_within_slew_limit(&pulses, servo_scales());
         let widths = measure_widths(&mut bench);
         assert_eq!(widths, neutral_widths(), "the robot does not stand");
         // The robot has moved since it rested, so its saved rest pose is no longer valid.

@@ -3,11 +3,11 @@
 
 use fastrand::Rng;
 use lizard_host::sim::core_run;
-use lizard_host::sim::frame::{FRAME_CYCLES, first_cycle, group_frames, servo_pins};
+use lizard_host::sim::frame::{FRAME_CYCLES, first_cycle, group_frames};
 use lizard_host_tests::{FirmwareBench, dialogue_minutes, robot};
 use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Fidelity};
 
-use crate::{Status, boot_to_stand, for_each_in_parallel, to_comparable_line};
+use crate::{Status, boot_to_stand, for_each_in_parallel, format_pose, to_comparable_line};
 
 /// Duration of a byte on the serial line in cycles, rounded up.
 const CYCLES_PER_BYTE: u64 = 1400;
@@ -20,10 +20,8 @@ fn end_cycle() -> u64 {
 /// Returns a random line: any command, valid or not.
 fn random_line(rng: &mut Rng) -> String {
     let pose_near = |rng: &mut Rng, max_deg: f64| {
-        let [a1, a2, a3, a4] = robot()
-            .servos()
-            .map(|servo| servo.neutral + max_deg * (2.0 * rng.f64() - 1.0));
-        format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
+        let servos = robot().servos();
+        format_pose(servos.map(|servo| servo.neutral + max_deg * (2.0 * rng.f64() - 1.0)))
     };
     match rng.u64(..20) {
         0..7 => rng
@@ -83,17 +81,15 @@ fn random_commands_give_the_same_widths_and_answers_on_the_avr_and_on_the_host()
     ];
     for_each_in_parallel(&cases, |&(fidelity, seed)| {
         let mut bench = boot_to_stand(fidelity);
-        let pins = servo_pins(robot());
         let first_rise = bench.first_pulse_cycle().expect("the robot stands");
         let sent_line_count = send_random_lines(&mut bench, first_rise, &mut Rng::with_seed(seed));
-        let status = Status::read(&mut bench);
-        assert_eq!(status.numbers(["late", "rx_lost"]), [0.0; 2]);
+        Status::read(&mut bench).assert_has("late=0 rx_lost=0");
 
         bench.uno.run_until_cycle(end_cycle());
         let frame_count = (bench.uno.cycle() - first_cycle(first_rise)) / FRAME_CYCLES;
-        let sent_frames = group_frames(&bench.uno.edges(), pins, first_rise, frame_count);
+        let sent_frames = group_frames(&bench.uno.edges(), bench.pins(), first_rise, frame_count);
         let (received, count) = (bench.uno.received_by_uno(), sent_frames.len());
-        let host_run = core_run::play(*robot().firmware(), &received, first_rise, count);
+        let host_run = core_run::play(*robot().firmware(), &received, &[], first_rise, count);
         let mut distinct_widths = std::collections::HashSet::new();
         for (n, (frame, expected)) in sent_frames.iter().zip(&host_run.widths).enumerate() {
             let widths = frame.widths.map(|width| width.unwrap_or(0));
@@ -105,10 +101,8 @@ fn random_commands_give_the_same_widths_and_answers_on_the_avr_and_on_the_host()
             distinct_widths.insert(widths);
         }
         let distinct_count = distinct_widths.len() as u64;
-        println!(
-            "{fidelity:?}: {sent_line_count} lines, {frame_count} frames, {distinct_count} sets of widths"
-        );
         let counts = [frame_count, u64::from(sent_line_count), distinct_count];
+        println!("{fidelity:?}: {counts:?} frames, lines and sets of widths");
         let min_counts = [2_900, 100, 500].map(|minimum| minimum * dialogue_minutes());
         assert!((0..3).all(|i| counts[i] > min_counts[i]), "{counts:?}");
 

@@ -4,7 +4,7 @@ use lizard_host::sim::frame::FRAME_CYCLES;
 use simulated_uno::Fidelity;
 
 use crate::reference_run::{ReferenceRun, SLOT_CYCLES};
-use crate::{Status, boot_to_stand, run_in_both_simulations};
+use crate::{Status, boot_to_stand, start_in_both_simulations};
 
 #[test]
 fn each_overrun_of_the_receiver_is_counted() {
@@ -20,15 +20,13 @@ fn each_overrun_of_the_receiver_is_counted() {
         overruns_before = bench.uno.overrun_count();
         bench.uno.send(b"\n");
         bench.run_ms(20);
-        let lost_count = Status::read(&mut bench).number("rx_lost");
-        assert_eq!(lost_count, f64::from(overrun_count));
+        Status::read(&mut bench).assert_has(&format!("rx_lost={overrun_count}"));
     }
 }
 
 #[test]
 fn a_counter_read_during_a_carry_has_its_old_or_new_value() {
-    run_in_both_simulations(|fidelity| {
-        let mut run = ReferenceRun::start_standing(fidelity);
+    start_in_both_simulations(ReferenceRun::start_standing, |mut run| {
         let late_address = run.variable_address("pulses::LATE_EDGES");
         // From here on, the robot has stopped because of a late pulse, and the frame count has four digits, so all
         // answers have the same length.
@@ -66,26 +64,24 @@ fn a_counter_read_during_a_carry_has_its_old_or_new_value() {
             let line_count_before = run.bench.lines().len();
             send_status_at(&mut run, rise - read_lead - answer_delay);
             run.run_to(rise - read_lead - 500 + 2 * round);
-            let current_cycle = run.bench.uno.cycle();
-            run.bench.uno.stall_main(rise + 1_000 - current_cycle);
+            let uno = &mut run.bench.uno;
+            uno.stall_main(rise + 1_000 - uno.cycle());
             run.run_to(rise - 600);
             run.bench.uno.block_interrupts(700);
             run.run_to(rise + 550_000);
             assert_eq!(run.read_word("pulses::LATE_EDGES"), 256);
             let lines = &run.bench.lines()[line_count_before..];
             let answer = lines.iter().find(|line| line.is_answer());
-            let answer = answer.expect("the robot answers").text.clone();
-            let mut pairs = answer.split(' ');
-            match pairs.find_map(|pair| pair.strip_prefix("late=")) {
-                Some("255") => old_value_count += 1,
-                Some("256") => new_value_count += 1,
-                count => panic!("round {round}: unexpected count {count:?} in {answer}"),
+            let answer = Status(answer.expect("the robot answers").text.clone());
+            match answer.text("late") {
+                "255" => old_value_count += 1,
+                "256" => new_value_count += 1,
+                _ => panic!("round {round}: unexpected count in {answer:?}"),
             }
         }
-        let counts = (old_value_count, new_value_count);
-        let covers_both_sides = old_value_count > 20 && new_value_count > 20;
+        let counts = [old_value_count, new_value_count];
         assert!(
-            covers_both_sides,
+            counts.iter().all(|count| *count > 20),
             "{counts:?}: the stalls did not reach both sides of the read"
         );
     });
@@ -120,5 +116,5 @@ fn a_counter_at_its_maximum_stays_there() {
     run.bench.uno.block_interrupts(700);
     run.bench.run_ms(20);
     assert_eq!(run.late_edge_count(), 65_535);
-    assert_eq!(Status::read(&mut run.bench).number("late"), 65_535.0);
+    Status::read(&mut run.bench).assert_has("late=65535");
 }

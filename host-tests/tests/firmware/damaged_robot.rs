@@ -3,17 +3,14 @@
 //! the chip's flash, where no bounds checking stops a read beyond the section.
 
 use std::mem::offset_of;
-use std::ops::Range;
 
 use lizard_core::console::word::Word;
 use lizard_core::numbers::section::{
     FORMAT, Header, Numbers, REGION_BYTES, START_ADDRESS, write_checksum,
 };
 use lizard_host::board::SimulatedBoard;
-
 use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, load_named_robot, rng, robot};
-
-use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Pin};
+use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin};
 
 use crate::measurements::{LED_PIN, led_edges};
 use crate::{first_moving_gait, for_each_in_parallel, pose_command, run_in_both_simulations};
@@ -52,18 +49,13 @@ fn damage_section(
     }
 }
 
-/// Returns the robot's section with a change and a checksum that is correct for the changed bytes.
-fn damage_with_checksum(description: &str, change: impl FnOnce(&mut Vec<u8>)) -> DamagedSection {
+/// Returns the robot's section with these bytes from an offset in the numbers on, and with a correct checksum.
+fn damage_numbers(description: &str, offset: usize, bytes: &[u8]) -> DamagedSection {
+    let start = size_of::<Header>() + offset;
     damage_section(description, DAMAGED_ROBOT_NOTE, |section| {
-        change(section);
+        section[start..start + bytes.len()].copy_from_slice(bytes);
         write_checksum(section);
     })
-}
-
-/// Writes a word into the numbers at a field's offset.
-fn write_word(section: &mut [u8], offset: usize, word: u16) {
-    let start = size_of::<Header>() + offset;
-    section[start..start + 2].copy_from_slice(&word.to_le_bytes());
 }
 
 /// Returns sections that are missing, truncated or for another version.
@@ -109,70 +101,60 @@ fn build_sections_with_flipped_bit() -> Vec<DamagedSection> {
     let rng = &mut rng(161);
     let header_bytes = size_of::<Header>();
     let rest_bytes = robot().section().len() - header_bytes;
-    let remaining_ranges = (0..40)
-        .map(|n| header_bytes + n * rest_bytes / 40..header_bytes + (n + 1) * rest_bytes / 40);
-    let fields: [Range<usize>; 7] = [
-        offset_of!(Header, magic)..offset_of!(Header, format),
-        offset_of!(Header, format)..offset_of!(Header, length),
-        offset_of!(Header, length)..offset_of!(Header, crc),
-        offset_of!(Header, crc)..offset_of!(Header, name),
-        offset_of!(Header, name)..offset_of!(Header, hash),
-        offset_of!(Header, hash)..offset_of!(Header, servo_hash),
-        offset_of!(Header, servo_hash)..header_bytes,
+    let mut starts = vec![
+        offset_of!(Header, magic),
+        offset_of!(Header, format),
+        offset_of!(Header, length),
+        offset_of!(Header, crc),
+        offset_of!(Header, name),
+        offset_of!(Header, hash),
+        offset_of!(Header, servo_hash),
     ];
-    let mut flip = |bytes: Range<usize>, expected_note| {
-        let (byte, bit) = (rng.usize(bytes), rng.u8(..8));
+    starts.extend((0..=40).map(|n| header_bytes + n * rest_bytes / 40));
+    let flip = |(part, bounds): (usize, &[usize])| {
+        let (byte, bit) = (rng.usize(bounds[0]..bounds[1]), rng.u8(..8));
+        let expected_note = match part {
+            0 => MISSING_ROBOT_NOTE, // in `magic`
+            1 => OTHER_VERSION_NOTE, // in `format`
+            _ => DAMAGED_ROBOT_NOTE,
+        };
         let description = format!("bit {bit} of byte {byte}");
         damage_section(description, expected_note, |section| {
             section[byte] ^= 1 << bit;
         })
     };
-    let notes = [MISSING_ROBOT_NOTE, OTHER_VERSION_NOTE]
-        .into_iter()
-        .chain([DAMAGED_ROBOT_NOTE; 5]);
-    let remaining = remaining_ranges.map(|range| (range, DAMAGED_ROBOT_NOTE));
-    let ranges = fields.into_iter().zip(notes).chain(remaining);
-    ranges.map(|(range, note)| flip(range, note)).collect()
+    starts.windows(2).enumerate().map(flip).collect()
 }
 
 /// Returns sections with a correct checksum but a wrong content.
 fn build_invalid_sections() -> Vec<DamagedSection> {
+    let pins = offset_of!(Numbers, pins);
+    let calibration = offset_of!(Numbers, calibration);
+    let numbers_bytes = robot().section().len() - size_of::<Header>();
+    let second_pin = robot().firmware().pins()[1];
     vec![
-        damage_with_checksum("a servo on the serial line", |section| {
-            section[size_of::<Header>() + offset_of!(Numbers, pins)] = 1;
-        }),
-        damage_with_checksum("two servos on one pin", |section| {
-            let index = size_of::<Header>() + offset_of!(Numbers, pins);
-            section[index] = section[index + 1];
-        }),
-        damage_with_checksum("a rail on a pin that measures nothing", |section| {
-            write_word(section, offset_of!(Numbers, rail_pin), 20);
-        }),
-        damage_with_checksum(
-            "a neutral pulse that is too long for any servo",
-            |section| {
-                write_word(section, offset_of!(Numbers, calibration), 60_000);
-            },
+        damage_numbers("a servo on the serial line", pins, &[1]),
+        damage_numbers("two servos on one pin", pins, &[second_pin]),
+        damage_numbers(
+            "a rail on a pin that measures nothing",
+            offset_of!(Numbers, rail_pin),
+            &[20, 0],
         ),
-        damage_with_checksum("a travel on one side of neutral", |section| {
-            write_word(section, offset_of!(Numbers, calibration) + 4, 5);
-        }),
-        damage_with_checksum("no cranks", |section| {
-            let start = size_of::<Header>() + offset_of!(Numbers, ends);
-            section[start..start + 20].fill(0);
-        }),
-        damage_with_checksum("ones for numbers", |section| {
-            section[size_of::<Header>()..].fill(0xff);
-        }),
-        damage_with_checksum("zeros for numbers", |section| {
-            section[size_of::<Header>()..].fill(0);
-        }),
+        damage_numbers(
+            "a neutral pulse that is too long for any servo",
+            calibration,
+            &60_000u16.to_le_bytes(),
+        ),
+        damage_numbers("a travel on one side of neutral", calibration + 4, &[5, 0]),
+        damage_numbers("no cranks", offset_of!(Numbers, ends), &[0; 20]),
+        damage_numbers("ones for numbers", 0, &vec![0xff; numbers_bytes]),
+        damage_numbers("zeros for numbers", 0, &vec![0; numbers_bytes]),
     ]
 }
 
 /// Powers on a board with this damage in its flash.
 fn boot_damaged_board(damaged: &DamagedSection, fidelity: Fidelity) -> FirmwareBench {
-    let mut image: Image = FirmwareBench::image();
+    let mut image = FirmwareBench::image();
     let addresses = u32::from(START_ADDRESS)..u32::from(START_ADDRESS) + u32::from(REGION_BYTES);
     let result = image.replace(addresses, &damaged.section);
     result.expect("the section fits");
@@ -206,10 +188,8 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
     let (notes, status) = bench.ask("status");
     assert!(notes.is_empty(), "{notes:?}");
     // The status has no pose, margin or voltage, which would be meaningless without a robot.
-    assert_eq!(
-        status,
-        "ok gait=rest late=0 rx_lost=0 guard=clear fault=robot reset=power resets=0"
-    );
+    let expected = "ok gait=rest late=0 rx_lost=0 guard=clear fault=robot reset=power resets=0";
+    assert_eq!(status, expected);
     let texts = bench.texts_from(0).into_iter();
     let fault_lines = texts.filter(|text| text.starts_with("# fault:"));
     assert_eq!(fault_lines.count(), 1, "number of fault reports");
@@ -249,13 +229,11 @@ fn the_largest_section_is_checked_within_a_frame() {
         let image = FirmwareBench::image_with(&robot);
         let board = SimulatedBoard::with_image(image, Fidelity::DataSheet, &robot);
         let calls = FirmwareBench(board).time_calls("Robot::open", 200);
-        let [call] = calls[..] else {
-            panic!("{name}: {calls:?}");
-        };
+        assert_eq!(calls.len(), 1, "{name}: {calls:?}");
         let section_bytes = robot.section().len();
-        let ms = call.cycles() as f64 / CYCLES_PER_MS as f64;
+        let ms = calls[0].cycles() as f64 / CYCLES_PER_MS as f64;
         println!("{name}: {section_bytes} bytes in {ms:.1} ms");
-        assert!(call.cycles() < FRAME_CYCLES, "{name}: {call:?}");
+        assert!(calls[0].cycles() < FRAME_CYCLES, "{name}: {calls:?}");
     });
 }
 

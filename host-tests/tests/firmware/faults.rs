@@ -5,31 +5,27 @@ use lizard_host::sim::frame::FRAME_CYCLES;
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{CYCLES_PER_MS, Fidelity};
 
-use crate::measurements::{count_flashes, measure_widths, recorded_pulses, run_and_record_pulses};
+use crate::measurements::{
+    assert_flashes, assert_steady, measure_widths, recorded_pulses, run_and_record_pulses,
+};
 use crate::reference_run::ReferenceRun;
-use crate::{Status, boot_and_command, first_moving_gait};
+use crate::{Status, boot_to_walk, first_moving_gait};
 
 /// Checks the effects of a fault: nothing moves, `status` and exactly one line name the fault, and the LED flashes
 /// `flash_count` times between pauses.
 fn assert_stopped(bench: &mut FirmwareBench, word: &str, message: &str, flash_count: usize) {
-    let status = Status::read(bench);
-    assert_eq!((status.text("gait"), status.text("fault")), ("stop", word));
+    Status::read(bench).assert_has(&format!("gait=stop fault={word}"));
     let held_widths = measure_widths(bench);
-    for (pulses, width) in run_and_record_pulses(bench, 1000).iter().zip(held_widths) {
-        assert!(pulses.len() >= 49 && pulses.iter().all(|pulse| pulse.width == width));
-    }
+    assert_steady(&run_and_record_pulses(bench, 1000), held_widths, 49);
     let line = format!("# fault: {message}");
     let printed_lines = bench.lines().iter().filter(|printed| printed.text == line);
     assert_eq!(printed_lines.count(), 1, "{line}");
-    let flashes = count_flashes(bench, 12);
-    assert!(flashes.len() >= 3, "{flashes:?}");
-    let are_equal = flashes.iter().all(|count| *count == flash_count);
-    assert!(are_equal, "{flashes:?}");
+    assert_flashes(bench, 12, flash_count);
 }
 
 #[test]
 fn a_gait_ends_if_no_line_arrives_within_the_deadman_time() {
-    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_to_walk(Fidelity::DataSheet);
     bench.say("deadman 800");
     let start = bench.uno.cycle();
     bench.run_ms(700);
@@ -39,30 +35,27 @@ fn a_gait_ends_if_no_line_arrives_within_the_deadman_time() {
     // Bytes without a line end do not count as a line.
     bench.uno.send(b"  ");
     bench.run_ms(1500);
-    let stop_ms = bench
-        .lines()
-        .iter()
-        .find(|line| line.text.contains("no command within the deadman time"))
-        .map(|line| (line.cycle - start) / CYCLES_PER_MS);
+    let message = "no command within the deadman time, stopped";
+    let mut lines = bench.lines().iter();
+    let stop_line = lines.find(|line| line.text.contains(message));
+    let stop_ms = stop_line.map(|line| (line.cycle - start) / CYCLES_PER_MS);
     // 800 ms after the last line, which came at 1400 ms plus the time of an answer; a line takes 5 ms.
     let is_in_time = stop_ms.is_some_and(|ms| (2_190..2_260).contains(&ms));
     assert!(is_in_time, "stopped after {stop_ms:?} ms");
-    let message = "no command within the deadman time, stopped";
     assert_stopped(&mut bench, "link", message, 3);
     bench.expect_ok(&first_moving_gait());
-    assert_eq!(Status::read(&mut bench).text("fault"), "none");
+    Status::read(&mut bench).assert_has("fault=none");
 }
 
 #[test]
 fn deadman_is_off_unless_set_and_does_not_affect_a_standing_robot() {
-    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_to_walk(Fidelity::DataSheet);
     bench.run_ms(70_000);
-    assert_eq!(Status::read(&mut bench).text("fault"), "none");
+    Status::read(&mut bench).assert_has("fault=none");
     bench.say("stand");
     bench.say("deadman 100");
     bench.run_ms(5_000);
-    let status = Status::read(&mut bench);
-    assert_eq!(status.texts(["gait", "fault"]), ["stand", "none"]);
+    Status::read(&mut bench).assert_has("gait=stand fault=none");
 }
 
 #[test]
@@ -77,7 +70,7 @@ fn a_late_edge_stops_the_motion_and_its_pulse_is_dropped() {
     assert_eq!(starts, [rise + FRAME_CYCLES]);
     let message = "a pulse was late, stopped";
     assert_stopped(&mut run.bench, "late", message, 5);
-    assert_eq!(Status::read(&mut run.bench).number("late"), 1.0);
+    Status::read(&mut run.bench).assert_has("late=1");
 }
 
 #[test]

@@ -2,11 +2,15 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use lizard_host_tests::{CYCLES_PER_US, robot};
+use lizard_host_tests::{CYCLES_PER_US, gait_commands, robot};
 use lizard_robot::CheckedGait;
 use simulated_uno::Fidelity;
 
-use crate::{FRAMES_PER_SECOND, boot_to_stand, for_each_in_parallel, frame_angles};
+use crate::measurements::servo_scales;
+use crate::{
+    FRAMES_PER_SECOND, assert_near, boot_to_stand, for_each_in_parallel, frame_angles,
+    run_in_both_simulations,
+};
 
 /// Documented maximum error of the gait tables relative to floating point, deg.
 const MAX_TABLE_ERROR_DEG: f64 = 0.50;
@@ -14,7 +18,7 @@ const MAX_TABLE_ERROR_DEG: f64 = 0.50;
 /// Returns the largest angle error due to rounding to cycles of 62.5 ns, deg: half a cycle each for the width and the
 /// neutral width.
 fn max_rounding_error_deg() -> f64 {
-    let scales = robot().servos().map(|servo| servo.us_per_degree.abs());
+    let scales = servo_scales().map(f64::abs);
     1.0 / CYCLES_PER_US / scales.into_iter().fold(f64::INFINITY, f64::min)
 }
 
@@ -27,10 +31,10 @@ const PACE_STEP: f64 = 147.0 / 1024.0;
 /// Starts a gait one second after power-on and returns the servo angles of each frame from then on, deg.
 fn record_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
     let mut bench = boot_to_stand(fidelity);
-    let line = gait.command();
-    assert_eq!(bench.say(&line), format!("ok {line}"));
+    bench.expect_ok(&gait.command());
     let gait_frames = (3.5 * gait.period() * FRAMES_PER_SECOND as f64) as u64;
-    frame_angles(&bench.run_for_frames(gait_frames + 3 * FRAMES_PER_SECOND))
+    let frames = bench.run_for_frames(gait_frames + 3 * FRAMES_PER_SECOND);
+    frame_angles(robot(), &frames)
 }
 
 /// Returns the phase of a gait `frame_count` frames after its start.
@@ -71,9 +75,9 @@ fn find_gait_start(
 
 #[test]
 fn the_pulses_of_every_gait_follow_the_gait_frame_by_frame() {
-    for_each_in_parallel(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
+    run_in_both_simulations(|fidelity| {
         for gait in robot().gaits() {
-            let sent_angles = record_angles(gait, *fidelity);
+            let sent_angles = record_angles(gait, fidelity);
             let float_angles = compute_expected_angles(gait, sent_angles.len());
             let start = find_gait_start(gait, &float_angles, &sent_angles);
             let error = max_deviation(&float_angles, &sent_angles, start);
@@ -97,9 +101,8 @@ fn the_pulses_of_every_gait_follow_the_gait_frame_by_frame() {
 
 #[test]
 fn the_pulses_of_every_gait_move_the_robot_as_the_contact_model_predicts() {
-    let gaits: Vec<&str> = robot().gaits().iter().map(|gait| gait.name()).collect();
     let compared_count = AtomicUsize::new(0);
-    for_each_in_parallel(&gaits, |&name| {
+    for_each_in_parallel(&gait_commands(), |name| {
         let gait = robot().gait(name).expect("the gait is in robot.toml");
         let expected = gait.predict(&robot().ground().with_rigid_drive());
         let (Some(forward), Some(turn)) = (expected.forward, expected.turn) else {
@@ -113,10 +116,8 @@ fn the_pulses_of_every_gait_move_the_robot_as_the_contact_model_predicts() {
         // Compares whole gait cycles, from the first frame at full pace that begins a cycle: two cycles if one cycle is
         // not a whole number of frames.
         let frames_per_cycle = gait.period() * FRAMES_PER_SECOND as f64;
-        let gait_cycles = match frames_per_cycle.fract() == 0.0 {
-            true => 1.0,
-            false => 2.0,
-        };
+        let has_whole_frames = frames_per_cycle.fract() == 0.0;
+        let gait_cycles = if has_whole_frames { 1.0 } else { 2.0 };
         // If two cycles are not a whole number of frames either, the missing fraction of a frame is negligible.
         let frame_count = (gait_cycles * frames_per_cycle) as usize;
         let phase_step = 1.0 / frames_per_cycle;
@@ -137,13 +138,10 @@ fn the_pulses_of_every_gait_move_the_robot_as_the_contact_model_predicts() {
         // An error of a tenth of a degree may change which feet stick.
         let scale = robot().lizard().links.l10 / 135.0;
         let max_error = (0.3 * scale).max(forward.abs() * 0.02);
-        let forward_error = (measured_forward - forward).abs();
-        assert!(forward_error <= max_error, "{name}: {travel:?}");
-        assert!((measured_turn - turn).abs() <= 0.2, "{name}: {travel:?}");
+        let case = |component: &str| format!("{name}, {component}, {travel:?}");
+        assert_near(measured_forward, forward, max_error, &case("forward"));
+        assert_near(measured_turn, turn, 0.2, &case("turn"));
     });
-    let compared_count = compared_count.into_inner();
-    assert!(
-        compared_count > 0,
-        "the prediction of every moving gait depends on a tie between feet"
-    );
+    // The prediction of at least one moving gait does not depend on a tie between feet.
+    assert!(compared_count.into_inner() > 0, "no gait was compared");
 }

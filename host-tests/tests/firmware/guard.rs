@@ -5,14 +5,16 @@ use lizard_core::guard::clearance::Clearance;
 use lizard_core::numbers::part::{End, Side};
 use lizard_core::numbers::pose::Pose as Sweeps;
 use lizard_core::numbers::units::Sweep;
-use lizard_host::sim::analysis::compute_servo_frames;
-use lizard_host_tests::robot;
+use lizard_host_tests::{FRAME_CYCLES, gait_commands, robot};
 use lizard_kinematics::{self as kinematics, Limits, Pose, Solution, wrap};
 use lizard_proof::{LENGTH_BAND_STEPS, margin_band};
+use lizard_robot::round_to_hundredths;
 use simulated_uno::Fidelity;
 
 use crate::{
-    FRAMES_PER_SECOND, Status, boot_to_stand, for_each_in_parallel, frame_angles, neutral_widths,
+    FRAMES_PER_SECOND, Status, assert_near, boot_to_stand, expect_answer, for_each_in_parallel,
+    format_pose, frame_angles, is_within_travel, neutral_widths, start_in_both_simulations,
+    stricter_limits,
 };
 
 /// Returns the largest error of the guard's slider position relative to floating point, mm.
@@ -36,15 +38,8 @@ fn max_margin_error(type2: f64) -> f64 {
 
 /// Returns the robot's limits, tightened (`sign` = 1) or relaxed (`sign` = -1) by the guard's tolerance.
 fn limits_with_tolerance(sign: f64) -> Limits {
-    let limits = robot().limits();
-    let (margin, stroke) = (max_margin_error(limits.type2), max_stroke_error());
-    Limits {
-        type2: limits.type2 + sign * margin,
-        type1: limits.type1 + sign * margin,
-        leg: limits.leg + sign * margin,
-        stroke_min: limits.stroke_min + sign * stroke,
-        stroke_max: limits.stroke_max - sign * stroke,
-    }
+    let margin = max_margin_error(robot().limits().type2);
+    stricter_limits(sign * margin, sign * max_stroke_error())
 }
 
 /// True if a pose (deg, chassis frame) is within these limits.
@@ -53,20 +48,16 @@ fn is_safe(angles: [f64; 4], limits: &Limits) -> bool {
     result.is_ok_and(|solution| limits.is_safe(&solution))
 }
 
-/// True if every servo's angle is within its travel by more than the rounding error.
-fn is_within_travel(angles: [f64; 4]) -> bool {
-    robot().servos().iter().zip(angles).all(|(servo, angle)| {
-        let (min, max) = servo.travel();
-        let sweep = wrap(angle - servo.neutral);
-        min + 0.02 < sweep && sweep < max - 0.02
-    })
+/// True if a pose (deg, chassis frame) is safe and within the servos' travel by more than the rounding errors.
+fn is_certainly_allowed(angles: [f64; 4]) -> bool {
+    is_safe(angles, &limits_with_tolerance(1.0)) && is_within_travel(angles, 0.02)
 }
 
 /// Returns a random pose within `max_deg` degrees of neutral, rounded to the two decimals that the console accepts.
 fn random_pose_within(rng: &mut Rng, max_deg: f64) -> [f64; 4] {
     std::array::from_fn(|i| {
         let angle = robot().servos()[i].neutral + max_deg * (2.0 * rng.f64() - 1.0);
-        (angle.rem_euclid(360.0) * 100.0).round() / 100.0
+        round_to_hundredths(angle.rem_euclid(360.0))
     })
 }
 
@@ -74,16 +65,10 @@ fn random_pose_within(rng: &mut Rng, max_deg: f64) -> [f64; 4] {
 fn random_safe_pose(rng: &mut Rng) -> [f64; 4] {
     loop {
         let angles = random_pose_within(rng, 80.0);
-        if is_safe(angles, &limits_with_tolerance(1.0)) && is_within_travel(angles) {
+        if is_certainly_allowed(angles) {
             return angles;
         }
     }
-}
-
-/// Returns the command for a pose with angles in the chassis frame, deg.
-fn pose_line(angles: [f64; 4]) -> String {
-    let [a1, a2, a3, a4] = angles;
-    format!("pose {a1} {a2} {a3} {a4}")
 }
 
 #[test]
@@ -94,17 +79,15 @@ fn a_pose_is_accepted_exactly_if_it_is_safe_in_floating_point() {
         let (mut accepted_count, mut refused_counts) = (0, [0; 2]);
         for _ in 0..400 {
             let angles = random_pose_within(&mut rng, max_deg);
-            let answer = bench.say(&pose_line(angles));
-            if is_safe(angles, &limits_with_tolerance(1.0)) && is_within_travel(angles) {
+            let answer = bench.say(&format_pose(angles));
+            if is_certainly_allowed(angles) {
                 assert!(answer.starts_with("ok pose"), "{angles:?}: {answer}");
                 accepted_count += 1;
             } else if !is_safe(angles, &limits_with_tolerance(-1.0)) {
-                let reason = answer.strip_prefix("err ");
-                let code = reason.and_then(|reason| reason.chars().next());
-                match code {
-                    Some('3') if !is_within_travel(angles) => refused_counts[0] += 1,
-                    Some('4') => refused_counts[0] += 1,
-                    Some('5') => refused_counts[1] += 1,
+                match answer.get(..5) {
+                    Some("err 3") if !is_within_travel(angles, 0.02) => refused_counts[0] += 1,
+                    Some("err 4") => refused_counts[0] += 1,
+                    Some("err 5") => refused_counts[1] += 1,
                     _ => panic!("{angles:?}: {answer}"),
                 }
             }
@@ -133,13 +116,12 @@ fn parse_refusal(answer: &str) -> (&str, Option<f64>) {
 fn compute_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f64)> {
     let margins = &solution.margins;
     // The margin is negative if the crank tips are crossed.
-    let type2 = [0, 1].map(|end: usize| {
-        let gap = [&solution.head, &solution.tail][end].gap;
-        match gap.x < 0.0 {
-            true => -margins.type2[end],
-            false => margins.type2[end],
+    let mut type2 = margins.type2;
+    for (margin, end) in type2.iter_mut().zip([&solution.head, &solution.tail]) {
+        if end.gap.x < 0.0 {
+            *margin = -*margin;
         }
-    });
+    }
     // If the couplers are nearly in line, an error of one length step turns them by a large angle.
     let end_tolerance = |end: usize| max_margin_error(margins.type2[end].max(0.05)) + 0.0005;
     let stroke_tolerance = max_stroke_error() + 0.005;
@@ -161,6 +143,21 @@ fn compute_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, 
     condition.map(|(_, value, tolerance)| (*value, *tolerance))
 }
 
+/// Checks a refusal of a pose in which a five-bar does not close, so that it has no margins. `name` and
+/// `printed_value` are from the refusal; `case` names the pose, the refusal and the error.
+fn assert_unclosed_pose(angles: [f64; 4], name: &str, printed_value: Option<f64>, case: &str) {
+    assert!(name.starts_with("4 type-2"), "{case}");
+    // The guard checks the head first, so it may print the head's value even if the tail does not close.
+    let head = robot().lizard().end(kinematics::End::Head);
+    match (printed_value, head.forward(angles[0], angles[1])) {
+        (Some(value), Ok(pose)) if name.ends_with("head") => {
+            let max_error = max_margin_error(pose.type2.max(0.05)) + 0.0005;
+            assert_near(value.abs(), pose.type2, max_error, case);
+        }
+        (value, _) => assert!(value.is_none_or(|value| value.abs() < 0.1), "{case}"),
+    }
+}
+
 #[test]
 fn a_refusal_names_the_violated_condition_and_any_computed_value() {
     let mut bench = boot_to_stand(Fidelity::DataSheet);
@@ -168,58 +165,30 @@ fn a_refusal_names_the_violated_condition_and_any_computed_value() {
     let (mut printed_count, mut unknown_count) = (0, 0);
     for _ in 0..400 {
         let angles = random_pose_within(&mut rng, 70.0);
-        let answer = bench.say(&pose_line(angles));
+        let answer = bench.say(&format_pose(angles));
         if answer.starts_with("ok") || answer.starts_with("err 3") {
             continue;
         }
         let (name, printed_value) = parse_refusal(&answer);
+        let case = format!("{angles:?}: {answer}");
         let solution = match robot().lizard().solve(&Pose::from(angles)) {
             Ok(solution) => solution,
             Err(loop_error) => {
-                // A five-bar that does not close has no margins. The guard checks the head first, so it may print the
-                // head's value even if the tail does not close.
-                let head = robot().lizard().end(kinematics::End::Head);
-                let head = head.forward(angles[0], angles[1]);
-                match head {
-                    Ok(pose) if name.ends_with("head") && printed_value.is_some() => {
-                        let max_error = max_margin_error(pose.type2.max(0.05)) + 0.0005;
-                        let error =
-                            printed_value.expect("the value is a number").abs() - pose.type2;
-                        assert!(
-                            error.abs() <= max_error,
-                            "{angles:?}: {answer}, {loop_error}"
-                        );
-                    }
-                    _ => {
-                        assert!(name.starts_with("4 type-2"), "{angles:?}: {answer}");
-                        let is_near_singularity =
-                            printed_value.is_none_or(|printed_value| printed_value.abs() < 0.1);
-                        assert!(is_near_singularity, "{angles:?}: {answer}, {loop_error}");
-                    }
-                }
+                let case = format!("{case}, {loop_error}");
+                assert_unclosed_pose(angles, name, printed_value, &case);
                 unknown_count += 1;
                 continue;
             }
         };
-        let (float_value, max_error) =
-            compute_value_and_tolerance(&solution, name).unwrap_or_else(|| panic!("{answer}"));
-        match printed_value {
-            Some(printed_value) => {
-                let error = (printed_value - float_value).abs();
-                assert!(
-                    error <= max_error,
-                    "{angles:?}: expected {float_value}, got {answer}"
-                );
-                printed_count += 1;
-            }
-            None => {
-                assert!(name.starts_with("4 type-2"), "{answer}");
-                assert!(
-                    float_value.abs() < 0.1,
-                    "{angles:?}: expected {float_value}, got {answer}"
-                );
-                unknown_count += 1;
-            }
+        let condition = compute_value_and_tolerance(&solution, name);
+        let (float_value, max_error) = condition.expect(&case);
+        if let Some(printed_value) = printed_value {
+            assert_near(printed_value, float_value, max_error, &case);
+            printed_count += 1;
+        } else {
+            assert!(name.starts_with("4 type-2"), "{case}");
+            assert!(float_value.abs() < 0.1, "{case}: expected {float_value}");
+            unknown_count += 1;
         }
     }
     println!("{printed_count} values printed, {unknown_count} unknown");
@@ -236,38 +205,31 @@ fn no_frame_violates_a_limit_under_random_commands() {
     for_each_in_parallel(&cases, |&(fidelity, seed)| {
         let mut rng = Rng::with_seed(seed);
         let mut bench = boot_to_stand(fidelity);
-        let lines: Vec<String> = robot().gaits().iter().map(|gait| gait.command()).collect();
+        let lines = gait_commands();
         let mut frames = Vec::new();
         for _ in 0..150 {
-            let line = if rng.u64(..3) == 0 {
-                rng.choice(&lines).expect("every robot has a gait").clone()
-            } else {
-                pose_line(random_safe_pose(&mut rng))
+            let line = match rng.u64(..3) {
+                0 => rng.choice(&lines).expect("every robot has a gait").clone(),
+                _ => format_pose(random_safe_pose(&mut rng)),
             };
-            assert!(bench.say(&line).starts_with("ok "), "{line}");
+            expect_answer(&mut bench, &line, "ok ");
             frames.extend(bench.run_for_frames(rng.u64(..2 * FRAMES_PER_SECOND)));
         }
         let relaxed_limits = limits_with_tolerance(-1.0);
-        let sent_frames = compute_servo_frames(robot(), &frames);
-        for frame in &sent_frames {
-            let angles = frame.angles.expect("each servo has a pulse");
-            assert!(is_safe(angles, &relaxed_limits), "{frame:?}");
+        let sent_angles = frame_angles(robot(), &frames);
+        for (frame, angles) in frames.iter().zip(&sent_angles) {
+            assert!(is_safe(*angles, &relaxed_limits), "{frame:?}: {angles:?}");
         }
         // No servo moves by more in one frame than the slew limits allow.
         let speed_limits = robot().speed_limits();
         let max_step_deg = speed_limits.gait_slew.max(speed_limits.slew) / 50.0;
-        for (pair, frame_pair) in sent_frames.windows(2).zip(frames.windows(2)) {
-            if frame_pair[1].start - frame_pair[0].start > lizard_host_tests::FRAME_CYCLES {
+        for (angles, pair) in sent_angles.windows(2).zip(frames.windows(2)) {
+            if pair[1].start - pair[0].start > FRAME_CYCLES {
                 continue;
             }
-            let [angles_before, angles_after] =
-                [&pair[0], &pair[1]].map(|frame| frame.angles.expect("each servo has a pulse"));
-            for servo in 0..4 {
-                let step = (angles_after[servo] - angles_before[servo]).abs();
-                assert!(
-                    step <= max_step_deg + 0.02,
-                    "{step} deg in a frame: {pair:?}"
-                );
+            for (before, after) in angles[0].into_iter().zip(angles[1]) {
+                let is_slow = (after - before).abs() <= max_step_deg + 0.02;
+                assert!(is_slow, "{before} to {after} deg in a frame: {pair:?}");
             }
         }
         assert!(frames.len() > 5000);
@@ -319,7 +281,7 @@ fn assert_every_safe_pose_is_reached() {
     let mut bench = boot_to_stand(Fidelity::DataSheet);
     for _ in 0..20 {
         let pose = random_safe_pose(&mut rng);
-        assert!(bench.say(&pose_line(pose)).starts_with("ok pose"));
+        expect_answer(&mut bench, &format_pose(pose), "ok pose");
         bench.run_ms(5000);
         let status = Status::read(&mut bench);
         assert_eq!(
@@ -340,23 +302,22 @@ fn the_robot_stops_on_an_unsafe_path_before_it_violates_a_limit() {
         assert_every_safe_pose_is_reached();
         return;
     };
-    for_each_in_parallel(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
-        let mut bench = boot_to_stand(*fidelity);
-        assert!(bench.say(&pose_line(from)).starts_with("ok pose"));
+    start_in_both_simulations(boot_to_stand, |mut bench| {
+        expect_answer(&mut bench, &format_pose(from), "ok pose");
         bench.run_ms(5000);
-        assert!(bench.say(&pose_line(to)).starts_with("ok pose"));
+        expect_answer(&mut bench, &format_pose(to), "ok pose");
         let note = bench.next_line(5000).expect("the robot prints a note");
         assert!(note.starts_with("# held in the last safe pose: "), "{note}");
-        assert_eq!(Status::read(&mut bench).text("guard"), "held");
+        Status::read(&mut bench).assert_has("guard=held");
         let frames = bench.run_for_frames(FRAMES_PER_SECOND);
         assert!(frames.iter().all(|frame| frame.widths == frames[0].widths));
-        let held_angles = frame_angles(&frames)[0];
+        let held_angles = frame_angles(robot(), &frames)[0];
         assert!(is_safe(held_angles, &limits_with_tolerance(-1.0)) && held_angles != from);
         // The robot can move again: the path back to neutral is safe.
         assert_eq!(bench.say("stand"), "ok stand");
         bench.run_ms(5000);
         let widths = bench.run_for_frames(1)[0].expect_all_widths();
         assert_eq!(widths, neutral_widths());
-        assert_eq!(Status::read(&mut bench).text("guard"), "clear");
+        Status::read(&mut bench).assert_has("guard=clear");
     });
 }

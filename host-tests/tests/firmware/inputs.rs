@@ -5,12 +5,12 @@ use std::sync::LazyLock;
 
 use lizard_host::board::SimulatedBoard;
 use lizard_host::sim::frame::Frame;
-use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, root};
+use lizard_host_tests::{FirmwareBench, root};
 use lizard_robot::{Robot, Travel};
-use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin};
+use simulated_uno::{CYCLES_PER_MS, Call, Fidelity, Pin};
 
 use crate::measurements::{measure_widths, power_cycle, run_and_record_pulses};
-use crate::{FRAMES_PER_SECOND, Status, run_in_both_simulations};
+use crate::{FRAMES_PER_SECOND, Status, frame_angles, run_in_both_simulations};
 
 /// The button's pin in docs/gaits.md.
 const BUTTON_PIN: Pin = Pin::a(1);
@@ -33,13 +33,14 @@ fn patrol_robot() -> &'static Robot {
 fn build_patrol_robot(button_pin: &str, obstacle_pin: &str) -> Robot {
     let read_file = |file: &str| fs::read_to_string(root().join(file)).expect(file);
     let page_text = read_file("docs/gaits.md");
-    let blocks = page_text
-        .split("```toml\n")
-        .filter_map(|block| block.split("```").next());
-    let mut patrols = blocks.filter(|block| block.contains("[input.button]"));
+    let blocks = page_text.split("```");
+    let mut patrols = blocks
+        .filter_map(|block| block.strip_prefix("toml\n"))
+        .filter(|block| block.contains("[input.button]"));
     let patrol = patrols.next().expect("docs/gaits.md has a patrol");
-    let patrol = patrol.replace("\"A1\"", &format!("\"{button_pin}\""));
-    let patrol = patrol.replace("\"A2\"", &format!("\"{obstacle_pin}\""));
+    let patrol = patrol
+        .replace("\"A1\"", &format!("\"{button_pin}\""))
+        .replace("\"A2\"", &format!("\"{obstacle_pin}\""));
     let text = format!("{}\n{patrol}", read_file("robots/paper.toml"));
     Robot::parse(&text).expect("the robot with the patrol is valid")
 }
@@ -83,23 +84,22 @@ fn press(bench: &mut FirmwareBench, pin: Pin, ms: u64) {
 /// Returns the notes (lines that begin with `#`) from line `first_line` on, except those of the banner.
 fn read_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<String> {
     let excluded_starts = ["# lizard", "# calibration"];
-    let is_note = |line: &String| {
-        line.starts_with('#') && !excluded_starts.iter().any(|start| line.starts_with(start))
-    };
-    let texts = bench.texts_from(first_line).into_iter();
-    texts.filter(is_note).collect()
+    let is_banner = |line: &str| excluded_starts.iter().any(|start| line.starts_with(start));
+    let mut notes = bench.texts_from(first_line);
+    notes.retain(|line| line.starts_with('#') && !is_banner(line));
+    notes
 }
 
 /// Predicts the robot's displacement for these pulses with the contact model.
 fn predict_travel(frames: &[Frame]) -> Travel {
-    let servos = patrol_robot().servos();
-    let to_angles = |frame: &Frame| {
-        let widths = frame.expect_all_widths();
-        std::array::from_fn(|i| {
-            servos[i].neutral + servos[i].sweep(widths[i] as f64 / CYCLES_PER_US)
-        })
-    };
-    patrol_robot().predict_travel(frames.iter().map(to_angles))
+    patrol_robot().predict_travel(frame_angles(patrol_robot(), frames))
+}
+
+/// Runs the robot for three seconds and checks that it walks straight ahead.
+fn assert_walks_ahead(bench: &mut FirmwareBench) {
+    let travel = predict_travel(&bench.run_for_frames(3 * FRAMES_PER_SECOND));
+    let is_ahead = travel.forward > 90.0 && travel.turn.abs() < 5.0;
+    assert!(is_ahead, "{travel:?}");
 }
 
 /// Runs the board for a second. Returns true if no pulse width changes.
@@ -129,11 +129,7 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
         press(&mut bench, BUTTON_PIN, 150);
         // The move to the first pose ends within half a second.
         bench.run_ms(500);
-        let travel = predict_travel(&bench.run_for_frames(3 * FRAMES_PER_SECOND));
-        assert!(
-            travel.forward > 90.0 && travel.turn.abs() < 5.0,
-            "{travel:?}"
-        );
+        assert_walks_ahead(&mut bench);
         for _ in 0..2 {
             let line_count = bench.lines().len();
             bench.uno.set_contact(OBSTACLE_PIN, true);
@@ -148,14 +144,9 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
             bench.run_ms(2_500);
             let notes = read_notes(&mut bench, line_count);
             assert_eq!(notes, ["# waiting for nose"]);
-            let travel = predict_travel(&bench.run_for_frames(3 * FRAMES_PER_SECOND));
-            assert!(
-                travel.forward > 90.0 && travel.turn.abs() < 5.0,
-                "{travel:?}"
-            );
+            assert_walks_ahead(&mut bench);
         }
-        let status = Status::read(&mut bench);
-        assert_eq!((status.text("gait"), status.text("late")), ("patrol", "0"));
+        Status::read(&mut bench).assert_has("gait=patrol late=0");
     });
 }
 
@@ -238,7 +229,7 @@ fn contacts_on_the_servos_ports_change_no_pulse() {
         assert!(!run_second_and_check_still(&mut bench));
         press(&mut bench, Pin::d(4), 100);
         bench.run_ms(10_000);
-        assert_eq!(Status::read(&mut bench).text("late"), "0");
+        Status::read(&mut bench).assert_has("late=0");
         let notes = read_notes(&mut bench, 0);
         let expected = ["button", "nose", "nose"].map(|name| format!("# waiting for {name}"));
         assert_eq!(notes, expected);
@@ -250,12 +241,11 @@ fn a_patrol_frame_takes_at_most_five_thousand_cycles_on_average() {
     for start_patrol in [start_waiting_patrol, start_walking_patrol] {
         let mut bench = start_patrol(Fidelity::DataSheet);
         let calls = bench.time_calls("Controller::compute_frame", 4_000);
-        let cycles = calls.iter().map(|call| call.leave_cycle - call.enter_cycle);
-        let mean_cycles = cycles.sum::<u64>() / calls.len() as u64;
+        let cycles: u64 = calls.iter().map(Call::cycles).sum();
+        let mean_cycles = cycles / calls.len() as u64;
         println!("{mean_cycles} cycles a frame");
-        assert!(
-            calls.len() >= 190 && mean_cycles <= MAX_MEAN_FRAME_CYCLES,
-            "{mean_cycles} cycles a frame"
-        );
+        assert!(calls.len() >= 190, "{} calls", calls.len());
+        let is_fast = mean_cycles <= MAX_MEAN_FRAME_CYCLES;
+        assert!(is_fast, "{mean_cycles} cycles a frame");
     }
 }

@@ -4,12 +4,11 @@ use lizard_host::sim::frame::FRAME_CYCLES;
 use lizard_host_tests::FirmwareBench;
 
 use crate::measurements::led_edges;
-use crate::run_in_both_simulations;
+use crate::start_in_both_simulations;
 
 #[test]
 fn the_led_is_lit_at_power_on_and_changes_every_32_frames() {
-    run_in_both_simulations(|fidelity| {
-        let mut bench = FirmwareBench::power_on(fidelity);
+    start_in_both_simulations(FirmwareBench::power_on, |mut bench| {
         bench.run_ms(5000);
         let led_edges = led_edges(&bench);
         let first = led_edges[0];
@@ -20,10 +19,8 @@ fn the_led_is_lit_at_power_on_and_changes_every_32_frames() {
             assert_ne!(pair[0].is_rising, pair[1].is_rising);
             // The firmware sets the LED after computing the frame, whose duration varies.
             let interval = pair[1].cycle - pair[0].cycle;
-            assert!(
-                interval.abs_diff(32 * FRAME_CYCLES) < FRAME_CYCLES / 10,
-                "change {n}: {interval} cycles"
-            );
+            let is_regular = interval.abs_diff(32 * FRAME_CYCLES) < FRAME_CYCLES / 10;
+            assert!(is_regular, "change {n}: {interval} cycles");
         }
     });
 }

@@ -7,13 +7,13 @@
 //! `make firmware` builds the ELF file. If the file is older than the sources, it differs from the core in these tests,
 //! and the tests fail.
 
-use std::collections::HashMap;
 use std::thread;
 
 use lizard_host::sim::analysis::compute_servo_frames;
 use lizard_host::sim::gait_choice;
 use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, Frame, robot};
-use lizard_robot::to_command;
+use lizard_kinematics::{Limits, wrap};
+use lizard_robot::{Robot, to_command};
 use simulated_uno::Fidelity;
 
 mod bad_input;
@@ -74,6 +74,11 @@ fn run_in_both_simulations(test: impl Fn(Fidelity) + Sync) {
     for_each_in_parallel(&fidelities, |fidelity| test(*fidelity));
 }
 
+/// Runs a test on stock and on corrected simavr, in parallel, each with the robot that `start` returns.
+fn start_in_both_simulations<T>(start: impl Fn(Fidelity) -> T + Sync, test: impl Fn(T) + Sync) {
+    run_in_both_simulations(|fidelity| test(start(fidelity)));
+}
+
 /// Runs a test for every case, each on its own thread.
 fn for_each_in_parallel<T: Sync + std::fmt::Debug>(cases: &[T], test: impl Fn(&T) + Sync) {
     thread::scope(|scope| {
@@ -95,6 +100,11 @@ fn boot_and_command(line: &str, fidelity: Fidelity) -> FirmwareBench {
     bench
 }
 
+/// Boots the board, starts the robot's first gait that moves and returns the board one second later.
+fn boot_to_walk(fidelity: Fidelity) -> FirmwareBench {
+    boot_and_command(&first_moving_gait(), fidelity)
+}
+
 /// Boots the board and returns it one second later, when the robot stands.
 fn boot_to_stand(fidelity: Fidelity) -> FirmwareBench {
     let mut bench = FirmwareBench::boot_with(fidelity);
@@ -113,8 +123,33 @@ fn first_moving_gait() -> String {
 /// Returns the command for the pose at these angles from neutral, deg.
 fn pose_command(sweeps_deg: [f64; 4]) -> String {
     let angles: [f64; 4] = std::array::from_fn(|i| robot().servos()[i].neutral + sweeps_deg[i]);
-    let [a1, a2, a3, a4] = angles.map(|angle| angle.rem_euclid(360.0));
+    format_pose(angles.map(|angle| angle.rem_euclid(360.0)))
+}
+
+/// Returns the command for the pose at these angles in the chassis frame, deg.
+fn format_pose([a1, a2, a3, a4]: [f64; 4]) -> String {
     format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
+}
+
+/// True if each of these angles (deg, chassis frame) is in its servo's travel and at least `margin_deg` from its ends.
+fn is_within_travel(angles: [f64; 4], margin_deg: f64) -> bool {
+    robot().servos().iter().zip(angles).all(|(servo, angle)| {
+        let (min, max) = servo.travel();
+        let sweep = wrap(angle - servo.neutral);
+        min + margin_deg < sweep && sweep < max - margin_deg
+    })
+}
+
+/// Returns the robot's limits, stricter by these differences: sines of the margins, and mm of the strokes.
+fn stricter_limits(margin: f64, stroke: f64) -> Limits {
+    let limits = robot().limits();
+    Limits {
+        type2: limits.type2 + margin,
+        type1: limits.type1 + margin,
+        leg: limits.leg + margin,
+        stroke_min: limits.stroke_min + stroke,
+        stroke_max: limits.stroke_max - stroke,
+    }
 }
 
 /// Returns the pulse widths of the neutral pose, cycles.
@@ -137,49 +172,58 @@ fn frame_widths(frames: &[Frame]) -> Vec<[u64; 4]> {
     frames.iter().map(Frame::expect_all_widths).collect()
 }
 
-/// Returns the servo angles of each frame, deg.
-fn frame_angles(frames: &[Frame]) -> Vec<[f64; 4]> {
-    let servo_frames = compute_servo_frames(robot(), frames).into_iter();
+/// Returns a robot's servo angles in each frame, deg.
+fn frame_angles(robot: &Robot, frames: &[Frame]) -> Vec<[f64; 4]> {
+    let servo_frames = compute_servo_frames(robot, frames).into_iter();
     let angles = servo_frames.map(|frame| frame.angles.expect("each servo has a pulse"));
     angles.collect()
 }
 
-/// The values of an answer to `status`, by key.
-struct Status(HashMap<String, String>);
+/// Checks that a value differs from the expected value by at most `tolerance`.
+#[track_caller]
+fn assert_near(value: f64, expected: f64, tolerance: f64, case: &str) {
+    let error = (value - expected).abs();
+    assert!(error <= tolerance, "{case}: {value}, expected {expected}");
+}
+
+/// Sends a line, checks that the answer has this start, and returns the answer.
+#[track_caller]
+fn expect_answer(bench: &mut FirmwareBench, line: &str, start: &str) -> String {
+    let answer = bench.say(line);
+    assert!(answer.starts_with(start), "{line}: {answer}");
+    answer
+}
+
+/// An answer to `status`, which is a list of pairs such as `gait=stop`.
+#[derive(Debug, PartialEq)]
+struct Status(String);
 
 impl Status {
     /// Asks the robot for its status.
     fn read(bench: &mut FirmwareBench) -> Self {
-        let answer = bench.say("status");
-        let pairs = answer.strip_prefix("ok gait=").map(|_| &answer[3..]);
-        let pairs = pairs.unwrap_or_else(|| panic!("no answer to status: {answer}"));
-        let split_pair = |pair: &str| {
-            let (key, value) = pair.split_once('=').expect("a pair is key=value");
-            (key.to_owned(), value.to_owned())
-        };
-        Self(pairs.split(' ').map(split_pair).collect())
+        Self(expect_answer(bench, "status", "ok gait="))
+    }
+
+    /// Checks that the status has each of these pairs, which are separated by spaces.
+    #[track_caller]
+    fn assert_has(&self, pairs: &str) {
+        for pair in pairs.split(' ') {
+            let has_pair = self.0.split(' ').any(|own_pair| own_pair == pair);
+            assert!(has_pair, "no {pair} in {}", self.0);
+        }
     }
 
     /// Returns the value of a key as text.
     fn text(&self, key: &str) -> &str {
-        let value = self.0.get(key);
-        value.unwrap_or_else(|| panic!("status has no {key}"))
+        let mut pairs = self.0.split(' ').filter_map(|pair| pair.split_once('='));
+        let pair = pairs.find(|(own_key, _)| *own_key == key);
+        pair.unwrap_or_else(|| panic!("status has no {key}")).1
     }
 
     /// Returns the value of a key as a number.
     fn number(&self, key: &str) -> f64 {
         let text = self.text(key);
         text.parse().unwrap_or_else(|_| panic!("{key}={text}"))
-    }
-
-    /// Returns the values of some keys.
-    fn texts<const N: usize>(&self, keys: [&str; N]) -> [&str; N] {
-        keys.map(|key| self.text(key))
-    }
-
-    /// Returns the values of some keys as numbers.
-    fn numbers<const N: usize>(&self, keys: [&str; N]) -> [f64; N] {
-        keys.map(|key| self.number(key))
     }
 
     /// Returns the servo angles, deg.

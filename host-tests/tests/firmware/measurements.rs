@@ -1,7 +1,7 @@
 //! Actions and measurements that several tests share: power, servo pins, LED and console.
 
 use lizard_host_tests::{CYCLES_PER_US, FirmwareBench};
-use simulated_uno::{CYCLES_PER_MS, Edge, Pin, Pulse};
+use simulated_uno::{CYCLES_PER_MS, Edge, Pin, Pulse, Uno};
 
 use crate::robot;
 
@@ -25,6 +25,21 @@ pub fn measure_widths(bench: &mut FirmwareBench) -> [u64; 4] {
     run_and_record_pulses(bench, 50).map(|pulses| pulses.last().map_or(0, |pulse| pulse.width))
 }
 
+/// Checks that each servo has at least `min_count` pulses, all of its expected width.
+#[track_caller]
+pub fn assert_steady(pulses: &[Vec<Pulse>; 4], widths: [u64; 4], min_count: usize) {
+    for (pulses, width) in pulses.iter().zip(widths) {
+        assert!(pulses.len() >= min_count && pulses.iter().all(|pulse| pulse.width == width));
+    }
+}
+
+/// Runs for `ms` milliseconds and checks that no servo has a pulse.
+#[track_caller]
+pub fn assert_no_pulse(bench: &mut FirmwareBench, ms: u64, case: &str) {
+    let pulses = run_and_record_pulses(bench, ms);
+    assert!(pulses.iter().all(Vec::is_empty), "{case}: {pulses:?}");
+}
+
 /// Switches the power off and on, discards the edges recorded so far, and waits for the banner.
 pub fn power_cycle(bench: &mut FirmwareBench) {
     let lines_before = bench.lines().len();
@@ -44,14 +59,11 @@ pub fn power_cycle(bench: &mut FirmwareBench) {
 
 /// Returns the lines in which `cal` prints the settings.
 pub fn read_calibration(bench: &mut FirmwareBench) -> Vec<String> {
-    let (lines, answer) = bench.ask("cal");
+    let (mut lines, answer) = bench.ask("cal");
     assert_eq!(answer, "ok cal");
-    let is_setting = |line: &String| {
-        ["# A", "# boot ", "# deadman "]
-            .iter()
-            .any(|prefix| line.starts_with(prefix))
-    };
-    lines.into_iter().filter(is_setting).collect()
+    let starts = ["# A", "# boot ", "# deadman "];
+    lines.retain(|line| starts.iter().any(|start| line.starts_with(start)));
+    lines
 }
 
 /// Returns a servo's slew limit, which is the largest change in its pulse width from frame to frame, cycles.
@@ -73,14 +85,9 @@ pub fn assert_gait_within_slew_limits(pulses: &[Vec<Pulse>; 4]) {
     assert_slew(pulses, servo_scales(), limits.slew.max(limits.gait_slew));
 }
 
-/// Asserts that no pulse width differs from the previous one by more than the slew limit allows.
-pub fn assert_within_slew_limit(pulses: &[Vec<Pulse>; 4]) {
-    assert_within_slew_limit_for_scales(pulses, servo_scales());
-}
-
 /// Asserts that no pulse width of servos with these scales (us per degree) differs from the previous one by more than
 /// the slew limit allows.
-pub fn assert_within_slew_limit_for_scales(pulses: &[Vec<Pulse>; 4], scales: [f64; 4]) {
+pub fn assert_within_slew_limit(pulses: &[Vec<Pulse>; 4], scales: [f64; 4]) {
     assert_slew(pulses, scales, robot().speed_limits().slew);
 }
 
@@ -100,8 +107,13 @@ fn assert_slew(pulses: &[Vec<Pulse>; 4], scales: [f64; 4], slew_deg_per_s: f64) 
 }
 
 /// Returns the servos' scales, us per degree.
-fn servo_scales() -> [f64; 4] {
+pub fn servo_scales() -> [f64; 4] {
     robot().servos().each_ref().map(|servo| servo.us_per_degree)
+}
+
+/// Returns the 16-bit value at a data address and the next one.
+pub fn peek_word(uno: &Uno, address: u16) -> u16 {
+    u16::from_le_bytes([address, address + 1].map(|address| uno.peek(address)))
 }
 
 /// Returns the recorded edges of the LED's pin.
@@ -110,8 +122,9 @@ pub fn led_edges(bench: &FirmwareBench) -> Vec<Edge> {
     edges.filter(|edge| edge.pin == LED_PIN).collect()
 }
 
-/// Runs for `seconds` seconds and returns the numbers of LED flashes between consecutive pauses.
-pub fn count_flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
+/// Runs for `seconds` seconds, and checks that the LED flashes `flash_count` times between any two consecutive pauses.
+#[track_caller]
+pub fn assert_flashes(bench: &mut FirmwareBench, seconds: u64, flash_count: usize) {
     bench.uno.take_edges();
     bench.uno.run_ms(1000 * seconds);
     // In a flash the LED is on for 160 ms and off for 160 ms; in a pause it stays off for another second.
@@ -129,5 +142,9 @@ pub fn count_flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
             unexpected => panic!("unexpected LED interval (is on, duration in ms): {unexpected:?}"),
         }
     }
-    flash_counts
+    let are_equal = flash_counts.iter().all(|count| *count == flash_count);
+    assert!(
+        flash_counts.len() >= 3 && are_equal,
+        "expected {flash_count} flashes between pauses: {flash_counts:?}"
+    );
 }

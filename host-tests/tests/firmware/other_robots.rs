@@ -3,24 +3,17 @@
 use lizard_core::numbers::gaits::MAX_NAME_BYTES;
 use lizard_host::bench::measure_longest_step;
 use lizard_host::board::SimulatedBoard;
-
 use lizard_host::sim::gait_choice;
 use lizard_host_tests::random_robot::{random_robot, with_many_gaits};
-use lizard_host_tests::{FirmwareBench, rng};
+use lizard_host_tests::{FirmwareBench, read_number, rng};
 use lizard_robot::{Robot, to_command};
 use simulated_uno::Fidelity;
 
-use crate::pulses::compute_core_widths;
+use crate::reference_run::ReferenceRun;
 use crate::{FRAMES_PER_SECOND, for_each_in_parallel};
 
 /// Lines that move no servo, each sent at the full rate of the serial line.
 const FLOODS: [&str; 5] = ["status\n", "help\n", "cal\n", "?\r", "x"];
-
-/// Returns the number of random robots, which is 100 in `make other-robots`.
-fn robot_count() -> u64 {
-    let value = std::env::var("LIZARD_ROBOTS").ok();
-    value.map_or(4, |count| count.parse().expect("LIZARD_ROBOTS is a number"))
-}
 
 /// Runs a gait for two seconds during a flood of serial input, and asserts that each frame has the widths that the core
 /// computes.
@@ -28,24 +21,20 @@ fn assert_frames_exact(robot: &Robot, gait: &str, flood: &str, robot_name: &str)
     let board = SimulatedBoard::power_on(&FirmwareBench::elf_path(), Fidelity::DataSheet, robot);
     let mut bench = FirmwareBench(board.expect("`make firmware` has built the ELF"));
     bench.run_ms(1000);
-    let first_rise = bench.first_pulse_cycle().expect("the robot stands");
-    bench.say("watch 1");
-    bench.say(&to_command(gait));
-    let received_count = bench.uno.received_by_uno().len();
-    bench.uno.flood(flood.as_bytes());
-    let sent_frames = bench.run_for_frames(2 * FRAMES_PER_SECOND);
-    let expected_widths =
-        compute_core_widths(robot, &bench, first_rise, received_count, &sent_frames);
-    for (frame, expected) in sent_frames.iter().zip(expected_widths) {
-        let widths = frame.all_widths();
-        assert_eq!(widths, Some(expected), "{robot_name}, {flood:?}: {frame:?}");
-    }
+    let mut run = ReferenceRun::with_lines(bench, robot, &["watch 1", &to_command(gait)]);
+    run.bench.uno.flood(flood.as_bytes());
+    let frames = run.bench.run_for_frames(2 * FRAMES_PER_SECOND);
+    let case = format!("{robot_name}, {flood:?}");
+    let exact_count = run.assert_exact_since(frames[0].start, &case);
+    assert_eq!(exact_count, frames.len(), "{case}: number of frames");
 }
 
 #[test]
 fn no_frame_of_a_random_robot_is_late_or_wrong_under_any_flood() {
+    // `make other-robots` sets the number of robots to 100.
+    let robot_count = read_number("LIZARD_ROBOTS").unwrap_or(4);
     for_each_in_parallel(&[0, 1], |parity| {
-        for number in (*parity..robot_count()).step_by(2) {
+        for number in (*parity..robot_count).step_by(2) {
             let mut rng = rng(2_000 + number);
             let (text, mut robot) = random_robot(&mut rng);
             // A third of the robots get many gaits with short names, and another third many gaits with long names.

@@ -4,6 +4,7 @@
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Uno};
 
+use crate::measurements::peek_word;
 use crate::pulses::servo_edges;
 use crate::run_in_both_simulations;
 
@@ -15,12 +16,18 @@ const OCR1A: u16 = 0x88;
 const SMCR: u16 = 0x53;
 const PORTS: [u16; 3] = [0x25, 0x28, 0x2b];
 
-/// Starts the board with these register values, sends `stand`, and returns the servos' edges in the first second.
-fn record_edges_with(register_values: &[(u16, u8)], fidelity: Fidelity) -> Vec<Edge> {
+/// Powers on the board and sets these registers.
+fn power_on_with(register_values: &[(u16, u8)], fidelity: Fidelity) -> FirmwareBench {
     let mut bench = FirmwareBench::power_on(fidelity);
     for (register, value) in register_values {
         bench.uno.poke(*register, *value);
     }
+    bench
+}
+
+/// Starts the board with these register values, sends `stand`, and returns the servos' edges in the first second.
+fn record_edges_with(register_values: &[(u16, u8)], fidelity: Fidelity) -> Vec<Edge> {
+    let mut bench = power_on_with(register_values, fidelity);
     bench.run_ms(200);
     bench.send("stand");
     bench.run_ms(800);
@@ -47,18 +54,14 @@ fn the_timer_is_stopped_during_its_setup_and_starts_at_zero() {
     // The simulated timer restarts at every change of its mode, while the chip's timer continues to count. The test
     // therefore reads the registers.
     run_in_both_simulations(|fidelity| {
-        let mut bench = FirmwareBench::power_on(fidelity);
-        for (register, value) in [(TCCR1B, 1), (TCNT1 + 1, 0x12), (TCNT1, 0x34)] {
-            bench.uno.poke(register, value);
-        }
-        let read_word =
-            |uno: &Uno, address| u16::from_le_bytes([uno.peek(address), uno.peek(address + 1)]);
-        let is_top_set = |uno: &Uno| read_word(uno, OCR1A) == 63_999;
+        let register_values = [(TCCR1B, 1), (TCNT1 + 1, 0x12), (TCNT1, 0x34)];
+        let mut bench = power_on_with(&register_values, fidelity);
+        let is_top_set = |uno: &Uno| peek_word(uno, OCR1A) == 63_999;
         assert!(bench.uno.run_until(100_000, 1, is_top_set));
         let clock = bench.uno.peek(TCCR1B) & 7;
         assert_eq!(clock, 0, "the timer counts during its setup");
         assert!(bench.uno.run_until(1_000, 1, |uno| uno.peek(TCCR1B) != 0));
-        assert_eq!(read_word(&bench.uno, TCNT1), 0);
+        assert_eq!(peek_word(&bench.uno, TCNT1), 0);
         // The mode is clear on compare match with OCR1A, without a prescaler.
         assert_eq!((bench.uno.peek(TCCR1A), bench.uno.peek(TCCR1B)), (0, 0x09));
     });
@@ -81,21 +84,16 @@ fn pins_left_high_go_low_without_a_pulse() {
         // The pull-ups may raise pins before main begins, for much less than a servo's pulse. Afterwards nothing drives
         // the pins until the robot is loaded; the simulation keeps a pin's last level.
         let first_cycle = cold_edges[0].cycle;
-        let mut early_edges = high_pin_edges
-            .iter()
-            .take_while(|edge| edge.cycle < first_cycle);
-        let late_rise = early_edges.find(|edge| edge.is_rising && edge.cycle >= CYCLES_PER_MS);
-        assert_eq!(late_rise, None);
-        let mut bench = FirmwareBench::power_on(fidelity);
-        for (port, bits) in ports {
-            bench.uno.poke(port, bits);
-        }
+        let is_early = |edge: &Edge| edge.cycle < first_cycle;
+        let (early_edges, later_edges): (Vec<Edge>, Vec<Edge>) =
+            high_pin_edges.into_iter().partition(is_early);
+        let is_late_rise = |edge: &&Edge| edge.is_rising && edge.cycle >= CYCLES_PER_MS;
+        assert_eq!(early_edges.iter().find(is_late_rise), None);
+        assert_eq!(later_edges, cold_edges);
+        let mut bench = power_on_with(&ports, fidelity);
         bench.run_ms(1);
         let [port_b, port_c, port_d] = PORTS.map(|port| bench.uno.peek(port));
         // D0 and D1 belong to the serial line.
         assert_eq!([port_b, port_c, port_d & !0x03], [0; 3]);
-        let mut later_edges = high_pin_edges.clone();
-        later_edges.retain(|edge| edge.cycle >= first_cycle);
-        assert_eq!(later_edges, cold_edges);
     });
 }

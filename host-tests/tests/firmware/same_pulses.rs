@@ -95,10 +95,8 @@ fn run_and_digest(name: &str) -> (u64, u64) {
     let is_a1_rise = |edge: &&Edge| edge.is_rising && edge.pin == pins[0];
     let edges = uno.edges();
     let first_rise = edges.iter().find(is_a1_rise).expect("A1 has risen").cycle;
-    println!(
-        "{name}: the first pulse begins after {:.3} ms",
-        first_rise as f64 / CYCLES_PER_MS as f64
-    );
+    let first_rise_ms = first_rise as f64 / CYCLES_PER_MS as f64;
+    println!("{name}: the first pulse begins after {first_rise_ms:.3} ms");
     let mut random = Random(0x1234_5678_9abc_def1);
     let mut digest = 0xcbf2_9ce4_8422_2325u64;
     let mut edge_count = 0;
@@ -118,18 +116,16 @@ fn run_and_digest(name: &str) -> (u64, u64) {
         }
         uno.run_until_cycle(start + FRAME_CYCLES - FRAME_CYCLES / 10);
         assert_eq!(*uno.state(), State::Alive);
-        for edge in uno.take_edges() {
-            if let Some(servo) = pins.iter().position(|pin| *pin == edge.pin)
-                && edge.cycle >= first_rise
-            {
-                edge_count += 1;
-                // FNV-1a.
-                let value = (edge.cycle - first_rise) << 3
-                    | (servo as u64) << 1
-                    | u64::from(edge.is_rising);
-                for byte in value.to_le_bytes() {
-                    digest = (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-                }
+        let edges = uno.take_edges().into_iter();
+        for edge in edges.filter(|edge| edge.cycle >= first_rise) {
+            let Some(servo) = pins.iter().position(|pin| *pin == edge.pin) else {
+                continue;
+            };
+            edge_count += 1;
+            let pin_level = (servo as u64) << 1 | u64::from(edge.is_rising);
+            // FNV-1a.
+            for byte in ((edge.cycle - first_rise) << 3 | pin_level).to_le_bytes() {
+                digest = (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
             }
         }
     }

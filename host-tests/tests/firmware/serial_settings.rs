@@ -3,17 +3,17 @@
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::Fidelity;
 
-use crate::run_in_both_simulations;
+use crate::measurements::peek_word;
+use crate::start_in_both_simulations;
 
 /// Data addresses of the USART's registers, data sheet 20.11.
 const UCSR0A: u16 = 0xc0;
 const UCSR0C: u16 = 0xc2;
-const UBRR0: [u16; 2] = [0xc4, 0xc5];
+const UBRR0: u16 = 0xc4;
 
 #[test]
 fn the_line_has_eight_data_bits_no_parity_and_one_stop_bit() {
-    run_in_both_simulations(|fidelity| {
-        let bench = FirmwareBench::boot_with(fidelity);
+    start_in_both_simulations(FirmwareBench::boot_with, |bench| {
         // The fields are: asynchronous 00, no parity 00, one stop bit 0, eight data bits 11.
         assert_eq!(bench.uno.peek(UCSR0C), 0b0000_0110);
     });
@@ -21,9 +21,8 @@ fn the_line_has_eight_data_bits_no_parity_and_one_stop_bit() {
 
 #[test]
 fn the_baud_rate_differs_from_115_200_by_less_than_2_2_percent() {
-    run_in_both_simulations(|fidelity| {
-        let bench = FirmwareBench::boot_with(fidelity);
-        let divisor = u16::from_le_bytes(UBRR0.map(|register| bench.uno.peek(register)));
+    start_in_both_simulations(FirmwareBench::boot_with, |bench| {
+        let divisor = peek_word(&bench.uno, UBRR0);
         // U2X0 halves the samples of a bit.
         let is_double_speed = bench.uno.peek(UCSR0A) & 2 != 0;
         let samples_per_bit = if is_double_speed { 8.0 } else { 16.0 };

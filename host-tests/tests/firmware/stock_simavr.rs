@@ -61,8 +61,8 @@ fn run_simavr(arguments: &str, folder: &Path, is_complete: impl Fn(&str) -> bool
         .spawn()
         .expect("scripts/setup has installed simavr");
     let read_output = || {
-        String::from_utf8_lossy(&fs::read(&output_path).expect("the output file exists"))
-            .into_owned()
+        let bytes = fs::read(&output_path).expect("the output file exists");
+        String::from_utf8_lossy(&bytes).into_owned()
     };
     let deadline = Instant::now() + TIMEOUT;
     while !is_complete(&read_output()) && Instant::now() < deadline {
@@ -79,23 +79,25 @@ fn run_simavr(arguments: &str, folder: &Path, is_complete: impl Fn(&str) -> bool
 const VCD_FILENAME: [u8; 2] = [12, 64];
 const VCD_PORTPIN: [u8; 2] = [15, 35];
 
+/// Appends a tag and its data, which is padded with zeros, to a list of tags.
+fn push_tag(tags: &mut Vec<u8>, tag: [u8; 2], data: &[u8]) {
+    let end = tags.len() + tag.len() + usize::from(tag[1]);
+    tags.extend(tag);
+    tags.extend(data);
+    tags.resize(end, 0);
+}
+
 /// Returns simavr's tags for a trace file and for each pin to be traced.
 fn build_trace_tags(pins: [u8; 4]) -> Vec<u8> {
-    let mut name_tag = VCD_FILENAME.to_vec();
-    name_tag.extend(b"pins.vcd");
-    name_tag.resize(2 + usize::from(VCD_FILENAME[1]), 0);
-    let mut tags = name_tag;
-    for (servo, pin) in pins.into_iter().enumerate() {
+    let mut tags = Vec::new();
+    push_tag(&mut tags, VCD_FILENAME, b"pins.vcd");
+    for (pin, digit) in pins.into_iter().zip(b'1'..) {
         let (port, bit) = match pin {
             0..8 => (b'D', pin),
             8..14 => (b'B', pin - 8),
             _ => (b'C', pin - 14),
         };
-        let mut tag = VCD_PORTPIN.to_vec();
-        tag.extend([port, bit, 0]);
-        tag.extend(format!("A{}", servo + 1).bytes());
-        tag.resize(2 + usize::from(VCD_PORTPIN[1]), 0);
-        tags.extend(tag);
+        push_tag(&mut tags, VCD_PORTPIN, &[port, bit, 0, b'A', digit]);
     }
     tags
 }
@@ -139,40 +141,33 @@ fn the_elf_file_walks_in_debians_simavr() {
     fs::write(folder.join("mmcu.bin"), mmcu).expect("the folder is writable");
     let arguments = "--update-section .mmcu=mmcu.bin lizard.elf traced.elf";
     objcopy(arguments, folder);
-    let output_text = run_simavr(
-        "-m atmega328p -f 16000000 traced.elf -ee eeprom.hex",
-        folder,
+    let vcd_path = folder.join("pins.vcd");
+    let arguments = "-m atmega328p -f 16000000 traced.elf -ee eeprom.hex";
+    let output_text = run_simavr(arguments, folder, |_| {
         // 30 000 bytes, about 20 for each edge, cover the three seconds before the gait and two of its cycles.
-        |_| fs::metadata(folder.join("pins.vcd")).is_ok_and(|file| file.len() > 30_000),
-    );
+        fs::metadata(&vcd_path).is_ok_and(|file| file.len() > 30_000)
+    });
     let boot_note = format!("# boot: {}", first_gait_command());
     assert!(output_text.contains(&boot_note), "{output_text}");
     assert!(!output_text.contains("fault"), "{output_text}");
     assert!(!output_text.contains("supply"), "{output_text}");
-    let vcd = fs::read_to_string(folder.join("pins.vcd")).expect("simavr has written the trace");
+    let vcd = fs::read_to_string(vcd_path).expect("simavr has written the trace");
     assert!(vcd.contains("$timescale 10ns $end"), "{}", &vcd[..80]);
     let widths_us = parse_widths(&vcd);
-    for (servo, calibration) in robot().firmware().calibration().iter().enumerate() {
-        let servo_widths_us = &widths_us[&format!("A{}", servo + 1)];
+    for (number, calibration) in (1..).zip(robot().firmware().calibration()) {
+        let servo_widths_us = &widths_us[&format!("A{number}")];
         let [min_us, max_us] = [f64::min, f64::max].map(|pick| {
             let extreme = servo_widths_us.iter().copied().reduce(pick);
             extreme.expect("the servo has pulses")
         });
         let pulse_count = servo_widths_us.len();
         assert!(pulse_count > 150, "{pulse_count} pulses");
-        assert!(
-            max_us - min_us > 50.0,
-            "A{} does not turn: pulses between {min_us} and {max_us} us",
-            servo + 1
-        );
+        let case = format!("A{number}: pulses between {min_us} and {max_us} us");
+        assert!(max_us - min_us > 50.0, "does not turn, {case}");
         let limits = [calibration.travel_min, calibration.travel_max]
             .map(|limit| f64::from(calibration.clamped_width(limit)) / CYCLES_PER_US);
         let (low_us, high_us) = (limits[0].min(limits[1]), limits[0].max(limits[1]));
-        assert!(
-            low_us - 0.1 <= min_us && max_us <= high_us + 0.1,
-            "A{}: pulses between {min_us} and {max_us} us",
-            servo + 1
-        );
+        assert!(low_us - 0.1 <= min_us && max_us <= high_us + 0.1, "{case}");
     }
 }
 
@@ -189,16 +184,14 @@ fn the_hex_files_start_in_debians_simavr_and_report_its_low_voltage() {
         .expect("the flash makes an image");
     fs::write(folder.join("image.hex"), image.to_hex()).expect("the folder is writable");
     for file in ["firmware.hex", "image.hex"] {
-        let output_text = run_simavr(
-            &format!("-m atmega328p -f 16000000 {file}"),
-            folder,
-            |output_text| output_text.contains("3.30 V"),
-        );
+        let arguments = format!("-m atmega328p -f 16000000 {file}");
+        let output_text = run_simavr(&arguments, folder, |text| text.contains("3.30 V"));
         let name = lizard_host::firmware::format_robot_label(robot().firmware());
-        assert!(
-            output_text.contains(&format!("robot {name},")),
-            "{file}: {output_text}"
-        );
-        assert!(output_text.contains("3.30 V"), "{file}: {output_text}");
+        for part in [format!("robot {name},").as_str(), "3.30 V"] {
+            assert!(
+                output_text.contains(part),
+                "{file}, no {part:?}: {output_text}"
+            );
+        }
     }
 }

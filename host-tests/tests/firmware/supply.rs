@@ -1,11 +1,11 @@
 //! Tests of the measured supply voltage, and of the robot's reactions while the supply falls and recovers.
 
-use lizard_host_tests::{FirmwareBench, robot};
+use lizard_host_tests::{FirmwareBench, Line, robot};
 use lizard_robot::Rail;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin};
 
-use crate::measurements::{count_flashes, measure_widths, run_and_record_pulses};
-use crate::{Status, boot_and_command, boot_to_stand, first_moving_gait};
+use crate::measurements::{assert_flashes, assert_no_pulse, measure_widths};
+use crate::{Status, assert_near, boot_to_stand, boot_to_walk, expect_answer, first_moving_gait};
 
 /// The largest error of a printed board supply, V: one converter step at 5.5 V, and the rounding to two decimals.
 const MAX_BOARD_ERROR_V: f64 = 0.04;
@@ -16,29 +16,25 @@ const FIRST_ANALOGUE_PIN: u8 = 14;
 /// Returns the reaction and the voltage (V) in each note about the supply, from line `first_line` on.
 fn read_supply_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<(String, f64)> {
     let lines = &bench.lines()[first_line..];
-    let notes = lines
-        .iter()
-        .filter_map(|line| line.text.strip_prefix("# supply: "));
-    let notes = notes.map(|text| {
-        let pieces = text.split_once(" V, ");
+    let parse_note = |line: &Line| {
+        let pieces = line.text.strip_prefix("# supply: ")?.split_once(" V, ");
         let (volts, reaction) = pieces.expect("a note has a voltage and a reaction");
         let volts = volts.parse().expect("the voltage is a number");
-        (reaction.to_owned(), volts)
-    });
-    notes.collect()
+        Some((reaction.to_owned(), volts))
+    };
+    lines.iter().filter_map(parse_note).collect()
 }
 
 #[test]
 fn status_reports_the_supply_within_thirty_millivolts() {
     let mut bench = boot_to_stand(Fidelity::DataSheet);
-    let mut max_error = 0f64;
     for mv in (2_700..=5_500).step_by(35) {
         bench.uno.set_supply_mv(f64::from(mv));
         bench.run_ms(120);
         let printed_volts = Status::read(&mut bench).number("vcc");
-        max_error = max_error.max((printed_volts - f64::from(mv) / 1000.0).abs());
+        let volts = f64::from(mv) / 1000.0;
+        assert_near(printed_volts, volts, 0.030, "printed voltage, V");
     }
-    assert!(max_error <= 0.030, "{max_error} V");
 }
 
 /// Lowers a supply through its three thresholds (V), and asserts that the robot reports its reaction at each threshold,
@@ -61,49 +57,36 @@ fn lower_supply_and_check_reactions(
         }
     }
     let printed_notes = read_supply_notes(bench, line_count);
-    let reactions = printed_notes.iter().map(|(reaction, _)| reaction.as_str());
-    let reactions: Vec<&str> = reactions.collect();
+    let reactions: Vec<&String> = printed_notes.iter().map(|(reaction, _)| reaction).collect();
     let pace = robot().supplies().slow_pace_percent;
-    let low_reaction = format!("low: no saving, speed at most {pace}");
-    let expected_reactions = [
-        low_reaction.as_str(),
+    let expected_reactions: [&str; 3] = [
+        &format!("low: no saving, speed at most {pace}"),
         "too low to move: stopped",
         "too low to hold: pulses off",
     ];
     assert_eq!(reactions, expected_reactions);
-    for ((actual, (_, printed_volts)), threshold) in
-        true_volts.iter().zip(&printed_notes).zip(thresholds)
-    {
-        assert!(
-            (actual - threshold).abs() <= tolerance,
-            "reaction at {actual} V, threshold {threshold} V"
-        );
-        assert!(
-            (printed_volts - actual).abs() <= tolerance,
-            "printed {printed_volts} V, actual {actual} V"
-        );
+    let volts = true_volts.iter().zip(&printed_notes).zip(thresholds);
+    for ((actual, (_, printed_volts)), threshold) in volts {
+        assert_near(*actual, threshold, tolerance, "voltage of a reaction, V");
+        assert_near(*printed_volts, *actual, tolerance, "printed voltage, V");
     }
 }
 
 #[test]
 fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
-    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_to_walk(Fidelity::DataSheet);
     let thresholds = robot().supplies().board_thresholds;
     lower_supply_and_check_reactions(&mut bench, thresholds, MAX_BOARD_ERROR_V, |bench, volts| {
         bench.uno.set_supply_mv(1000.0 * volts);
     });
-    let status = Status::read(&mut bench);
-    assert_eq!(status.texts(["gait", "fault"]), ["rest", "supply"]);
-    let pulses = run_and_record_pulses(&mut bench, 200);
-    assert!(pulses.iter().all(Vec::is_empty));
-    let flashes = count_flashes(&mut bench, 10);
-    let are_two = flashes.iter().all(|count| *count == 2);
-    assert!(flashes.len() >= 3 && are_two, "{flashes:?}");
+    Status::read(&mut bench).assert_has("gait=rest fault=supply");
+    assert_no_pulse(&mut bench, 200, "below the lowest threshold");
+    assert_flashes(&mut bench, 10, 2);
 }
 
 #[test]
 fn a_low_supply_limits_the_pace_and_prevents_saving() {
-    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_to_walk(Fidelity::DataSheet);
     let measure_pace = |bench: &mut FirmwareBench| {
         let phase_before = Status::read(bench).number("phase");
         bench.run_ms(200);
@@ -114,9 +97,7 @@ fn a_low_supply_limits_the_pace_and_prevents_saving() {
     bench.uno.set_supply_mv((slow_volts + stop_volts) * 500.0);
     bench.run_ms(500);
     let operations_before = bench.uno.eeprom_operations().len();
-    let refusal = bench.say("save");
-    let is_refused = refusal.starts_with("err 8 the supply is too low");
-    assert!(is_refused, "{refusal}");
+    expect_answer(&mut bench, "save", "err 8 the supply is too low");
     let slow_pace = measure_pace(&mut bench);
     let expected = f64::from(robot().supplies().slow_pace_percent) / 100.0;
     assert!(full_pace > 0.0, "the robot does not walk");
@@ -132,13 +113,12 @@ fn a_low_supply_limits_the_pace_and_prevents_saving() {
 
 #[test]
 fn a_recovered_supply_allows_commands_again_and_starts_nothing() {
-    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_to_walk(Fidelity::DataSheet);
     let [slow_volts, stop_volts, _] = robot().supplies().board_thresholds;
     bench.uno.set_supply_mv(stop_volts * 1000.0 - 60.0);
     bench.run_ms(500);
-    assert_eq!(Status::read(&mut bench).text("gait"), "stop");
-    let refusal = bench.say(&first_moving_gait());
-    assert!(refusal.starts_with("err 8 "), "{refusal}");
+    Status::read(&mut bench).assert_has("gait=stop");
+    expect_answer(&mut bench, &first_moving_gait(), "err 8 ");
     let held_widths = measure_widths(&mut bench);
     let line_count = bench.lines().len();
     let mut good_volts = None;
@@ -146,16 +126,14 @@ fn a_recovered_supply_allows_commands_again_and_starts_nothing() {
         bench.uno.set_supply_mv(f64::from(mv));
         bench.run_ms(1_150);
         let notes = read_supply_notes(&mut bench, line_count);
-        let is_good = notes.iter().any(|(reaction, _)| reaction == "good");
-        if good_volts.is_none() && is_good {
-            good_volts = Some(f64::from(mv) / 1000.0);
+        if notes.iter().any(|(reaction, _)| reaction == "good") {
+            good_volts.get_or_insert(f64::from(mv) / 1000.0);
         }
     }
     let good_volts = good_volts.expect("the supply is reported as good");
-    assert!(
-        (good_volts - slow_volts - 0.150).abs() <= MAX_BOARD_ERROR_V,
-        "good at {good_volts} V, expected 150 mV above {slow_volts} V"
-    );
+    let rise_volts = good_volts - slow_volts;
+    let case = "voltage above the threshold when good, V";
+    assert_near(rise_volts, 0.150, MAX_BOARD_ERROR_V, case);
     assert_eq!(measure_widths(&mut bench), held_widths, "a servo moved");
     assert_eq!(
         Status::read(&mut bench).text("fault"),
@@ -164,13 +142,13 @@ fn a_recovered_supply_allows_commands_again_and_starts_nothing() {
     );
     bench.expect_ok(&first_moving_gait());
     bench.run_ms(500);
-    assert_eq!(Status::read(&mut bench).text("fault"), "none");
+    Status::read(&mut bench).assert_has("fault=none");
     assert_eq!(bench.say("save"), "ok save");
 }
 
 #[test]
 fn short_dips_cause_no_note_and_a_wavering_supply_causes_one() {
-    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_to_walk(Fidelity::DataSheet);
     let line_count = bench.lines().len();
     // A servo that starts to move lowers the supply for some milliseconds.
     for n in 0..200u64 {
@@ -200,7 +178,7 @@ fn set_rail(bench: &mut FirmwareBench, rail: &Rail, volts: f64) {
 /// Checks that a robot without a rail pin in robot.toml reports no rail, and that the voltage at a free pin has no
 /// effect.
 fn assert_no_rail() {
-    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_to_walk(Fidelity::DataSheet);
     let servos = robot().servos().each_ref().map(|servo| servo.pin);
     let pins = FIRST_ANALOGUE_PIN..FIRST_ANALOGUE_PIN + 6;
     let free_pins: Vec<u8> = pins.filter(|pin| !servos.contains(pin)).collect();
@@ -210,13 +188,13 @@ fn assert_no_rail() {
             bench.uno.set_analog_mv(Pin::arduino(*pin), mv);
         }
         bench.run_ms(1_000);
-        let answer = bench.say("status");
-        assert!(!answer.contains("rail="), "{answer}");
-        assert!(answer.contains(" fault=none "), "{answer}");
+        let status = Status::read(&mut bench);
+        assert!(!status.0.contains("rail="), "{status:?}");
+        status.assert_has("fault=none");
         assert!(read_supply_notes(&mut bench, 0).is_empty());
     }
     let gait = first_moving_gait().replace(' ', "-");
-    assert_eq!(Status::read(&mut bench).text("gait"), gait);
+    Status::read(&mut bench).assert_has(&format!("gait={gait}"));
 }
 
 #[test]
@@ -224,7 +202,7 @@ fn status_reports_the_servos_rail_if_robot_toml_names_its_pin() {
     let Some(rail) = robot().supplies().rail else {
         return assert_no_rail();
     };
-    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_to_walk(Fidelity::DataSheet);
     let max_volts = 5.0 * rail.divider_ratio;
     for step in 1..=40 {
         let volts = max_volts * f64::from(step) / 41.0;
@@ -232,10 +210,7 @@ fn status_reports_the_servos_rail_if_robot_toml_names_its_pin() {
         bench.run_ms(120);
         let printed_volts = Status::read(&mut bench).number("rail");
         let tolerance = rail_tolerance(&rail, volts);
-        assert!(
-            (printed_volts - volts).abs() <= tolerance,
-            "printed {printed_volts} V, actual {volts} V"
-        );
+        assert_near(printed_volts, volts, tolerance, "printed voltage, V");
     }
 }
 
@@ -250,12 +225,12 @@ fn a_sinking_rail_slows_stops_and_rests_the_robot_with_a_good_board_supply() {
     let Some(rail) = robot().supplies().rail else {
         return assert_no_rail();
     };
-    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_to_walk(Fidelity::DataSheet);
     let tolerance = rail_tolerance(&rail, rail.thresholds[0]);
     lower_supply_and_check_reactions(&mut bench, rail.thresholds, tolerance, |bench, volts| {
         set_rail(bench, &rail, volts);
     });
-    let pulses = run_and_record_pulses(&mut bench, 200);
-    assert!(pulses.iter().all(Vec::is_empty));
-    assert!((Status::read(&mut bench).number("vcc") - 5.0).abs() <= MAX_BOARD_ERROR_V);
+    assert_no_pulse(&mut bench, 200, "below the lowest threshold");
+    let board_volts = Status::read(&mut bench).number("vcc");
+    assert_near(board_volts, 5.0, MAX_BOARD_ERROR_V, "board supply, V");
 }

@@ -1,16 +1,15 @@
 //! Tests of resets: a program that hangs restarts without a wrong pulse, and the cause of every reset is reported
 //! correctly.
 
-use lizard_host_tests::FirmwareBench;
-use simulated_uno::{CYCLES_PER_MS, Fidelity, ResetCause, Uno};
+use lizard_host_tests::{FirmwareBench, robot};
+use lizard_robot::round_to_hundredths;
+use simulated_uno::{CYCLES_PER_MS, EEPROM_SIZE, Fidelity, ResetCause, Uno};
 
 use crate::measurements::{
-    count_flashes, measure_widths, power_cycle, recorded_pulses, run_and_record_pulses,
-    servo_slew_limit,
+    assert_flashes, assert_no_pulse, measure_widths, power_cycle, recorded_pulses,
+    run_and_record_pulses, servo_slew_limit,
 };
-use crate::{
-    Status, boot_and_command, boot_to_stand, first_moving_gait, neutral_widths, pose_command,
-};
+use crate::{Status, boot_to_stand, boot_to_walk, first_moving_gait, neutral_widths, pose_command};
 
 /// Data addresses of Timer1's registers.
 const TCCR1B: u16 = 0x81;
@@ -31,7 +30,7 @@ fn hold_pose() -> (FirmwareBench, [u64; 4]) {
 }
 
 /// Runs until the watchdog resets the chip, ends the stall of the main loop, and returns the cycles that passed.
-fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
+pub fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
     let (start, resets_before) = (bench.uno.cycle(), bench.uno.watchdog_resets());
     let limit_cycles = MAX_TIMEOUT_MS * CYCLES_PER_MS;
     let was_reset = |uno: &Uno| uno.watchdog_resets() > resets_before;
@@ -65,9 +64,9 @@ fn a_main_loop_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
             let gap = gaps.max().expect("the servo has pulses");
             assert!(gap < 200 * CYCLES_PER_MS, "no pulse for {gap} cycles");
         }
-        let status = Status::read(&mut bench);
-        assert_eq!(status.texts(["reset", "fault"]), ["watchdog"; 2]);
-        assert_eq!(status.number("resets"), (round + 1) as f64);
+        let resets = round + 1;
+        let pairs = format!("reset=watchdog fault=watchdog resets={resets}");
+        Status::read(&mut bench).assert_has(&pairs);
     }
     let fault_line = "# fault: the program hung and was restarted".to_owned();
     assert!(bench.texts_from(0).contains(&fault_line));
@@ -76,7 +75,7 @@ fn a_main_loop_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
 #[test]
 fn a_hang_during_a_walk_holds_the_last_pose_until_a_command() {
     for hang_ms in [3, 137, 411, 893] {
-        let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
+        let mut bench = boot_to_walk(Fidelity::DataSheet);
         bench.run_ms(hang_ms);
         let widths_before = measure_widths(&mut bench);
         bench.uno.stall_main(2_000 * CYCLES_PER_MS);
@@ -90,15 +89,22 @@ fn a_hang_during_a_walk_holds_the_last_pose_until_a_command() {
             let change = first_width.abs_diff(widths_before[servo]);
             assert!(change <= 2 * servo_slew_limit(servo), "A{}", servo + 1);
         }
-        assert_eq!(Status::read(&mut bench).text("gait"), "stop");
-        let flashes = count_flashes(&mut bench, 12);
-        let are_four = flashes.iter().all(|count| *count == 4);
-        assert!(flashes.len() >= 3 && are_four, "{flashes:?}");
+        Status::read(&mut bench).assert_has("gait=stop");
+        assert_flashes(&mut bench, 12, 4);
         assert_eq!(bench.say("stand"), "ok stand");
         bench.run_ms(1500);
-        assert_eq!(Status::read(&mut bench).text("fault"), "none");
+        Status::read(&mut bench).assert_has("fault=none");
         assert_eq!(measure_widths(&mut bench), neutral_widths());
     }
+}
+
+/// Checks that the watchdog resets the chip, and that the robot then holds the pose with these widths.
+fn assert_reset_in_pose(mut bench: FirmwareBench, widths: [u64; 4], case: &str) {
+    run_until_reset(&mut bench);
+    bench.uno.run_ms(100);
+    assert_eq!(measure_widths(&mut bench), widths, "{case}");
+    let status = Status::read(&mut bench);
+    assert_eq!(status.text("reset"), "watchdog", "{case}");
 }
 
 #[test]
@@ -110,11 +116,7 @@ fn a_stopped_timer_or_disabled_interrupts_are_detected() {
         let pins = bench.pins();
         assert!(pins.iter().all(|pin| !bench.uno.is_high(*pin)));
         bench.uno.poke(register, value);
-        run_until_reset(&mut bench);
-        bench.uno.run_ms(100);
-        assert_eq!(measure_widths(&mut bench), widths, "{register:02x}={value}");
-        let status = Status::read(&mut bench);
-        assert_eq!(status.text("reset"), "watchdog", "{register:02x}={value}");
+        assert_reset_in_pose(bench, widths, &format!("{register:02x}={value}"));
     }
 }
 
@@ -126,15 +128,12 @@ fn disabled_interrupts_are_detected_and_reported_as_a_watchdog_reset() {
     let is_blocked = |uno: &Uno| uno.peek(sreg) & 0x80 == 0;
     assert!(bench.uno.run_until(CYCLES_PER_MS, 1, is_blocked));
     bench.uno.block_interrupts(1_000 * CYCLES_PER_MS);
-    run_until_reset(&mut bench);
-    bench.uno.run_ms(100);
-    assert_eq!(Status::read(&mut bench).text("reset"), "watchdog");
-    assert_eq!(measure_widths(&mut bench), widths);
+    assert_reset_in_pose(bench, widths, "interrupts blocked");
 }
 
 #[test]
 fn a_robot_that_works_is_never_reset() {
-    let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
+    let mut bench = boot_to_walk(Fidelity::DataSheet);
     bench.uno.flood(b"status\nhelp\ncal\nsave\nx");
     bench.run_ms(20_000);
     assert_eq!(bench.uno.reset_events().len(), 1);
@@ -150,6 +149,7 @@ fn boot_with_or_without_loader(has_boot_loader: bool) -> FirmwareBench {
 
 #[test]
 fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
+    use ResetCause::{BrownOut, External, PowerOn, Watchdog};
     for has_boot_loader in [false, true] {
         let mut bench = boot_with_or_without_loader(has_boot_loader);
         let assert_reported = |bench: &mut FirmwareBench, cause: &str, resets: f64| {
@@ -177,17 +177,8 @@ fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
         assert_reported(&mut bench, "power", 0.0);
         let events = bench.uno.reset_events();
         let causes: Vec<ResetCause> = events.iter().map(|event| event.cause).collect();
-        assert_eq!(
-            causes,
-            [
-                ResetCause::PowerOn,
-                ResetCause::External,
-                ResetCause::Watchdog,
-                ResetCause::BrownOut,
-                ResetCause::External,
-                ResetCause::PowerOn
-            ]
-        );
+        let expected = [PowerOn, External, Watchdog, BrownOut, External, PowerOn];
+        assert_eq!(causes, expected);
     }
 }
 
@@ -208,20 +199,16 @@ fn resets_are_counted_up_to_255_and_no_further() {
 #[test]
 fn power_on_is_recognised_whatever_the_ram_contains() {
     let mut bench = boot_with_or_without_loader(true);
+    // The angles as `status` prints them, deg.
+    let servos = robot().servos();
+    let neutral_angles = servos.map(|servo| round_to_hundredths(servo.neutral));
     for seed in 0..300 {
         bench.uno.set_noise_seed(seed);
         power_cycle(&mut bench);
         let status = Status::read(&mut bench);
-        assert_eq!(status.text("reset"), "power");
-        assert_eq!(status.number("resets"), 0.0);
-        assert_eq!(status.pose(), neutral_angles());
+        status.assert_has("reset=power resets=0");
+        assert_eq!(status.pose(), neutral_angles);
     }
-}
-
-/// Returns the servos' neutral angles as `status` prints them, deg.
-fn neutral_angles() -> [f64; 4] {
-    let servos = lizard_host_tests::robot().servos();
-    servos.map(|servo| (servo.neutral * 100.0).round() / 100.0)
 }
 
 #[test]
@@ -257,18 +244,14 @@ fn a_resting_robot_that_hangs_restarts_without_a_pulse() {
             assert_eq!(bench.say("rest"), "ok rest");
             bench.run_ms(500);
             if is_blank {
-                let erased = bench.uno.eeprom().map(|_| 0xff);
-                bench.uno.set_eeprom(&erased);
+                bench.uno.set_eeprom(&[0xff; EEPROM_SIZE]);
             }
             let resets_before = bench.uno.watchdog_resets();
             bench.uno.stall_main(ms * CYCLES_PER_MS);
             bench.uno.run_ms(ms + 150);
             assert!(bench.uno.watchdog_resets() > resets_before);
-            let pulses = run_and_record_pulses(&mut bench, 6000);
-            assert!(pulses.iter().all(Vec::is_empty), "{ms} ms: {pulses:?}");
-            let status = Status::read(&mut bench);
-            let reported = [status.text("gait"), status.text("fault")];
-            assert_eq!(reported, ["rest", "watchdog"]);
+            assert_no_pulse(&mut bench, 6000, &format!("{ms} ms"));
+            Status::read(&mut bench).assert_has("gait=rest fault=watchdog");
             let answer = bench.say(&first_moving_gait());
             assert_eq!(answer, "err 7 the servos are resting; send stand first");
             assert_eq!(bench.say("stand"), "ok stand");
@@ -285,8 +268,7 @@ fn a_resting_robot_rests_after_a_reset_until_boot_or_a_command() {
     bench.run_ms(300);
     bench.uno.reset();
     // `boot` starts `stand`, because no byte arrives.
-    let pulses = run_and_record_pulses(&mut bench, 2_900);
-    assert!(pulses.iter().all(Vec::is_empty), "{pulses:?}");
+    assert_no_pulse(&mut bench, 2_900, "before `boot`");
     bench.uno.run_ms(2_500);
     assert_eq!(measure_widths(&mut bench), neutral_widths());
     assert!(bench.texts_from(0).contains(&"# boot: stand".to_owned()));
@@ -295,7 +277,5 @@ fn a_resting_robot_rests_after_a_reset_until_boot_or_a_command() {
     bench.uno.reset();
     bench.uno.run_ms(1000);
     bench.uno.send(b"\r");
-    let pulses = run_and_record_pulses(&mut bench, 5_000);
-    let is_silent = pulses.iter().all(Vec::is_empty);
-    assert!(is_silent, "a byte did not cancel `boot`");
+    assert_no_pulse(&mut bench, 5_000, "a byte did not cancel `boot`");
 }

@@ -4,7 +4,7 @@ use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{CYCLES_PER_US, NamedRobot, robots};
 use lizard_robot::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
 
-use crate::reference::to_degrees;
+use crate::reference::{exact_width_us, to_degrees};
 
 #[test]
 fn neutral_angle_scale_and_pin_of_each_servo_match_the_robot_file() {
@@ -23,9 +23,7 @@ fn neutral_angle_scale_and_pin_of_each_servo_match_the_robot_file() {
             );
             let mut pulse_count = 0;
             for sweep in (i16::MIN..=i16::MAX).step_by(17) {
-                let exact_cycles = CYCLES_PER_US
-                    * (servo.neutral_us
-                        + servo.us_per_degree * f64::from(sweep) / STEPS_PER_DEGREE);
+                let exact_cycles = CYCLES_PER_US * exact_width_us(servo, sweep.into());
                 if !(0.0..65536.0).contains(&exact_cycles) {
                     continue;
                 }
@@ -51,29 +49,19 @@ fn each_servos_travel_ends_at_the_last_step_in_its_pulse_range() {
         for (index, servo) in robot.servos().iter().enumerate() {
             let calibration = robot.firmware().calibration()[index];
             let number = index + 1;
-            let width_us_at = |sweep: i32| {
-                servo.neutral_us + servo.us_per_degree * f64::from(sweep) / STEPS_PER_DEGREE
-            };
-            let is_in_range = |sweep: i32| {
-                let width_us = width_us_at(sweep);
-                servo.min_us - 1e-6 <= width_us && width_us <= servo.max_us + 1e-6
+            let allowed_us = servo.min_us - 1e-6..=servo.max_us + 1e-6;
+            let is_in_range = |sweep: i32| allowed_us.contains(&exact_width_us(servo, sweep));
+            let reaches = |sweep: i32| {
+                i16::try_from(sweep).is_ok_and(|sweep| calibration.reaches(Sweep(sweep)))
             };
             for (end, outward_step) in [(calibration.travel_min, -1), (calibration.travel_max, 1)] {
                 let end = i32::from(end.0);
-                assert!(is_in_range(end), "{name}: A{number} at {end}");
+                let is_inside = is_in_range(end) && reaches(end);
+                assert!(is_inside, "{name}: A{number} at {end}");
                 let next_sweep = end + outward_step;
                 let is_outside = !is_in_range(next_sweep) || next_sweep.abs() > 32_767;
+                let is_outside = is_outside && !reaches(next_sweep);
                 assert!(is_outside, "{name}: A{number} at {next_sweep}");
-            }
-            assert!(calibration.reaches(calibration.travel_min), "{name}");
-            assert!(calibration.reaches(calibration.travel_max), "{name}");
-            let sweeps_beyond = [
-                calibration.travel_min.0.checked_sub(1),
-                calibration.travel_max.0.checked_add(1),
-            ];
-            for sweep in sweeps_beyond.into_iter().flatten() {
-                let is_reached = calibration.reaches(Sweep(sweep));
-                assert!(!is_reached, "{name}: A{number} at {sweep}");
             }
         }
     }

@@ -9,10 +9,12 @@ use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::pose::{Pose, Pulses};
 use lizard_core::numbers::units::CYCLE;
 use lizard_core::virtual_board::RunningRobot;
-use lizard_host_tests::{CYCLES_PER_US, NamedRobot};
-use lizard_robot::Robot;
+use lizard_host_tests::{CYCLES_PER_US, NamedRobot, robots};
+use lizard_robot::{CheckedGait, CoreRobot, Robot};
 
-use crate::reference::{Verdict, chassis_angles_deg, is_safe, random_pose_within};
+use crate::reference::{
+    chassis_angles_deg, exact_width_us, is_clearly_unsafe, is_safe, random_pose_within,
+};
 
 /// Number of frames after which all servos are awake.
 pub const WAKING_FRAMES: u32 = 20;
@@ -45,17 +47,14 @@ pub fn max_speed_change(robot: &Robot) -> f64 {
 
 fn compute_max_speed_change(robot: &Robot) -> f64 {
     let move_change = robot.speed_limits().slew / 2.0;
-    let gaits = GaitId::all(robot.gaits().len()).map(|id| {
-        let (speed, change) = compute_max_speed_and_change(robot, id);
-        change.max(speed / ACCELERATION_FRAMES + robot.speed_limits().slew / 4.0)
-            + speed / ACCELERATION_FRAMES
-    });
-    gaits.fold(move_change, f64::max) + SPEED_CHANGE_ERROR_STEPS * STEP_SPEED_DEG_PER_S
+    let gaits = robot.gaits().iter();
+    let gait_changes = gaits.map(|gait| compute_max_gait_change(robot, gait_id(gait)));
+    gait_changes.fold(move_change, f64::max) + SPEED_CHANGE_ERROR_STEPS * STEP_SPEED_DEG_PER_S
 }
 
-/// Computes the largest servo speed in a gait at full pace, and the largest change in a servo's speed from one frame to
-/// the next, deg/s.
-fn compute_max_speed_and_change(robot: &Robot, id: GaitId) -> (f64, f64) {
+/// Computes the largest allowed change in a servo's speed in a gait from one frame to the next, deg/s, from the largest
+/// speed and the largest change of speed at full pace.
+fn compute_max_gait_change(robot: &Robot, id: GaitId) -> f64 {
     let firmware = robot.firmware();
     let gait = firmware.gait(id);
     let sweeps_at = |phase: u32| {
@@ -72,10 +71,9 @@ fn compute_max_speed_and_change(robot: &Robot, id: GaitId) -> (f64, f64) {
             max_change = max_change.max((third[servo] - 2.0 * second[servo] + first[servo]).abs());
         }
     }
-    (
-        max_speed * STEP_SPEED_DEG_PER_S,
-        max_change * STEP_SPEED_DEG_PER_S,
-    )
+    let pace_change = max_speed * STEP_SPEED_DEG_PER_S / ACCELERATION_FRAMES;
+    let start_change = pace_change + robot.speed_limits().slew / 4.0;
+    start_change.max(max_change * STEP_SPEED_DEG_PER_S) + pace_change
 }
 
 /// Returns an upper bound of the number of frames that a command takes, which includes waking the servos, braking, the
@@ -156,17 +154,17 @@ impl<'a> CheckedRobot<'a> {
         assert!(answer.starts_with("ok"), "{}: {line}: {answer}", self.name);
     }
 
-    /// Moves to a pose. Returns false if the guard stops the robot on the path.
-    pub fn move_to(&mut self, pose: &Pose) -> bool {
-        self.expect_ok(&self.pose_command(pose));
+    /// Runs the frames of the last command. Returns false if the guard stops the robot on the path.
+    pub fn settle(&mut self) -> bool {
         self.run_frames(settling_frames(self.robot));
         self.motion().hazard().is_none()
     }
 
-    /// Returns the command for a pose. The command has hundredths of a degree, so the commanded pose may differ by one
-    /// step of 1/65536 turn.
-    pub fn pose_command(&self, pose: &Pose) -> String {
-        pose_command(chassis_angles_deg(self.robot.firmware(), pose))
+    /// Commands a pose. Returns false if the robot refuses the pose, because rounding to hundredths of a degree moves it
+    /// beyond a limit.
+    pub fn accepts_pose(&mut self, pose: &Pose) -> bool {
+        let answer = self.say(&pose_command(self.robot.firmware(), pose));
+        answer.starts_with("ok")
     }
 
     pub fn run_frames(&mut self, count: u32) {
@@ -192,29 +190,19 @@ impl<'a> CheckedRobot<'a> {
             );
         }
         let chassis_angles = chassis_angles_deg(robot.firmware(), &pose);
-        let is_safe = is_safe(robot.firmware(), &pose);
+        let is_safe = is_safe(robot.firmware(), &pose) && !is_clearly_unsafe(robot, &pose);
         assert!(is_safe, "{name}: {chassis_angles:?}");
-        let verdict = Verdict::compute(robot, chassis_angles);
-        assert_ne!(verdict, Verdict::Unsafe, "{name}: {chassis_angles:?}");
         self.check_pulses(&pose, pulses);
 
-        // The phase is 0 during a move, and only once per cycle in a gait.
-        let is_in_gait = motion.phase() != 0;
-        let speed_limit = if is_in_gait {
-            robot.speed_limits().gait_slew
-        } else {
-            robot.speed_limits().slew
+        // The phase is 0 during a move, and only once per cycle in a gait. The poses of a gait are rounded, which may
+        // add a step.
+        let (speed_limit, rounding) = match motion.phase() {
+            0 => (robot.speed_limits().slew, 0.0),
+            _ => (robot.speed_limits().gait_slew, STEP_SPEED_DEG_PER_S),
         };
-        // The poses of a gait are rounded, which may add a step.
         let largest_speed = f64::from(previous_pose.max_turn_to(&pose)) * STEP_SPEED_DEG_PER_S;
-        let allowed_speed = speed_limit
-            + if is_in_gait {
-                STEP_SPEED_DEG_PER_S
-            } else {
-                0.0
-            };
         assert!(
-            largest_speed <= allowed_speed + 1e-6,
+            largest_speed <= speed_limit + rounding + 1e-6,
             "{name}: {largest_speed} deg/s, limit {speed_limit}"
         );
 
@@ -242,33 +230,29 @@ impl<'a> CheckedRobot<'a> {
             if width.0 == 0 {
                 continue;
             }
-            let sweep_deg = f64::from(pose.0[index].0) * 360.0 / 65536.0;
-            let expected_cycles =
-                CYCLES_PER_US * (servo.neutral_us + servo.us_per_degree * sweep_deg);
+            let servo_name = format!("{}: A{}", self.name, index + 1);
+            let expected_cycles = CYCLES_PER_US * exact_width_us(servo, pose.0[index].0.into());
             let error_cycles = f64::from(width.0) - expected_cycles;
             // The rounding errors are half a cycle for the neutral pulse, half a cycle for the product, and one cycle
             // for the scale at a sweep of half a turn.
             assert!(
                 error_cycles.abs() <= 2.0,
-                "{}: A{} is {error_cycles} cycles off",
-                self.name,
-                index + 1
+                "{servo_name} is {error_cycles} cycles off"
             );
             let width_us = f64::from(width.0) / CYCLES_PER_US;
             let allowed_us = servo.min_us - 0.13..=servo.max_us + 0.13;
             assert!(
                 allowed_us.contains(&width_us),
-                "{}: A{} gets {width_us} us",
-                self.name,
-                index + 1
+                "{servo_name} gets {width_us} us"
             );
         }
     }
 }
 
-/// Returns the command for a pose with these angles in the chassis frame.
-pub fn pose_command(angles_deg: [f64; 4]) -> String {
-    let [a1, a2, a3, a4] = angles_deg;
+/// Returns the command for a pose. The command has hundredths of a degree, so the commanded pose may differ by one step
+/// of 1/65536 turn.
+fn pose_command(firmware: &CoreRobot, pose: &Pose) -> String {
+    let [a1, a2, a3, a4] = chassis_angles_deg(firmware, pose);
     format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
 }
 
@@ -277,7 +261,7 @@ pub fn random_command(rng: &mut Rng, robot: &Robot) -> String {
     let pose_line = |rng: &mut Rng, fraction: f64| {
         let firmware = robot.firmware();
         let pose = random_pose_within(rng, &firmware.calibration(), fraction);
-        pose_command(chassis_angles_deg(firmware, &pose))
+        pose_command(firmware, &pose)
     };
     match rng.u8(..20) {
         0..9 => robot.gaits()[rng.usize(..robot.gaits().len())].command(),
@@ -292,17 +276,45 @@ pub fn random_command(rng: &mut Rng, robot: &Robot) -> String {
 
 /// Returns the robot's activity after a command is complete; `None` for a command that selects no activity.
 pub fn final_activity(robot: &Robot, command: &str) -> Option<Activity> {
-    let mut gaits = robot.gaits().iter();
-    let gait_index = gaits.position(|gait| gait.command() == command);
-    let to_activity = |index: usize| {
-        GaitId::all(robot.gaits().len())
-            .nth(index)
-            .map(Activity::Gait)
-    };
     match command {
         "stop" => Some(Activity::Stop),
         "rest" => Some(Activity::Rest),
         _ if command.starts_with("pose") => Some(Activity::Pose),
-        _ => gait_index.and_then(to_activity),
+        _ => {
+            let mut gaits = robot.gaits().iter();
+            let gait = gaits.find(|gait| gait.command() == command)?;
+            Some(Activity::Gait(gait_id(gait)))
+        }
     }
+}
+
+/// Returns the id of a gait in the core.
+pub fn gait_id(gait: &CheckedGait) -> GaitId {
+    GaitId::at(gait.index() as u8)
+}
+
+/// Starts the gaits of every robot from `first_gait` on, and calls `check` once a gait runs. The path to a gait's first
+/// pose may contain an unsafe pose, where the guard stops the robot; this must be rare.
+pub fn check_running_gaits(
+    first_gait: usize,
+    mut check: impl FnMut(&NamedRobot, &CheckedGait, &mut CheckedRobot),
+) {
+    let (mut walked_count, mut blocked_count) = (0, 0);
+    for named in robots() {
+        for gait in &named.robot.gaits()[first_gait..] {
+            let mut checked_robot = CheckedRobot::power_on_and_stand(named);
+            checked_robot.expect_ok(&gait.command());
+            if checked_robot.settle() {
+                check(named, gait, &mut checked_robot);
+                walked_count += 1;
+            } else {
+                println!("{}: the path to {} is blocked", named.name, gait.name());
+                blocked_count += 1;
+            }
+        }
+    }
+    assert!(
+        walked_count > 10 * blocked_count,
+        "{walked_count} gaits walked, {blocked_count} blocked"
+    );
 }

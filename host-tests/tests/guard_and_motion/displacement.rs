@@ -3,9 +3,9 @@
 
 use lizard_core::numbers::pose::Pulses;
 use lizard_host_tests::{CYCLES_PER_US, NamedRobot, paper_robot, robots};
-use lizard_robot::{CheckedGait, Robot, Travel};
+use lizard_robot::{CheckedGait, Prediction, Robot, Travel};
 
-use crate::checked_robot::{CheckedRobot, settling_frames};
+use crate::checked_robot::CheckedRobot;
 
 /// Converts pulse widths in cycles of 62.5 ns to servo angles in the chassis frame, deg.
 fn pulses_to_angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
@@ -23,8 +23,7 @@ fn simulate_travel(named: &NamedRobot, gait: &CheckedGait, speed_percent: f64) -
     let mut checked_robot = CheckedRobot::power_on_and_stand(named);
     checked_robot.expect_ok(&format!("speed {speed_percent}"));
     checked_robot.expect_ok(&gait.command());
-    checked_robot.run_frames(settling_frames(robot));
-    if checked_robot.motion().hazard().is_some() {
+    if !checked_robot.settle() {
         return None;
     }
     let frames_per_cycle = gait.period() * 50.0 * 100.0 / speed_percent;
@@ -52,27 +51,21 @@ fn simulate_travel(named: &NamedRobot, gait: &CheckedGait, speed_percent: f64) -
     Some(robot.predict_travel(path))
 }
 
-/// Asserts that a displacement matches the expected values: forward within `tolerance_mm` or 1 %, the turn within 0.2
-/// deg. An expected value of `None` is not compared.
-fn assert_travel(
-    name: &str,
-    travel: Travel,
-    tolerance_mm: f64,
-    expected_forward_mm: Option<f64>,
-    expected_turn_deg: Option<f64>,
-) {
+/// Asserts that a displacement matches the prediction: forward within `tolerance_mm` or 1 %, the turn within 0.2 deg. A
+/// predicted value of `None` is not compared.
+fn assert_travel(name: &str, travel: Travel, tolerance_mm: f64, expected: &Prediction) {
     println!(
-        "{name}: {:+.2} mm, {:+.2} deg, expected {expected_forward_mm:?} {expected_turn_deg:?}",
-        travel.forward, travel.turn
+        "{name}: {:+.2} mm, {:+.2} deg, expected {:?} {:?}",
+        travel.forward, travel.turn, expected.forward, expected.turn
     );
-    if let Some(forward_mm) = expected_forward_mm {
+    if let Some(forward_mm) = expected.forward {
         let tolerance_mm = tolerance_mm.max(0.01 * forward_mm.abs());
         assert!(
             (travel.forward - forward_mm).abs() <= tolerance_mm,
             "{name}: expected {forward_mm} mm forward, got {travel:?}"
         );
     }
-    if let Some(turn_deg) = expected_turn_deg {
+    if let Some(turn_deg) = expected.turn {
         assert!(
             (travel.turn - turn_deg).abs() <= 0.2,
             "{name}: expected a turn of {turn_deg} deg, got {travel:?}"
@@ -99,7 +92,7 @@ fn the_pulses_of_every_gait_move_the_robot_like_the_gait_in_floating_point() {
                 let name = format!("{}: {} at {speed_percent} %", named.name, gait.name());
                 // In a robot without symmetry, a tenth of a degree may determine which foot sticks and which slips.
                 let tolerance_mm = 0.01 * named.robot.lizard().links.l10;
-                assert_travel(&name, travel, tolerance_mm, expected.forward, expected.turn);
+                assert_travel(&name, travel, tolerance_mm, &expected);
             }
         }
     }
@@ -120,7 +113,7 @@ fn the_pulses_of_the_papers_gaits_move_the_robot_as_predicted_within_0_3_mm() {
         for speed_percent in [100.0, 80.0, 50.0, 20.0] {
             let travel = simulate_travel(&named, gait, speed_percent)
                 .expect("the guard does not stop the robot");
-            assert_travel(gait.name(), travel, 0.3, expected.forward, expected.turn);
+            assert_travel(gait.name(), travel, 0.3, &expected);
         }
     }
     assert!(predicted_count >= 9, "only {predicted_count} predictions");

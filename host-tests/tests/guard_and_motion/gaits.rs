@@ -8,6 +8,7 @@ use lizard_kinematics::End;
 use lizard_robot::servo::{FORWARD_TURN_SIGN, LEG_NAMES, OPPOSITE_SERVO};
 use lizard_robot::{CheckedGait, Robot, STEPS_PER_DEGREE, Waveform};
 
+use crate::checked_robot::gait_id;
 use crate::reference::is_safe;
 
 /// Number of phases per cycle that the wave tables distinguish.
@@ -20,22 +21,33 @@ const TABLE_ERROR_DEG: f64 = 0.50;
 /// Returns every gait of every robot, in floating point and in fixed point.
 pub fn all_gaits() -> impl Iterator<Item = (&'static NamedRobot, &'static CheckedGait, Gait)> {
     robots().iter().flat_map(|named| {
-        let ids = GaitId::all(named.robot.gaits().len());
-        let gaits = named.robot.gaits().iter().zip(ids);
-        gaits.map(move |(gait, id)| (named, gait, named.robot.firmware().gait(id)))
+        let gaits = named.robot.gaits().iter();
+        gaits.map(move |gait| (named, gait, named.robot.firmware().gait(gait_id(gait))))
     })
 }
 
 /// Returns the gait with this name in fixed point; `None` if the robot has no such gait.
 fn core_gait(robot: &Robot, name: &str) -> Option<Gait> {
-    let index = robot.gait(name)?.index();
-    let id = GaitId::all(robot.gaits().len()).nth(index)?;
-    Some(robot.firmware().gait(id))
+    let gait = robot.gait(name)?;
+    Some(robot.firmware().gait(gait_id(gait)))
 }
 
 /// Returns all phases that the wave tables distinguish, in the core's units.
 fn all_phases() -> impl Iterator<Item = u32> {
     (0..PHASE_COUNT).map(|phase| phase << 8)
+}
+
+/// Computes the servo angles of a gait in fixed point, deg.
+fn core_angles(robot: &Robot, gait: &Gait, phase: u32) -> [f64; 4] {
+    let sweeps = gait.pose(robot.firmware().waves(), phase).0;
+    let sweeps_deg = sweeps.map(|sweep| f64::from(sweep.0) / STEPS_PER_DEGREE);
+    std::array::from_fn(|servo| robot.servos()[servo].neutral + sweeps_deg[servo])
+}
+
+/// Computes a leg's angle from neutral at a phase from 0 to 1 of a gait in fixed point, deg, positive forward.
+fn leg_angle_deg(robot: &Robot, gait: &Gait, servo: usize, phase: f64) -> f64 {
+    let pose = gait.pose(robot.firmware().waves(), (phase * f64::from(CYCLE)) as u32);
+    FORWARD_TURN_SIGN[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
 }
 
 /// Mirrors a pose: swaps left and right, and negates every sweep.
@@ -66,16 +78,15 @@ fn the_tables_of_every_gait_are_accurate_and_safe_at_every_phase() {
         };
         let gait_name = float_gait.name();
         for phase in all_phases().skip(first_phase).step_by(step) {
-            let pose = gait.pose(robot.firmware().waves(), phase);
-            let pose_with_low_bits = gait.pose(robot.firmware().waves(), phase | 0xff);
+            let [pose, pose_with_low_bits] =
+                [phase, phase | 0xff].map(|phase| gait.pose(robot.firmware().waves(), phase));
             assert_eq!(
                 pose, pose_with_low_bits,
-                "the low bits of the phase change the pose"
+                "{name}: {gait_name} at {phase}: the low bits of the phase change the pose"
             );
             let angles = float_gait.angles(f64::from(phase) / f64::from(CYCLE));
-            for (servo, angle) in angles.into_iter().enumerate() {
-                let sweep_deg = f64::from(pose.0[servo].0) / STEPS_PER_DEGREE;
-                let error_deg = (robot.servos()[servo].neutral + sweep_deg - angle).abs();
+            for (angle, core_angle) in angles.iter().zip(core_angles(robot, &gait, phase)) {
+                let error_deg = (core_angle - angle).abs();
                 max_error_deg = max_error_deg.max(error_deg);
                 assert!(
                     error_deg <= TABLE_ERROR_DEG,
@@ -101,27 +112,28 @@ fn a_wave_leg_pushes_back_for_its_duty_factor_and_returns_in_the_remaining_cycle
                 continue;
             }
             leg_count += 1;
-            // The leg's angle, positive forward, at a fraction of the cycle after the stroke starts.
-            let leg_angle_deg = |cycle_fraction: f64| {
-                let phase = (stride.start + cycle_fraction).rem_euclid(1.0) * f64::from(CYCLE);
-                let pose = gait.pose(robot.firmware().waves(), phase as u32);
-                FORWARD_TURN_SIGN[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
+            // The leg's angle at a fraction of the cycle after the stroke starts.
+            let stroke_angle_deg = |cycle_fraction: f64| {
+                let phase = (stride.start + cycle_fraction).rem_euclid(1.0);
+                leg_angle_deg(robot, &gait, servo, phase)
             };
             let leg_name = format!("{name}: {} {}", float_gait.name(), LEG_NAMES[servo]);
             // In a stroke, the leg moves back at constant speed, from an angle in front to the same angle behind. The
             // leg then returns.
-            let front_angle_deg = leg_angle_deg(0.0);
+            let front_angle_deg = stroke_angle_deg(0.0);
             let fraction = front_angle_deg / stride.amplitude;
             assert!(
                 (0.5..1.01).contains(&fraction),
                 "{leg_name} begins at {front_angle_deg} deg"
             );
-            let stroke_points = [(0.25, 0.5), (0.5, 0.0), (0.75, -0.5), (1.0, -1.0)];
-            let stroke_points =
-                stroke_points.map(|(duty_fraction, fraction)| (duty_fraction * duty, fraction));
-            let return_point = (0.5 * (1.0 + duty), 0.0);
-            for (cycle_fraction, fraction) in stroke_points.into_iter().chain([return_point]) {
-                let error_deg = leg_angle_deg(cycle_fraction) - fraction * front_angle_deg;
+            for (cycle_fraction, fraction) in [
+                (0.25 * duty, 0.5),
+                (0.5 * duty, 0.0),
+                (0.75 * duty, -0.5),
+                (duty, -1.0),
+                (0.5 * (1.0 + duty), 0.0),
+            ] {
+                let error_deg = stroke_angle_deg(cycle_fraction) - fraction * front_angle_deg;
                 assert!(
                     error_deg.abs() <= 2.0 * TABLE_ERROR_DEG,
                     "{leg_name}: {error_deg} deg at {cycle_fraction}"
@@ -136,23 +148,17 @@ fn a_wave_leg_pushes_back_for_its_duty_factor_and_returns_in_the_remaining_cycle
 fn the_legs_of_a_held_gait_return_in_the_gaits_order() {
     let mut gait_count = 0;
     for (NamedRobot { name, robot }, float_gait, gait) in all_gaits() {
-        let swing_indices = float_gait
-            .strides()
-            .each_ref()
-            .map(|stride| match stride.waveform {
-                Waveform::Held { swing_index } => Some(swing_index),
-                _ => None,
-            });
-        let [Some(a), Some(b), Some(c), Some(d)] = swing_indices else {
+        let strides = float_gait.strides();
+        let swing_indices = strides.iter().map(|stride| match stride.waveform {
+            Waveform::Held { swing_index } => Some(swing_index),
+            _ => None,
+        });
+        let Some(swing_indices) = swing_indices.collect::<Option<Vec<_>>>() else {
             continue;
         };
         gait_count += 1;
-        for (servo, swing_index) in [a, b, c, d].into_iter().enumerate() {
-            let amplitude = float_gait.strides()[servo].amplitude;
-            let leg_angle_deg = |phase: f64| {
-                let pose = gait.pose(robot.firmware().waves(), (phase * f64::from(CYCLE)) as u32);
-                FORWARD_TURN_SIGN[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
-            };
+        for (servo, swing_index) in swing_indices.into_iter().enumerate() {
+            let amplitude = strides[servo].amplitude;
             // The common stroke takes the first fifth of the cycle. Then the legs return, each in a fifth of the cycle.
             let return_start = 0.2 * (1.0 + swing_index as f64);
             for (phase, fraction) in [
@@ -161,7 +167,8 @@ fn the_legs_of_a_held_gait_return_in_the_gaits_order() {
                 (return_start + 0.2, 1.0),
                 (1.0 - 1e-6, 1.0),
             ] {
-                let error_deg = leg_angle_deg(phase.min(1.0 - 1e-6)) - fraction * amplitude;
+                let angle_deg = leg_angle_deg(robot, &gait, servo, phase.min(1.0 - 1e-6));
+                let error_deg = angle_deg - fraction * amplitude;
                 assert!(
                     error_deg.abs() <= TABLE_ERROR_DEG,
                     "{name}: {} at {phase}: {error_deg} deg",
@@ -184,36 +191,28 @@ fn a_path_moves_only_its_own_end_and_averages_to_its_centre() {
             ("look", End::Head, End::Tail),
             ("wag", End::Tail, End::Head),
         ] {
-            let Some(float_gait) = robot.gait(gait_name) else {
+            let Some(gait) = core_gait(robot, gait_name) else {
                 continue;
             };
-            let gait = core_gait(robot, gait_name).expect("the core has the gait");
             path_count += 1;
-            let end_point_at = |phase: u32, end: End| {
-                let sweeps = gait.pose(robot.firmware().waves(), phase << 16).0;
-                let angles: [f64; 4] = std::array::from_fn(|servo| {
-                    float_gait.neutral()[servo] + f64::from(sweeps[servo].0) / STEPS_PER_DEGREE
-                });
-                let solution = robot.lizard().solve(&angles.into());
-                solution.expect("the loops close").end(end).end_point
+            let solve = |pose| robot.lizard().solve(&pose).expect("the loops close");
+            let neutral = solve(robot.neutral_pose());
+            let displacement_at = |phase: u32, end: End| {
+                let solution = solve(core_angles(robot, &gait, phase << 16).into());
+                solution.end(end).end_point - neutral.end(end).end_point
             };
-            let neutral = robot.lizard().solve(&robot.neutral_pose());
-            let neutral = neutral.expect("the loops close");
-            let mut mean = [0.0; 2];
+            let mut sum = [0.0; 2];
             for phase in 0..256 {
-                let end_point = end_point_at(phase, end);
-                mean[0] += end_point.x / 256.0;
-                mean[1] += end_point.y / 256.0;
-                let displacement =
-                    end_point_at(phase, other_end) - neutral.end(other_end).end_point;
+                let displacement = displacement_at(phase, end);
+                sum[0] += displacement.x;
+                sum[1] += displacement.y;
                 assert!(
-                    displacement.length() < 1e-9,
+                    displacement_at(phase, other_end).length() < 1e-9,
                     "{name}: {gait_name} moves the {other_end}"
                 );
             }
-            let centre = neutral.end(end).end_point;
             let length_mm = robot.lizard().links.l10;
-            let error_mm = (mean[0] - centre.x).hypot(mean[1] - centre.y);
+            let error_mm = sum[0].hypot(sum[1]) / 256.0;
             assert!(
                 error_mm < 1e-3 * length_mm,
                 "{name}: {gait_name} is {error_mm} mm off its centre"
@@ -223,17 +222,22 @@ fn a_path_moves_only_its_own_end_and_averages_to_its_centre() {
     assert!(path_count > 10, "only {path_count} paths");
 }
 
+/// Returns two gaits in fixed point; `None` if the robot has only one of them or none.
+fn core_gaits(robot: &Robot, names: [&str; 2]) -> Option<[Gait; 2]> {
+    let [first, second] = names.map(|name| core_gait(robot, name));
+    Some([first?, second?])
+}
+
 #[test]
 fn a_reversed_gait_runs_backward_and_a_gait_reversed_twice_forward() {
     let mut pair_count = 0;
     for NamedRobot { name, robot } in robots() {
-        for (original_name, reversed_name, sign) in [
-            ("wander", "retreat", -1),
-            ("wander", "advance", 1),
-            ("walk", "back", -1),
+        for (names, sign) in [
+            (["wander", "retreat"], -1),
+            (["wander", "advance"], 1),
+            (["walk", "back"], -1),
         ] {
-            let gaits = [original_name, reversed_name].map(|gait| core_gait(robot, gait));
-            let [Some(original), Some(reversed)] = gaits else {
+            let Some([original, reversed]) = core_gaits(robot, names) else {
                 continue;
             };
             pair_count += 1;
@@ -253,13 +257,12 @@ fn a_reversed_gait_runs_backward_and_a_gait_reversed_twice_forward() {
 fn a_mirrored_gait_matches_its_original_with_left_and_right_swapped() {
     let mut pair_count = 0;
     for NamedRobot { name, robot } in robots() {
-        for (original_name, mirrored_name) in [
-            ("creep-along", "other-hand"),
-            ("left", "right"),
-            ("arc-left", "arc-right"),
+        for names in [
+            ["creep-along", "other-hand"],
+            ["left", "right"],
+            ["arc-left", "arc-right"],
         ] {
-            let gaits = [original_name, mirrored_name].map(|gait| core_gait(robot, gait));
-            let [Some(original), Some(mirrored)] = gaits else {
+            let Some([original, mirrored]) = core_gaits(robot, names) else {
                 continue;
             };
             pair_count += 1;
@@ -304,11 +307,8 @@ fn the_papers_symmetric_gaits_equal_their_mirror_half_a_cycle_later() {
 #[test]
 fn the_head_of_the_papers_look_follows_its_figure_of_eight() {
     let gait = core_gait(paper_robot(), "look").expect("the paper's robot has this gait");
-    let neutral_angles = paper_robot().servos().map(|servo| servo.neutral);
     for phase in (0..PHASE_COUNT).step_by(16) {
-        let sweeps = gait.pose(paper_robot().firmware().waves(), phase << 8).0;
-        let angles: [f64; 4] =
-            std::array::from_fn(|n| neutral_angles[n] + f64::from(sweeps[n].0) / STEPS_PER_DEGREE);
+        let angles = core_angles(paper_robot(), &gait, phase << 8);
         let solution = paper_robot().lizard().solve(&angles.into());
         let end_point = solution.expect("the loops close").head.end_point;
         let cycle_angle = std::f64::consts::TAU * f64::from(phase) / f64::from(PHASE_COUNT);

@@ -92,30 +92,24 @@ fn the_guards_limits_match_the_robot_file_rounded_to_the_safe_side() {
             (core_limits.type1, file_limits.type1),
             (core_limits.leg, file_limits.leg),
         ] {
+            let next_smaller_limit = Sine(core_limit.0 - 1);
             assert!(
-                to_sine(core_limit) >= file_limit - 1e-9,
-                "{name}: {core_limit:?} for {file_limit}"
-            );
-            assert!(
-                to_sine(Sine(core_limit.0 - 1)) < file_limit,
+                to_sine(core_limit) >= file_limit - 1e-9
+                    && to_sine(next_smaller_limit) < file_limit,
                 "{name}: {core_limit:?} for {file_limit}"
             );
         }
-        let sides = [
-            lizard_kinematics::Side::Left,
-            lizard_kinematics::Side::Right,
-        ];
-        for (side, kinematics_side) in Side::ALL.into_iter().zip(sides) {
+        for (side, kinematics_side) in Side::ALL.into_iter().zip(lizard_kinematics::Side::ALL) {
             let slider = robot.firmware().slider(side);
             let nominal_mm = robot.lizard().side(kinematics_side).nominal_length;
             let length_mm = |steps: u16| f64::from(steps) / steps_per_mm(slider.scale);
             let [min_mm, max_mm] =
                 [file_limits.stroke_min, file_limits.stroke_max].map(|stroke| nominal_mm + stroke);
             let (min, max) = (slider.stroke_min, slider.stroke_max);
-            assert!(length_mm(min) >= min_mm - 1e-9, "{name}: {side:?}");
-            assert!(length_mm(min - 1) < min_mm, "{name}: {side:?}");
-            assert!(length_mm(max) <= max_mm + 1e-9, "{name}: {side:?}");
-            assert!(length_mm(max + 1) > max_mm, "{name}: {side:?}");
+            let is_min_exact = length_mm(min) >= min_mm - 1e-9 && length_mm(min - 1) < min_mm;
+            assert!(is_min_exact, "{name}: {side:?}: shortest {min}");
+            let is_max_exact = length_mm(max) <= max_mm + 1e-9 && length_mm(max + 1) > max_mm;
+            assert!(is_max_exact, "{name}: {side:?}: longest {max}");
         }
     }
 }

@@ -2,18 +2,18 @@
 
 use fastrand::Rng;
 use lizard_core::guard::clearance::Clearance;
-use lizard_core::guard::hazard::Hazard;
+use lizard_core::guard::hazard::{Hazard, Margin};
 use lizard_core::numbers::integer_math::isqrt;
 use lizard_core::numbers::part::Side;
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::Sweep;
-use lizard_host_tests::{NamedRobot, rng, robots};
+use lizard_host_tests::NamedRobot;
 use lizard_proof::LENGTH_BAND_STEPS;
 use lizard_robot::Robot;
 
 use crate::reference::{
-    ErrorStatistics, MARGIN_FIVE_BARS, MARGINS, MIN_TYPE2_LIMIT, Reference, chassis_angles_deg,
-    find_unclosed_five_bar, is_safe, random_pose, random_pose_within, steps_per_mm, to_sine,
+    ErrorStatistics, MARGIN_FIVE_BARS, MARGINS, MIN_TYPE2_LIMIT, Reference, find_unclosed_five_bar,
+    is_safe, random_pose, random_pose_within, robots_with_rngs, steps_per_mm, to_sine,
 };
 
 /// Number of poses tested for each robot.
@@ -56,7 +56,7 @@ impl Findings {
                 self.hazard_counts[index] += 1;
             }
         }
-        let reference = match Reference::compute(robot, chassis_angles_deg(firmware, pose)) {
+        let reference = match Reference::compute(robot, pose) {
             Ok(reference) => reference,
             Err(error) => {
                 // Index 0 is the head's type-2 margin, and index 1 is the tail's. If the tail does not close, the guard
@@ -78,7 +78,7 @@ impl Findings {
                 "{reference:?}"
             );
         }
-        let min_distance = distances.into_iter().fold(f64::INFINITY, f64::min);
+        let min_distance = reference.min_distance();
         if hazard.is_none() != (min_distance >= 0.0) {
             self.disagreement_count += 1;
             self.max_disagreement = self.max_disagreement.max(min_distance.abs());
@@ -95,11 +95,9 @@ impl Findings {
             distances[hazard_index] <= 1.0,
             "{pose:?}: {hazard:?}, {reference:?}"
         );
-        let earlier_conditions_hold = distances[..hazard_index]
-            .iter()
-            .all(|distance| *distance >= -1.0);
+        let mut earlier_distances = distances[..hazard_index].iter();
         assert!(
-            earlier_conditions_hold,
+            earlier_distances.all(|distance| *distance >= -1.0),
             "{pose:?}: {hazard:?} is not the first violated condition, {reference:?}"
         );
     }
@@ -107,8 +105,7 @@ impl Findings {
     /// Compares the guard's margins and strokes with floating point, and records the errors.
     fn compare_values(&mut self, robot: &Robot, clearance: &Clearance, reference: &Reference) {
         for (index, (value, exact)) in clearance.margins.iter().zip(reference.margins).enumerate() {
-            let five_bar = MARGIN_FIVE_BARS.get(index).copied();
-            if let Some(five_bar) = five_bar
+            if let Some(&five_bar) = MARGIN_FIVE_BARS.get(index)
                 && (reference.margins[five_bar] < MIN_TYPE2_LIMIT
                     || reference.is_at_crossing(five_bar))
             {
@@ -177,13 +174,15 @@ impl Findings {
 /// Returns the index of the condition that a hazard names, among the ten margins and two strokes.
 fn condition_index(hazard: Hazard) -> usize {
     match hazard {
-        Hazard::Margin { margin, .. } => {
-            let index = MARGINS.iter().position(|known| *known == margin);
-            index.expect("the margin is one of the ten")
-        }
+        Hazard::Margin { margin, .. } => margin_index(margin),
         Hazard::Stroke { side, .. } => 10 + side as usize,
         Hazard::Travel(_) => unreachable!("a clearance ignores servo travel"),
     }
+}
+
+fn margin_index(margin: Margin) -> usize {
+    let index = MARGINS.iter().position(|known| *known == margin);
+    index.expect("the margin is one of the ten")
 }
 
 /// Returns random poses, some in the full travel, others closer to neutral and to the limits of the safe poses.
@@ -199,9 +198,9 @@ fn random_poses(rng: &mut Rng, robot: &Robot) -> impl Iterator<Item = Pose> {
 #[test]
 fn the_guards_margins_and_decisions_match_floating_point() {
     let mut hazard_counts = [0; 12];
-    for (robot_index, NamedRobot { name, robot }) in robots().iter().enumerate() {
+    for (NamedRobot { name, robot }, mut rng) in robots_with_rngs(100) {
         let mut findings = Findings::default();
-        for pose in random_poses(&mut rng(100 + robot_index as u64), robot) {
+        for pose in random_poses(&mut rng, robot) {
             findings.add_pose(robot, &pose);
         }
         findings.print_and_check(name);
@@ -215,8 +214,7 @@ fn the_guards_margins_and_decisions_match_floating_point() {
 
 #[test]
 fn the_guards_decision_changes_at_the_floating_point_limit() {
-    for (robot_index, NamedRobot { name, robot }) in robots().iter().enumerate() {
-        let mut rng = rng(200 + robot_index as u64);
+    for (NamedRobot { name, robot }, mut rng) in robots_with_rngs(200) {
         let firmware = robot.firmware();
         let mut findings = Findings::default();
         while findings.refused_count < PAIR_COUNT {
@@ -253,15 +251,13 @@ fn find_straddling_poses(robot: &Robot, unsafe_pose: Pose) -> [Pose; 2] {
 #[test]
 fn a_hazard_contains_the_value_that_violates_the_limit() {
     let (mut margin_count, mut stroke_count) = (0, 0);
-    for (robot_index, NamedRobot { name, robot }) in robots().iter().enumerate() {
-        for pose in random_poses(&mut rng(300 + robot_index as u64), robot).take(2000) {
+    for (NamedRobot { name, robot }, mut rng) in robots_with_rngs(300) {
+        for pose in random_poses(&mut rng, robot).take(2000) {
             let clearance = Clearance::measure(robot.firmware(), &pose);
             match clearance.first_hazard(robot.firmware()) {
                 None => {}
                 Some(Hazard::Margin { margin, value }) => {
-                    let index = MARGINS.iter().position(|known| *known == margin);
-                    let index = index.expect("the margin is one of the ten");
-                    assert_eq!(value, clearance.margins[index], "{name}");
+                    assert_eq!(value, clearance.margins[margin_index(margin)], "{name}");
                     margin_count += 1;
                 }
                 Some(Hazard::Travel(_)) => unreachable!("a clearance ignores servo travel"),
@@ -281,16 +277,14 @@ fn a_hazard_contains_the_value_that_violates_the_limit() {
 
 #[test]
 fn the_smallest_margin_matches_kinematics() {
-    for (robot_index, NamedRobot { name, robot }) in robots().iter().enumerate() {
+    for (NamedRobot { name, robot }, mut rng) in robots_with_rngs(400) {
         let mut safe_count = 0;
-        for pose in random_poses(&mut rng(400 + robot_index as u64), robot).take(10_000) {
+        for pose in random_poses(&mut rng, robot).take(10_000) {
             if !is_safe(robot.firmware(), &pose) {
                 continue;
             }
             safe_count += 1;
-            let chassis_angles = chassis_angles_deg(robot.firmware(), &pose);
-            let reference =
-                Reference::compute(robot, chassis_angles).expect("a safe pose closes all loops");
+            let reference = Reference::compute(robot, &pose).expect("a safe pose closes all loops");
             let smallest_margin = reference.margins.into_iter().fold(f64::INFINITY, f64::min);
             let error =
                 to_sine(Clearance::measure(robot.firmware(), &pose).min_margin()) - smallest_margin;
@@ -306,8 +300,7 @@ fn the_smallest_margin_matches_kinematics() {
 
 #[test]
 fn the_guards_arithmetic_never_overflows_even_beyond_the_servos_travel() {
-    for (robot_index, NamedRobot { robot, .. }) in robots().iter().enumerate() {
-        let mut rng = rng(500 + robot_index as u64);
+    for (NamedRobot { robot, .. }, mut rng) in robots_with_rngs(500) {
         let mut findings = Findings::default();
         for _ in 0..10_000 {
             findings.add_pose(robot, &Pose([(); 4].map(|()| Sweep(rng.i16(..)))));

@@ -2,22 +2,21 @@
 //! command must complete.
 
 use lizard_core::motion::Activity;
-use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::pose::Pose;
-use lizard_host_tests::{NamedRobot, rng, robots};
+use lizard_host_tests::NamedRobot;
 
 use crate::checked_robot::{
-    CheckedRobot, WAKING_FRAMES, final_activity, max_speed_change, random_command, settling_frames,
+    CheckedRobot, WAKING_FRAMES, final_activity, gait_id, max_speed_change, random_command,
+    settling_frames,
 };
-use crate::reference::random_safe_pose;
+use crate::reference::{random_safe_pose, robots_with_rngs};
 
 /// Number of random dialogues with each robot.
 const DIALOGUE_COUNT: u64 = 30;
 
 #[test]
 fn no_command_sequence_makes_a_frame_unsafe_too_fast_or_too_sudden() {
-    for (robot_index, named) in robots().iter().enumerate() {
-        let mut rng = rng(1000 + robot_index as u64);
+    for (named, mut rng) in robots_with_rngs(1000) {
         let (mut accepted_count, mut refused_count, mut largest_change) = (0, 0, 0.0f64);
         for _ in 0..DIALOGUE_COUNT {
             let mut checked_robot = CheckedRobot::power_on(named);
@@ -43,9 +42,8 @@ fn no_command_sequence_makes_a_frame_unsafe_too_fast_or_too_sudden() {
 
 #[test]
 fn every_command_completes_unless_the_guard_reports_a_hazard() {
-    for (robot_index, named) in robots().iter().enumerate() {
+    for (named, mut rng) in robots_with_rngs(2000) {
         let NamedRobot { name, robot } = named;
-        let mut rng = rng(2000 + robot_index as u64);
         let mut completed_count = 0;
         for _ in 0..3 * DIALOGUE_COUNT {
             let mut checked_robot = CheckedRobot::power_on(named);
@@ -57,15 +55,11 @@ fn every_command_completes_unless_the_guard_reports_a_hazard() {
             let last_command = random_command(&mut rng, robot);
             let answer = checked_robot.say(&last_command);
             checked_robot.run_frames(2 * settling_frames(robot));
+            let activity = checked_robot.motion().activity();
             if checked_robot.motion().hazard().is_some() {
-                assert_eq!(
-                    checked_robot.motion().activity(),
-                    Activity::Stop,
-                    "{name}: {last_command}"
-                );
+                assert_eq!(activity, Activity::Stop, "{name}: {last_command}");
                 continue;
             }
-            let activity = checked_robot.motion().activity();
             match final_activity(robot, &last_command) {
                 Some(expected) if answer.starts_with("ok") => {
                     assert_eq!(activity, expected, "{name}: {last_command}")
@@ -93,30 +87,22 @@ fn every_command_completes_unless_the_guard_reports_a_hazard() {
 
 #[test]
 fn a_refused_command_changes_nothing() {
-    for (robot_index, named) in robots().iter().enumerate() {
-        let mut rng = rng(3000 + robot_index as u64);
+    for (named, mut rng) in robots_with_rngs(3000) {
         let mut refused_count = 0;
         for _ in 0..DIALOGUE_COUNT {
-            let (mut tested_robot, mut reference_robot) =
-                (CheckedRobot::power_on(named), CheckedRobot::power_on(named));
+            let [mut tested_robot, mut reference_robot] = [named; 2].map(CheckedRobot::power_on);
             for _ in 0..8 {
                 let command = random_command(&mut rng, &named.robot);
                 let frame_count = rng.u32(..60);
-                let is_refused = tested_robot.say(&command).starts_with("err");
-                if is_refused {
+                if tested_robot.say(&command).starts_with("err") {
                     refused_count += 1;
                 } else {
                     reference_robot.say(&command);
                 }
                 for _ in 0..frame_count {
-                    let tested_pulses = tested_robot.run_frame();
-                    let expected_pulses = reference_robot.run_frame();
-                    let name = &named.name;
-                    assert_eq!(tested_pulses, expected_pulses, "{name}: {command}");
-                    assert_eq!(
-                        tested_robot.motion().activity(),
-                        reference_robot.motion().activity()
-                    );
+                    let [tested, expected] = [&mut tested_robot, &mut reference_robot]
+                        .map(|robot| (robot.run_frame(), robot.motion().activity()));
+                    assert_eq!(tested, expected, "{}: {command}", named.name);
                 }
             }
         }
@@ -126,17 +112,14 @@ fn a_refused_command_changes_nothing() {
 
 #[test]
 fn in_a_move_all_servos_turn_by_the_same_fraction_and_arrive_together() {
-    for (robot_index, named) in robots().iter().enumerate() {
-        let mut rng = rng(4000 + robot_index as u64);
+    for (named, mut rng) in robots_with_rngs(4000) {
+        let name = &named.name;
         let mut arrived_count = 0;
         for _ in 0..DIALOGUE_COUNT {
             let goal = random_safe_pose(&mut rng, named.robot.firmware());
             let mut checked_robot = CheckedRobot::power_on_and_stand(named);
-            if !checked_robot
-                .say(&checked_robot.pose_command(&goal))
-                .starts_with("ok")
-            {
-                continue; // rounding to hundredths of a degree moves the pose beyond a limit
+            if !checked_robot.accepts_pose(&goal) {
+                continue;
             }
             let mut poses = vec![checked_robot.pose()];
             while checked_robot.motion().activity() == Activity::Pose && poses.len() < 1000 {
@@ -150,34 +133,31 @@ fn in_a_move_all_servos_turn_by_the_same_fraction_and_arrive_together() {
                 continue;
             }
             let end_pose = poses[poses.len() - 1];
-            assert!(end_pose.max_turn_to(&goal) <= 1, "{}", named.name);
+            assert!(end_pose.max_turn_to(&goal) <= 1, "{name}");
             arrived_count += 1;
             let longest_turn = f64::from(Pose::NEUTRAL.max_turn_to(&end_pose));
             for pose in &poses {
                 let fraction = 1.0 - f64::from(pose.max_turn_to(&end_pose)) / longest_turn;
                 for (sweep, end_sweep) in pose.0.iter().zip(&end_pose.0) {
                     let error = f64::from(sweep.0) - fraction * f64::from(end_sweep.0);
-                    let name = &named.name;
                     assert!(error.abs() <= 4.0, "{name}: {pose:?} to {end_pose:?}");
                 }
             }
         }
-        assert!(arrived_count > 0, "{}: no move arrived", named.name);
+        assert!(arrived_count > 0, "{name}: no move arrived");
     }
 }
 
 #[test]
 fn servos_wake_one_by_one_in_the_pose_before_the_rest() {
-    for (robot_index, named) in robots().iter().enumerate() {
+    for (named, mut rng) in robots_with_rngs(5000) {
         let calibration = named.robot.firmware().calibration();
         let mut checked_robot = CheckedRobot::power_on(named);
-        for pose_before_rest in [
-            Pose::NEUTRAL,
-            random_safe_pose(&mut rng(5000 + robot_index as u64), named.robot.firmware()),
-        ] {
+        let safe_pose = random_safe_pose(&mut rng, named.robot.firmware());
+        for pose_before_rest in [Pose::NEUTRAL, safe_pose] {
             if pose_before_rest != Pose::NEUTRAL {
-                checked_robot.say(&checked_robot.pose_command(&pose_before_rest));
-                checked_robot.run_frames(settling_frames(&named.robot));
+                checked_robot.accepts_pose(&pose_before_rest);
+                checked_robot.settle();
                 checked_robot.expect_ok("rest");
                 checked_robot.run_frames(10);
                 checked_robot.expect_ok("stand");
@@ -197,20 +177,19 @@ fn servos_wake_one_by_one_in_the_pose_before_the_rest() {
             }
             // The servos wake a tenth of a second apart.
             assert_eq!(first_pulse_frames, [5, 10, 15, 20], "{}", named.name);
-            checked_robot.run_frames(settling_frames(&named.robot));
+            checked_robot.settle();
         }
     }
 }
 
 #[test]
 fn stop_freezes_and_rest_silences_the_next_frame_and_the_gait_can_restart() {
-    for (robot_index, named) in robots().iter().enumerate() {
-        let mut rng = rng(6000 + robot_index as u64);
+    for (named, mut rng) in robots_with_rngs(6000) {
         let robot = &named.robot;
         for _ in 0..DIALOGUE_COUNT {
             let mut checked_robot = CheckedRobot::power_on_and_stand(named);
-            let gait_index = rng.usize(..robot.gaits().len());
-            checked_robot.expect_ok(&robot.gaits()[gait_index].command());
+            let gait = &robot.gaits()[rng.usize(..robot.gaits().len())];
+            checked_robot.expect_ok(&gait.command());
             checked_robot.run_frames(rng.u32(..200));
             let last_gait_pose = checked_robot.pose();
             let command = ["stop", "rest"][rng.usize(..2)];
@@ -222,18 +201,14 @@ fn stop_freezes_and_rest_silences_the_next_frame_and_the_gait_can_restart() {
                 assert_eq!(checked_robot.motion().phase(), 0, "{}", named.name);
             }
             checked_robot.expect_ok("stand");
-            checked_robot.expect_ok(&robot.gaits()[gait_index].command());
+            checked_robot.expect_ok(&gait.command());
             let firmware = robot.firmware();
-            let id = GaitId::all(firmware.gait_count())
-                .nth(gait_index)
-                .expect("a gait has this index");
-            let first_pose = firmware.gait(id).pose(firmware.waves(), 0);
+            let first_pose = firmware.gait(gait_id(gait)).pose(firmware.waves(), 0);
             let has_begun = (0..2 * settling_frames(robot)).any(|_| {
                 checked_robot.run_frames(1);
                 checked_robot.motion().phase() == 0 && checked_robot.pose() == first_pose
             });
-            let gait_name = robot.gaits()[gait_index].name();
-            assert!(has_begun, "{}: {gait_name}", named.name);
+            assert!(has_begun, "{}: {}", named.name, gait.name());
         }
     }
 }

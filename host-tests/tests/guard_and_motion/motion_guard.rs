@@ -6,11 +6,11 @@ use lizard_core::guard::hazard::Hazard;
 use lizard_core::motion::Activity;
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::Sweep;
-use lizard_host_tests::{NamedRobot, rng, robots};
+use lizard_host_tests::NamedRobot;
 use lizard_robot::{CoreRobot, Robot};
 
-use crate::checked_robot::{CheckedRobot, settling_frames};
-use crate::reference::{Verdict, chassis_angles_deg, is_safe, random_pose_within};
+use crate::checked_robot::{CheckedRobot, check_running_gaits};
+use crate::reference::{is_clearly_unsafe, is_safe, random_pose, robots_with_rngs};
 
 /// Number of random pairs of poses that are tried for each robot. Some robots have no unsafe path between safe poses.
 const ATTEMPT_COUNT: usize = 6000;
@@ -23,7 +23,7 @@ fn find_pairs_with_unsafe_path(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
     let pose_near_limit = |rng: &mut Rng| {
         // Two cranks of a five-bar or a side are near a limit; the other two are neutral.
         let [first_servo, second_servo] = [[0, 1], [2, 3], [0, 3], [1, 2]][rng.usize(..4)];
-        let random_pose = random_pose_within(rng, &calibration, 1.0);
+        let random_pose = random_pose(rng, &calibration);
         let mut pose = Pose::NEUTRAL;
         (pose.0[first_servo], pose.0[second_servo]) =
             (random_pose.0[first_servo], random_pose.0[second_servo]);
@@ -36,16 +36,9 @@ fn find_pairs_with_unsafe_path(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
     let mut pairs = Vec::new();
     for _ in 0..ATTEMPT_COUNT {
         let (start_pose, end_pose) = (pose_near_limit(rng), pose_near_limit(rng));
-        let [start_sweeps, end_sweeps] =
-            [start_pose, end_pose].map(|pose| pose.0.map(|sweep| f64::from(sweep.0)));
         let is_unsafe_at = |step: u32| {
-            let fraction = f64::from(step) / 50.0;
-            let pose = Pose(std::array::from_fn(|servo| {
-                let sweep =
-                    start_sweeps[servo] + fraction * (end_sweeps[servo] - start_sweeps[servo]);
-                Sweep(sweep as i16)
-            }));
-            Verdict::compute(robot, chassis_angles_deg(robot.firmware(), &pose)) == Verdict::Unsafe
+            let sweeps = interpolate(&start_pose, &end_pose, f64::from(step) / 50.0);
+            is_clearly_unsafe(robot, &Pose(sweeps.map(|sweep| Sweep(sweep as i16))))
         };
         if (1..50).step_by(4).any(is_unsafe_at) {
             pairs.push([start_pose, end_pose]);
@@ -57,6 +50,14 @@ fn find_pairs_with_unsafe_path(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
     pairs
 }
 
+/// Returns the sweeps at a fraction of the straight path between two poses, in steps of the core.
+fn interpolate(start_pose: &Pose, end_pose: &Pose, fraction: f64) -> [f64; 4] {
+    std::array::from_fn(|servo| {
+        let [start, end] = [start_pose, end_pose].map(|pose| f64::from(pose.0[servo].0));
+        start + fraction * (end - start)
+    })
+}
+
 /// Returns a pose with every sweep multiplied by `fraction_256` / 256.
 fn scale_pose(pose: &Pose, fraction_256: i32) -> Pose {
     let scale = |sweep: Sweep| Sweep((i32::from(sweep.0) * fraction_256 / 256) as i16);
@@ -66,30 +67,17 @@ fn scale_pose(pose: &Pose, fraction_256: i32) -> Pose {
 #[test]
 fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
     let mut held_count = 0;
-    for (robot_index, named) in robots().iter().enumerate() {
+    for (named, mut rng) in robots_with_rngs(7000) {
         let NamedRobot { name, robot } = named;
-        for [start_pose, end_pose] in
-            find_pairs_with_unsafe_path(&mut rng(7000 + robot_index as u64), robot)
-        {
+        for [start_pose, end_pose] in find_pairs_with_unsafe_path(&mut rng, robot) {
             let mut checked_robot = CheckedRobot::power_on_and_stand(named);
-            // Rounding to hundredths of a degree may move the pose beyond a limit.
-            if !checked_robot
-                .say(&checked_robot.pose_command(&start_pose))
-                .starts_with("ok")
-            {
-                continue;
-            }
-            checked_robot.run_frames(settling_frames(robot));
-            if checked_robot.motion().hazard().is_some()
-                || !checked_robot
-                    .say(&checked_robot.pose_command(&end_pose))
-                    .starts_with("ok")
-            {
+            let is_at_start = checked_robot.accepts_pose(&start_pose) && checked_robot.settle();
+            if !is_at_start || !checked_robot.accepts_pose(&end_pose) {
                 continue;
             }
             let start_pose = checked_robot.pose();
-            // `run_frames` checks that every frame is safe.
-            checked_robot.run_frames(settling_frames(robot));
+            // `settle` checks that every frame is safe.
+            checked_robot.settle();
             // A fast move may cross a narrow unsafe region between two frames.
             let Some(hazard) = checked_robot.motion().hazard() else {
                 assert!(checked_robot.pose().max_turn_to(&end_pose) <= 1, "{name}");
@@ -111,18 +99,14 @@ fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
             checked_robot.run_frames(20);
             assert_eq!(checked_robot.pose(), held_pose, "{name}");
             let new_lines = checked_robot.take_output_lines();
-            assert!(
-                new_lines.is_empty(),
-                "{name}: the hazard was reported again"
-            );
+            let is_quiet = new_lines.is_empty();
+            assert!(is_quiet, "{name}: the hazard was reported again");
             let status = checked_robot.say("status");
             assert!(status.contains(" guard=held "), "{name}");
             // The robot can move back, unless the guard stops it again.
-            assert!(
-                checked_robot.move_to(&start_pose) || checked_robot.motion().hazard().is_some(),
-                "{name}"
-            );
-            if checked_robot.motion().hazard().is_none() {
+            let is_accepted = checked_robot.accepts_pose(&start_pose);
+            assert!(is_accepted, "{name}: {start_pose:?}");
+            if checked_robot.settle() {
                 let status = checked_robot.say("status");
                 assert!(status.contains(" guard=clear "), "{name}");
             }
@@ -146,11 +130,8 @@ fn violates_condition_ahead(
         _ => false,
     };
     (0..=4000).any(|step| {
-        let fraction = f64::from(step) / 4000.0;
-        let pose = Pose(std::array::from_fn(|servo| {
-            let [start, end] = [&start_pose, &end_pose].map(|pose| f64::from(pose.0[servo].0));
-            Sweep((start + fraction * (end - start)).round() as i16)
-        }));
+        let sweeps = interpolate(&start_pose, &end_pose, f64::from(step) / 4000.0);
+        let pose = Pose(sweeps.map(|sweep| Sweep(sweep.round() as i16)));
         let is_ahead = held_pose.max_turn_to(&start_pose) <= pose.max_turn_to(&start_pose) + 1;
         is_ahead
             && Clearance::measure(firmware, &pose)
@@ -161,27 +142,9 @@ fn violates_condition_ahead(
 
 #[test]
 fn a_running_gait_is_never_stopped_by_the_guard() {
-    let (mut walked_count, mut blocked_count) = (0, 0);
-    for named in robots() {
-        for gait in named.robot.gaits() {
-            let mut checked_robot = CheckedRobot::power_on_and_stand(named);
-            checked_robot.expect_ok(&gait.command());
-            // The path to the gait's first pose may contain an unsafe pose.
-            checked_robot.run_frames(settling_frames(&named.robot));
-            if checked_robot.motion().hazard().is_some() {
-                println!("{}: the path to {} is blocked", named.name, gait.name());
-                blocked_count += 1;
-                continue;
-            }
-            walked_count += 1;
-            checked_robot.run_frames((2.0 * gait.period() * 50.0) as u32);
-            let hazard = checked_robot.motion().hazard();
-            let (robot_name, gait_name) = (&named.name, gait.name());
-            assert_eq!(hazard, None, "{robot_name}: {gait_name}");
-        }
-    }
-    assert!(
-        walked_count > 10 * blocked_count,
-        "{walked_count} gaits walked, {blocked_count} blocked"
-    );
+    check_running_gaits(0, |NamedRobot { name, .. }, gait, checked_robot| {
+        checked_robot.run_frames((2.0 * gait.period() * 50.0) as u32);
+        let hazard = checked_robot.motion().hazard();
+        assert_eq!(hazard, None, "{name}: {}", gait.name());
+    });
 }

@@ -27,10 +27,9 @@ struct PrintedConditions {
 
 impl PrintedConditions {
     fn compute(pose: &Pose) -> Self {
-        let solution = paper_robot()
-            .lizard()
-            .solve(&chassis_angles_deg(paper_robot().firmware(), pose).into())
-            .expect("the loops close");
+        let angles = chassis_angles_deg(paper_robot().firmware(), pose);
+        let solution = paper_robot().lizard().solve(&angles.into());
+        let solution = solution.expect("the loops close");
         let abs_sine = |degrees: f64| degrees.to_radians().sin().abs();
         Self {
             head: abs_sine(solution.theta2() + solution.theta3()),
@@ -83,11 +82,9 @@ fn the_conditions_printed_in_the_paper_would_stop_every_gait() {
     let firmware = paper_robot().firmware();
     for id in GaitId::all(firmware.gait_count()) {
         let gait = firmware.gait(id);
-        let stopped_count = (0..256u32)
-            .filter(|n| {
-                PrintedConditions::compute(&gait.pose(firmware.waves(), n << 16)).are_violated()
-            })
-            .count();
+        let poses = (0..256).map(|n| gait.pose(firmware.waves(), n << 16));
+        let is_stopped = |pose: &Pose| PrintedConditions::compute(pose).are_violated();
+        let stopped_count = poses.filter(is_stopped).count();
         assert!(stopped_count > 64, "{id:?}: {stopped_count} of 256");
     }
 }

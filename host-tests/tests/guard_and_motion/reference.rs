@@ -10,9 +10,10 @@ use lizard_core::numbers::calibration::Calibration;
 use lizard_core::numbers::part::{End, Servo, Side};
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::{Angle, Scale, Sine, Sweep};
-use lizard_kinematics::{Check, InfeasiblePose, Limits, Mechanism};
+use lizard_host_tests::{NamedRobot, rng, robots};
+use lizard_kinematics::{Check, InfeasiblePose, Limits, Mechanism, Solution};
 use lizard_proof::LENGTH_BAND_STEPS;
-use lizard_robot::{CoreRobot, Robot};
+use lizard_robot::{CoreRobot, Robot, STEPS_PER_DEGREE};
 
 /// The largest allowed error of a margin due to the guard's arithmetic, as a sine. Rounding of lengths adds to it.
 const MARGIN_TOLERANCE: f64 = 0.002;
@@ -52,6 +53,11 @@ pub fn steps_per_mm(scale: Scale) -> f64 {
     f64::from(1u32 << scale.bits)
 }
 
+/// Computes the exact pulse width of a servo at a sweep of the core, us.
+pub fn exact_width_us(servo: &lizard_robot::servo::Servo, sweep: i32) -> f64 {
+    servo.neutral_us + servo.us_per_degree * f64::from(sweep) / STEPS_PER_DEGREE
+}
+
 /// Returns the exact angles of the core's pose in the chassis frame, deg.
 pub fn chassis_angles_deg(firmware: &CoreRobot, pose: &Pose) -> [f64; 4] {
     pose.angles(&firmware.neutral_angles()).map(to_degrees)
@@ -82,23 +88,14 @@ pub struct Tolerances {
     k2_mm: [f64; 2],
 }
 
-/// The verdict on a pose, which is undetermined if a value is within its tolerance of a limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// Every value is within its limits by more than the tolerance.
-    Safe,
-    /// A value is beyond a limit by more than the tolerance, or a loop does not close.
-    Unsafe,
-    /// Too close to a limit to decide.
-    Undetermined,
-}
-
 impl Reference {
-    /// Computes all conditions for servo angles in the chassis frame, deg.
+    /// Computes all conditions for a pose.
     ///
     /// # Errors
     /// Fails if a five-bar or a side does not close.
-    pub fn compute(robot: &Robot, angles: [f64; 4]) -> Result<Self, InfeasiblePose> {
+    pub fn compute(robot: &Robot, pose: &Pose) -> Result<Self, InfeasiblePose> {
+        let firmware = robot.firmware();
+        let angles = chassis_angles_deg(firmware, pose);
         let solution = robot.lizard().solve(&angles.into())?;
         let k2_values = [solution.head.gap.x, solution.tail.gap.x];
         let mut margins = [0.0; 10];
@@ -108,22 +105,12 @@ impl Reference {
         for (type2, k2) in margins.iter_mut().zip(k2_values) {
             *type2 = type2.copysign(k2);
         }
-        let firmware = robot.firmware();
         let length_tolerance_mm = |scale| LENGTH_BAND_STEPS / steps_per_mm(scale);
-        let k2_tolerances_mm =
-            End::ALL.map(|end| length_tolerance_mm(firmware.link_lengths(end).scale()));
+        let k2_mm = End::ALL.map(|end| length_tolerance_mm(firmware.link_lengths(end).scale()));
         let [
             [head_type2, a1_type1, a2_type1],
             [tail_type2, a4_type1, a3_type1],
-        ] = [(End::Head, &solution.head), (End::Tail, &solution.tail)].map(|(end, five_bar)| {
-            five_bar_tolerances(
-                robot,
-                end,
-                five_bar.gap.length(),
-                five_bar.type2.abs(),
-                k2_tolerances_mm[end as usize],
-            )
-        });
+        ] = End::ALL.map(|end| five_bar_tolerances(robot, &solution, end, k2_mm[end as usize]));
         let mut violated = [false; 12];
         for violation in robot.limits().violations(&solution) {
             violated[condition_index(violation.check)] = true;
@@ -148,7 +135,7 @@ impl Reference {
                     MARGIN_TOLERANCE,
                 ],
                 strokes_mm: Side::ALL.map(|side| length_tolerance_mm(firmware.slider(side).scale)),
-                k2_mm: k2_tolerances_mm,
+                k2_mm,
             },
         })
     }
@@ -172,6 +159,12 @@ impl Reference {
         })
     }
 
+    /// Returns the smallest of the distances from the limits.
+    pub fn min_distance(&self) -> f64 {
+        let distances = self.distances_from_limits().into_iter();
+        distances.fold(f64::INFINITY, f64::min)
+    }
+
     /// True if K2 of a five-bar is so close to 0 that rounding may change its sign in the guard. The index is 0 for the
     /// head and 1 for the tail.
     pub fn is_at_crossing(&self, index: usize) -> bool {
@@ -181,36 +174,24 @@ impl Reference {
 
 /// Returns the index of a condition among the twelve: ten margins, two strokes.
 fn condition_index(check: Check) -> usize {
-    let find_index = |checks: &[Check]| checks.iter().position(|known| *known == check);
-    let kinds: [(usize, &[Check]); 5] = [
-        (0, &Check::TYPE2),
-        (2, &Check::TYPE1),
-        (6, &Check::LEG),
-        (10, &Check::STROKE),
-        (0, &Check::UNCROSSED),
-    ];
-    let mut indices = kinds
-        .into_iter()
-        .filter_map(|(first_index, checks)| Some(first_index + find_index(checks)?));
-    indices.next().expect("every condition is of a known kind")
+    // `Check` has the twelve conditions in this order, then the two conditions that the cranks are not crossed.
+    match check {
+        Check::UncrossedHead => Check::Type2Head as usize,
+        Check::UncrossedTail => Check::Type2Tail as usize,
+        _ => check as usize,
+    }
 }
 
 /// Returns the tolerances of a five-bar's margins: type-2, left type-1 and right type-1. Each is the sum of the error
-/// of the guard's arithmetic and the effect of an error of `step_mm` in the distance `tip_distance_mm` between the
-/// crank tips. Near a singularity, where `type2` is small, a length error turns the couplers by a large angle.
-fn five_bar_tolerances(
-    robot: &Robot,
-    end: End,
-    tip_distance_mm: f64,
-    type2: f64,
-    step_mm: f64,
-) -> [f64; 3] {
-    let five_bar = robot.lizard().end(match end {
-        End::Head => lizard_kinematics::End::Head,
-        End::Tail => lizard_kinematics::End::Tail,
-    });
+/// of the guard's arithmetic and the effect of an error of `step_mm` in the distance between the crank tips. Near a
+/// singularity, where the type-2 margin is small, a length error turns the couplers by a large angle.
+fn five_bar_tolerances(robot: &Robot, solution: &Solution, end: End, step_mm: f64) -> [f64; 3] {
+    let end = lizard_kinematics::End::ALL[end as usize];
+    let five_bar = robot.lizard().end(end);
     let (left_coupler, right_coupler) =
         (five_bar.left_coupler_length, five_bar.right_coupler_length);
+    let tip_distance_mm = solution.end(end).gap.length();
+    let type2 = solution.end(end).type2.abs();
     let cosine = (1.0 - type2 * type2).max(0.0).sqrt();
     [
         cosine * tip_distance_mm / (left_coupler * right_coupler),
@@ -220,29 +201,18 @@ fn five_bar_tolerances(
     .map(|turn_per_mm| MARGIN_TOLERANCE + step_mm * turn_per_mm / type2)
 }
 
-impl Verdict {
-    /// Computes the verdict for servo angles in the chassis frame, deg.
-    pub fn compute(robot: &Robot, angles: [f64; 4]) -> Self {
-        let Ok(reference) = Reference::compute(robot, angles) else {
-            return Self::Unsafe;
-        };
-        let distances = reference.distances_from_limits().into_iter();
-        let min_distance = distances.fold(f64::INFINITY, f64::min);
-        if min_distance > 1.0 {
-            Self::Safe
-        } else if min_distance < -1.0 {
-            Self::Unsafe
-        } else {
-            Self::Undetermined
-        }
+/// True if a value is beyond a limit by more than the tolerance, or if a loop does not close.
+pub fn is_clearly_unsafe(robot: &Robot, pose: &Pose) -> bool {
+    match Reference::compute(robot, pose) {
+        Ok(reference) => reference.min_distance() < -1.0,
+        Err(_) => true,
     }
 }
 
 /// Returns the index of the five-bar that does not close; `None` if a side does not close.
 pub fn find_unclosed_five_bar(error: &InfeasiblePose) -> Option<usize> {
     match error.mechanism {
-        Mechanism::End(lizard_kinematics::End::Head) => Some(0),
-        Mechanism::End(lizard_kinematics::End::Tail) => Some(1),
+        Mechanism::End(end) => Some(end as usize),
         Mechanism::Side(_) => None,
     }
 }
@@ -268,6 +238,12 @@ impl fmt::Display for ErrorStatistics {
         let rms = (self.sum_of_squares / self.count.max(1.0)).sqrt();
         write!(f, "max {:.5} rms {rms:.5}", self.max_abs)
     }
+}
+
+/// Returns every robot with its own random numbers, which start at a stream for each test.
+pub fn robots_with_rngs(first_stream: u64) -> impl Iterator<Item = (&'static NamedRobot, Rng)> {
+    let numbered_robots = (first_stream..).zip(robots());
+    numbered_robots.map(|(stream, named)| (named, rng(stream)))
 }
 
 /// Returns a random pose anywhere in the servos' travel.

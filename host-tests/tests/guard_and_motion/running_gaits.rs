@@ -1,10 +1,9 @@
 //! Tests of running gaits: the duration of their cycles at full and other speeds, and the poses of their frames.
 
-use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::units::CYCLE;
 use lizard_host_tests::{NamedRobot, rng, robots};
 
-use crate::checked_robot::{CheckedRobot, settling_frames};
+use crate::checked_robot::{CheckedRobot, check_running_gaits, gait_id};
 use crate::gaits::{FULL_PACE, all_gaits};
 
 #[test]
@@ -31,49 +30,33 @@ fn every_speed_sets_its_percentage_of_a_gaits_full_pace() {
     const FRAME_COUNT: u32 = 1000;
     let mut rng = rng(8000);
     let mut worst_error = 0.0f64;
-    let (mut walked_count, mut blocked_count) = (0, 0);
-    for named in robots() {
-        for float_gait in named.robot.gaits().iter().skip(1) {
-            let mut checked_robot = CheckedRobot::power_on_and_stand(named);
-            checked_robot.expect_ok(&float_gait.command());
-            checked_robot.run_frames(settling_frames(&named.robot));
-            if checked_robot.motion().hazard().is_some() {
-                blocked_count += 1; // the path to the gait's first pose is unsafe
-                continue;
+    check_running_gaits(1, |named, float_gait, checked_robot| {
+        for percent in [10, 100, rng.u8(11..100)] {
+            checked_robot.expect_ok(&format!("speed {percent}"));
+            checked_robot.run_frames(10);
+            let mut advance = 0i64;
+            for _ in 0..FRAME_COUNT {
+                let previous_phase = checked_robot.motion().phase();
+                checked_robot.run_frames(1);
+                // A frame advances by less than half a cycle, so the wrapped difference has the correct sign.
+                let phase_step = checked_robot.motion().phase().wrapping_sub(previous_phase) << 8;
+                advance += i64::from(phase_step as i32 >> 8);
             }
-            walked_count += 1;
-            for percent in [10, 100, rng.u8(11..100)] {
-                checked_robot.expect_ok(&format!("speed {percent}"));
-                checked_robot.run_frames(10);
-                let mut advance = 0i64;
-                for _ in 0..FRAME_COUNT {
-                    let previous_phase = checked_robot.motion().phase();
-                    checked_robot.run_frames(1);
-                    // A frame advances by less than half a cycle, so the wrapped difference has the correct sign.
-                    let phase_step =
-                        checked_robot.motion().phase().wrapping_sub(previous_phase) << 8;
-                    advance += i64::from(phase_step as i32 >> 8);
-                }
-                let cycles = advance as f64 / f64::from(CYCLE);
-                let sign = if float_gait.is_reversed() { -1.0 } else { 1.0 };
-                let fraction = sign * f64::from(percent) / 100.0;
-                let error =
-                    cycles / (fraction * f64::from(FRAME_COUNT) / 50.0 / float_gait.period()) - 1.0;
-                worst_error = worst_error.max(error.abs());
-                assert!(
-                    error.abs() <= 0.005,
-                    "{} {} at {percent} %: relative error {error}",
-                    named.name,
-                    float_gait.name()
-                );
-            }
+            let cycles = advance as f64 / f64::from(CYCLE);
+            let sign = if float_gait.is_reversed() { -1.0 } else { 1.0 };
+            let fraction = sign * f64::from(percent) / 100.0;
+            let error =
+                cycles / (fraction * f64::from(FRAME_COUNT) / 50.0 / float_gait.period()) - 1.0;
+            worst_error = worst_error.max(error.abs());
+            assert!(
+                error.abs() <= 0.005,
+                "{} {} at {percent} %: relative error {error}",
+                named.name,
+                float_gait.name()
+            );
         }
-    }
+    });
     println!("the pace is off by at most {:.2} %", 100.0 * worst_error);
-    assert!(
-        walked_count > 10 * blocked_count,
-        "{walked_count} gaits walked, {blocked_count} blocked"
-    );
 }
 
 #[test]
@@ -98,30 +81,14 @@ fn a_gait_that_is_commanded_again_continues() {
 
 #[test]
 fn every_frame_of_a_running_gait_is_a_pose_of_the_gait() {
-    let (mut walked_count, mut blocked_count) = (0, 0);
-    for named in robots() {
-        let gaits = named.robot.gaits();
-        for (gait, id) in gaits.iter().zip(GaitId::all(gaits.len())) {
-            let mut checked_robot = CheckedRobot::power_on_and_stand(named);
-            checked_robot.expect_ok(&gait.command());
-            let firmware = named.robot.firmware();
-            let core_gait = firmware.gait(id);
-            checked_robot.run_frames(settling_frames(&named.robot));
-            if checked_robot.motion().hazard().is_some() {
-                blocked_count += 1; // the path to the gait's first pose is unsafe
-                continue;
-            }
-            walked_count += 1;
-            for _ in 0..100 {
-                checked_robot.run_frames(1);
-                let phase = checked_robot.motion().phase();
-                let expected = core_gait.pose(firmware.waves(), phase);
-                assert_eq!(checked_robot.pose(), expected, "{}", named.name);
-            }
+    check_running_gaits(0, |NamedRobot { name, robot }, gait, checked_robot| {
+        let firmware = robot.firmware();
+        let core_gait = firmware.gait(gait_id(gait));
+        for _ in 0..100 {
+            checked_robot.run_frames(1);
+            let phase = checked_robot.motion().phase();
+            let expected = core_gait.pose(firmware.waves(), phase);
+            assert_eq!(checked_robot.pose(), expected, "{name}");
         }
-    }
-    assert!(
-        walked_count > 10 * blocked_count,
-        "{walked_count} gaits walked, {blocked_count} blocked"
-    );
+    });
 }

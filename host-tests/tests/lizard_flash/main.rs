@@ -18,7 +18,7 @@ use lizard_core::memory::record::{MEMORY_BYTES, RECORD_BYTES};
 use lizard_core::numbers::section::START_ADDRESS;
 use lizard_host::firmware::format_robot_label;
 use lizard_host::sim::frame::servo_pins;
-use lizard_host_tests::{assert_contains, avr_gcc, decode_text, robot, root};
+use lizard_host_tests::{assert_contains, avr_gcc, decode_text, load_named_robot, robot};
 use lizard_robot::Robot;
 use lizard_time_limit::TIME_LIMIT;
 use shell::Shell;
@@ -46,8 +46,7 @@ static SENDER_IMAGE: LazyLock<Image> = LazyLock::new(|| {
 /// Returns the flash contents below the boot loader for `lizard`'s own firmware with this robot.
 fn firmware_with(robot: &Robot) -> Vec<u8> {
     let image = lizard_host::firmware::built_in_image(robot);
-    let uno = Uno::with_image(image, Fidelity::DataSheet);
-    uno.flash()[..BOOT_LOADER_START].to_vec()
+    Uno::with_image(image, Fidelity::DataSheet).flash()[..BOOT_LOADER_START].to_vec()
 }
 
 /// Returns the flash contents below the boot loader for the firmware with the robot under test.
@@ -61,16 +60,30 @@ fn load_another_robot() -> (&'static str, Robot) {
         "large" => "unequal",
         _ => "large",
     };
-    let file = root().join("robots").join(name).with_extension("toml");
-    (name, Robot::load(&file).expect("the file is valid"))
+    (name, load_named_robot(name))
+}
+
+/// Starts `lizard`.
+fn start_lizard(arguments: &[&str]) -> Shell {
+    let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
+    Shell::start(&lizard, arguments, &[])
 }
 
 /// Starts `lizard flash` on the board's port.
 fn start_lizard_flash(board: &ConnectedBoard, arguments: &[&str]) -> Shell {
-    let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
-    let port = board.port_path();
-    let arguments = [&["flash", port.as_str()], arguments].concat();
-    Shell::start(&lizard, &arguments, &[])
+    start_lizard(&[&["flash", board.port_path().as_str()], arguments].concat())
+}
+
+/// Runs `lizard flash` on the board's port until it exits, and returns its entire output.
+fn run_lizard_flash(board: &mut ConnectedBoard, arguments: &[&str]) -> String {
+    let shell = start_lizard_flash(board, arguments);
+    board.run_until_exit(&shell)
+}
+
+/// Checks that flash below the address `end` is the firmware with this robot.
+#[track_caller]
+fn assert_flashed_with_robot(board: &ConnectedBoard, robot: &Robot, end: usize) {
+    assert!(board.uno.flash()[..end] == firmware_with(robot)[..end]);
 }
 
 /// Checks that an upload did not change the EEPROM, except for the rest pose. The firmware itself may write the rest
@@ -103,6 +116,12 @@ fn expect_success(board: &mut ConnectedBoard, shell: &Shell) -> String {
     screen
 }
 
+/// Uploads the firmware to a board, as [`expect_success`] describes.
+fn flash_successfully(board: &mut ConnectedBoard) -> String {
+    let shell = start_lizard_flash(board, &[]);
+    expect_success(board, &shell)
+}
+
 /// Starts an upload to a board, and waits until the first pages of the new code are written.
 fn begin_upload(board: &mut ConnectedBoard) -> Shell {
     let shell = start_lizard_flash(board, &[]);
@@ -123,8 +142,7 @@ fn prepare_board_with_firmware() -> ConnectedBoard {
 #[test]
 fn a_blank_board_is_flashed_and_its_robot_reports_the_firmware() {
     let mut board = ConnectedBoard::with_new_uno();
-    let shell = start_lizard_flash(&board, &[]);
-    let screen = expect_success(&mut board, &shell);
+    let screen = flash_successfully(&mut board);
     assert!(screen.contains("the board has no program\n"), "{screen}");
     // The erased flash between code and robot is not written.
     assert!(screen.contains(" bytes written and verified, "), "{screen}");
@@ -149,8 +167,7 @@ fn a_board_whose_program_sends_bytes_forever_is_flashed_and_keeps_its_eeprom() {
 #[test]
 fn a_board_that_has_the_image_stays_unchanged() {
     let mut board = prepare_board_with_firmware();
-    let shell = start_lizard_flash(&board, &[]);
-    let screen = expect_success(&mut board, &shell);
+    let screen = flash_successfully(&mut board);
     let robot_text = format!("robot {} already", format_robot_label(robot().firmware()));
     assert!(screen.contains(&robot_text), "{screen}");
     assert!(screen.contains("nothing to write: all"), "{screen}");
@@ -161,13 +178,10 @@ fn only_a_page_that_differs_is_written() {
     let mut board = prepare_board_with_firmware();
     let old_byte = board.uno.flash()[0x2005];
     board.uno.write_flash(0x2005, &[old_byte ^ 0x10]);
-    let shell = start_lizard_flash(&board, &[]);
-    let screen = expect_success(&mut board, &shell);
-    let board_text = "the board has another build of lizard";
-    assert!(screen.contains(board_text), "{screen}");
+    let screen = flash_successfully(&mut board);
+    assert_contains(&screen, "the board has another build of lizard");
     // Two pages are written: the page that differs, and the page at address 0, where the chip starts.
-    let bytes_text = "\n256 bytes written and verified";
-    assert!(screen.contains(bytes_text), "{screen}");
+    assert_contains(&screen, "\n256 bytes written and verified");
 }
 
 #[test]
@@ -192,8 +206,7 @@ fn a_board_unplugged_during_an_upload_does_nothing_until_it_is_flashed_again() {
     // These seconds were simulated faster than real time. A port requires real time, so the board gets a new port.
     replug(&mut board);
 
-    let shell = start_lizard_flash(&board, &[]);
-    expect_success(&mut board, &shell);
+    flash_successfully(&mut board);
 }
 
 #[test]
@@ -235,8 +248,7 @@ fn a_board_whose_boot_loader_does_not_answer_gets_an_explanation() {
     board
         .uno
         .write_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
-    let shell = start_lizard_flash(&board, &[]);
-    let screen = board.run_until_exit(&shell);
+    let screen = run_lizard_flash(&mut board, &[]);
     assert_contains(&screen, "no boot loader answers. Is it a UNO or a Nano?");
     let mut bytes = board.uno.flash()[..BOOT_LOADER_START].iter();
     assert!(bytes.all(|&byte| byte == 0xff));

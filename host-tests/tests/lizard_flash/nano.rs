@@ -14,37 +14,26 @@ fn create_old_nano() -> ConnectedBoard {
 fn an_old_nano_is_found_at_its_own_baud_rate_flashed_and_started() {
     let mut board = create_old_nano();
     let flash_before = board.uno.flash().to_vec();
-    let shell = start_lizard_flash(&board, &["--robot", "large"]);
-    let screen = board.run_until_exit(&shell);
+    let screen = run_lizard_flash(&mut board, &["--robot", "large"]);
     assert_contains(&screen, "no answer at 115200 baud; retrying at 57600 baud");
     assert!(screen.contains("the board has no program\n"), "{screen}");
     assert!(screen.contains("\n# lizard "), "{screen}");
     assert!(screen.contains(" robot large "), "{screen}");
-    let large = Robot::load(root().join("robots/large.toml")).expect("the file is valid");
-    assert!(
-        board.uno.flash()[..NANO_BOOT_LOADER_START]
-            == firmware_with(&large)[..NANO_BOOT_LOADER_START]
-    );
+    assert_flashed_with_robot(&board, &load_named_robot("large"), NANO_BOOT_LOADER_START);
     assert!(board.uno.flash()[NANO_BOOT_LOADER_START..] == flash_before[NANO_BOOT_LOADER_START..]);
 
     // The next upload replaces only the robot. This boot loader never resets the chip.
-    let shell = start_lizard_flash(&board, &["--only-robot", "--robot", "paper"]);
-    let screen = board.run_until_exit(&shell);
+    let screen = run_lizard_flash(&mut board, &["--only-robot", "--robot", "paper"]);
     assert!(screen.contains("robot large "), "{screen}");
     assert!(screen.contains("\n# lizard "), "{screen}");
-    let paper = Robot::load(root().join("robots/paper.toml")).expect("the file is valid");
-    assert!(
-        board.uno.flash()[..NANO_BOOT_LOADER_START]
-            == firmware_with(&paper)[..NANO_BOOT_LOADER_START]
-    );
+    assert_flashed_with_robot(&board, &load_named_robot("paper"), NANO_BOOT_LOADER_START);
 }
 
 #[test]
 fn a_robot_too_large_for_an_old_nano_is_refused_and_its_boot_loader_kept() {
     let mut board = create_old_nano();
     let flash_before = board.uno.flash().to_vec();
-    let shell = start_lizard_flash(&board, &["--robot", "own-gaits"]);
-    let screen = board.run_until_exit(&shell);
+    let screen = run_lizard_flash(&mut board, &["--robot", "own-gaits"]);
     assert_contains(&screen, "a Nano has only 30720 before its boot section");
     assert!(board.uno.flash() == flash_before);
 }

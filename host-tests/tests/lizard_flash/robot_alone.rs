@@ -11,6 +11,13 @@ fn send_line(board: &mut ConnectedBoard, line: &str, ms: u64) -> String {
     decode_text(&board.uno.take_transmitted())
 }
 
+/// Checks that flash up to the end of the robot's section is the firmware with this robot.
+#[track_caller]
+fn assert_robot_written(board: &ConnectedBoard, robot: &Robot) {
+    let end = usize::from(START_ADDRESS) + robot.section().len();
+    assert_flashed_with_robot(board, robot, end);
+}
+
 #[test]
 fn only_the_robot_is_written_to_a_board_with_the_firmware_and_its_trims_are_kept() {
     let (name, other_robot) = load_another_robot();
@@ -34,12 +41,10 @@ fn only_the_robot_is_written_to_a_board_with_the_firmware_and_its_trims_are_kept
         banner.is_some_and(|line| line.contains(&format!(" robot {other_label}"))),
         "{screen}"
     );
-    let robot_end = usize::from(START_ADDRESS) + other_robot.section().len();
-    assert!(board.uno.flash()[..robot_end] == firmware_with(&other_robot)[..robot_end]);
+    assert_robot_written(&board, &other_robot);
 
     // Then the first robot is written again, with `--json`. Its trims are unchanged.
-    let shell = start_lizard_flash(&board, &["--only-robot", "--json"]);
-    let screen = board.run_until_exit(&shell);
+    let screen = run_lizard_flash(&mut board, &["--only-robot", "--json"]);
     let pieces = first_label.split_once(' ');
     let (first_name, first_hash) = pieces.expect("the label has a name and a hash");
     let version = env!("CARGO_PKG_VERSION");
@@ -66,8 +71,7 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     // Waits until the third page of the robot is written.
     let third_page = usize::from(START_ADDRESS) + 0x100;
     let is_in_time = board.run_until(|uno| {
-        let is_written = uno.flash()[third_page..third_page + 0x80] == section[0x100..0x180];
-        is_written || shell.has_ended()
+        uno.flash()[third_page..third_page + 0x80] == section[0x100..0x180] || shell.has_ended()
     });
     assert!(is_in_time && !shell.has_ended(), "{}", shell.screen());
     replug(&mut board);
@@ -89,13 +93,11 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     assert!(!has_pulse, "{edges:?}");
     replug(&mut board);
 
-    let shell = start_lizard_flash(&board, &arguments);
-    let screen = board.run_until_exit(&shell);
+    let screen = run_lizard_flash(&mut board, &arguments);
     assert!(screen.contains(" without a robot\n"), "{screen}");
     let other_label = format_robot_label(other_robot.firmware());
     assert_contains(&screen, &format!(" robot {other_label}"));
-    let robot_end = usize::from(START_ADDRESS) + section.len();
-    assert!(board.uno.flash()[..robot_end] == firmware_with(&other_robot)[..robot_end]);
+    assert_robot_written(&board, &other_robot);
 }
 
 #[test]
@@ -104,8 +106,7 @@ fn no_robot_is_written_to_a_board_with_another_program() {
     // A sketch replaces the firmware. avrdude writes only the sketch's pages, so the robot's section remains in flash.
     board.uno.write_flash(0, &SENDER_IMAGE.flash());
     let flash_before = board.uno.flash().to_vec();
-    let shell = start_lizard_flash(&board, &["--only-robot"]);
-    let screen = board.run_until_exit(&shell);
+    let screen = run_lizard_flash(&mut board, &["--only-robot"]);
     assert!(screen.contains("the board has another program"), "{screen}");
     assert!(screen.contains("Nothing was written"), "{screen}");
     assert!(board.uno.flash() == flash_before);
@@ -117,8 +118,7 @@ fn avrdude_writes_the_robot_file_made_by_lizard_flash_image() {
     let mut board = prepare_board_with_firmware();
     let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let hex_path = folder.path().join("robot.hex").display().to_string();
-    let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
-    let arguments = [
+    let shell = start_lizard(&[
         "flash",
         "image",
         "--only-robot",
@@ -126,8 +126,7 @@ fn avrdude_writes_the_robot_file_made_by_lizard_flash_image() {
         name,
         "--output",
         &hex_path,
-    ];
-    let shell = Shell::start(&lizard, &arguments, &[]);
+    ]);
     board.run_until_exit(&shell);
     let write_option = format!("flash:w:{hex_path}:i");
     let port = board.port_path();
@@ -136,6 +135,5 @@ fn avrdude_writes_the_robot_file_made_by_lizard_flash_image() {
     let shell = Shell::start("avrdude", &arguments, &[]);
     let screen = board.run_until_exit(&shell);
     assert!(screen.contains("bytes of flash verified"), "{screen}");
-    let robot_end = usize::from(START_ADDRESS) + other_robot.section().len();
-    assert!(board.uno.flash()[..robot_end] == firmware_with(&other_robot)[..robot_end]);
+    assert_robot_written(&board, &other_robot);
 }

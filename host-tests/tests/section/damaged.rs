@@ -27,6 +27,9 @@ const FORMAT_BYTES: std::ops::Range<usize> = 4..6;
 /// The byte range of the length in a header.
 const LENGTH_BYTES: std::ops::Range<usize> = 6..8;
 
+/// The lines that [`check_motion`] sends besides gaits, poses and `center`.
+const OTHER_LINES: [&str; 6] = ["status", "help", "cal", "save", "rest", "stand"];
+
 fn find_damage(section: &[u8]) -> Option<SectionError> {
     Robot::open(Region::new(section)).err()
 }
@@ -85,8 +88,7 @@ fn a_section_cut_at_any_byte_is_refused() {
             assert!(damage.is_some(), "{} cut at {length}", named.name);
             // The missing bytes may be the same as erased flash.
             if section[length..].iter().any(|byte| *byte != 0xff) {
-                let cut_section = build_partly_written_flash(cut_section);
-                let damage = find_damage(&cut_section);
+                let damage = find_damage(&build_partly_written_flash(cut_section));
                 assert!(damage.is_some(), "{} erased at {length}", named.name);
             }
         }
@@ -183,11 +185,9 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
             }
         }
     }
-    println!("{refused_count} refused, {accepted_count} accepted");
-    assert!(
-        refused_count > 10_000 && accepted_count > 5_000,
-        "{refused_count} refused, {accepted_count} accepted"
-    );
+    let counts = format!("{refused_count} refused, {accepted_count} accepted");
+    println!("{counts}");
+    assert!(refused_count > 10_000 && accepted_count > 5_000, "{counts}");
 }
 
 /// The section's gaits exceed the travel that the section declares, and its limits accept any margin and stroke.
@@ -242,12 +242,8 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
                 let needed_travel = &mut content.needed_travel[servo];
                 (needed_travel.min, needed_travel.max) = (Sweep(min), Sweep(max));
                 let damage = find_damage(&content.section_bytes());
-                let name = &named.name;
-                assert_eq!(
-                    damage,
-                    Some(SectionError::Impossible),
-                    "{name} {servo} {min} {max}"
-                );
+                let case = format!("{} {servo} {min} {max}", named.name);
+                assert_eq!(damage, Some(SectionError::Impossible), "{case}");
             }
         }
     }
@@ -292,8 +288,7 @@ fn check_motion(rng: &mut Rng, section: &[u8]) {
         let line = match rng.u8(..8) {
             0..4 => {
                 let id = *rng.choice(&gaits).expect("every robot has `stand`");
-                let name: Vec<u8> = robot.gait_name(id).collect();
-                name.into_iter().map(char::from).collect()
+                robot.gait_name(id).map(char::from).collect()
             }
             4 | 5 => {
                 let angles = robot.neutral_angles().map(|angle| {
@@ -303,10 +298,7 @@ fn check_motion(rng: &mut Rng, section: &[u8]) {
                 format!("pose {}", angles.join(" "))
             }
             6 => "center".to_string(),
-            _ => (*rng
-                .choice(&["status", "help", "cal", "save", "rest", "stand"])
-                .expect("the list is not empty"))
-            .to_string(),
+            _ => OTHER_LINES[rng.usize(..OTHER_LINES.len())].to_string(),
         };
         running_robot.board.send(line.as_bytes());
         running_robot.board.send(b"\r");
@@ -328,11 +320,9 @@ fn run_frames(running_robot: &mut RunningRobot, count: u32) {
 
 /// Checks that a pulse is within the servo's travel and between 500 and 2500 us. A width of 0 means no pulse.
 fn check_pulse(pulse: PulseWidth, servo: &Calibration) {
-    let end_pulses = [
-        servo.clamped_width(servo.travel_min),
-        servo.clamped_width(servo.travel_max),
-    ];
-    let travel_range = end_pulses[0].min(end_pulses[1])..=end_pulses[0].max(end_pulses[1]);
+    let ends = [servo.travel_min, servo.travel_max];
+    let [first_end, second_end] = ends.map(|sweep| servo.clamped_width(sweep));
+    let travel_range = first_end.min(second_end)..=first_end.max(second_end);
     let allowed_range = 500 * CYCLES_PER_US - 1..=2500 * CYCLES_PER_US + 1;
     assert!(
         pulse.0 == 0 || travel_range.contains(&pulse.0) && allowed_range.contains(&pulse.0),

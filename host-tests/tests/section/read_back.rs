@@ -9,20 +9,20 @@ use lizard_core::numbers::part::{End, Servo, Side};
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::robot::Robot;
 use lizard_core::numbers::section::{Header, MapHeader, Numbers, Region, SectionPart};
+use lizard_core::numbers::supplies::Thresholds;
 use lizard_core::numbers::units::{Scale, Sine, Sweep};
-use lizard_host_tests::{CYCLES_PER_US, rng};
+use lizard_host_tests::{CYCLES_PER_US, NamedRobot, rng};
 use lizard_robot::{Robot as FileRobot, STEPS_PER_DEGREE};
 
 use crate::sections;
 
 /// Runs a test for every robot. The test gets the robot's name, the robot that the core reads, the robot from its file,
 /// and the flash.
-fn for_each_robot(test: impl Fn(&str, &Robot, &FileRobot, Region<'_>)) {
-    for (named, section) in sections() {
+fn for_each_robot(mut test: impl FnMut(&'static str, &Robot, &'static FileRobot, Region<'static>)) {
+    for (NamedRobot { name, robot }, section) in sections() {
         let flash = Region::new(section);
-        let robot =
-            Robot::open(flash).unwrap_or_else(|reason| panic!("{}: {reason:?}", named.name));
-        test(&named.name, &robot, &named.robot, flash);
+        let core_robot = Robot::open(flash).unwrap_or_else(|reason| panic!("{name}: {reason:?}"));
+        test(name, &core_robot, robot, flash);
     }
 }
 
@@ -52,31 +52,21 @@ fn the_name_the_pins_and_the_supplies_are_read_back() {
         assert_eq!(robot.rail_pin(), rail_pin, "{name}");
         assert_eq!(robot.slow_pace(), supplies.slow_pace_percent, "{name}");
         let stored = robot.supplies();
-        let is_close = |mv: u16, volts: f64| (f64::from(mv) - 1000.0 * volts).abs() <= 0.501;
-        let are_close = |thresholds: lizard_core::numbers::supplies::Thresholds,
-                         volts: [f64; 3]| {
-            is_close(thresholds.slow_mv, volts[0])
-                && is_close(thresholds.stop_mv, volts[1])
-                && is_close(thresholds.rest_mv, volts[2])
-        };
-        assert!(
-            is_close(stored.reference_mv, supplies.reference_volts),
-            "{name} {stored:?}"
-        );
-        assert!(
-            are_close(stored.board, supplies.board_thresholds),
-            "{name} {stored:?}"
-        );
-        match supplies.rail {
-            Some(rail) => {
-                let rail_reference = supplies.reference_volts * rail.divider_ratio;
-                assert!(
-                    is_close(stored.rail_reference_mv, rail_reference),
-                    "{name} {stored:?}"
-                );
-                assert!(are_close(stored.rail, rail.thresholds), "{name} {stored:?}");
-            }
-            None => assert_eq!(stored.rail_reference_mv, 0, "{name}"),
+        let levels_mv = |stored: Thresholds| [stored.slow_mv, stored.stop_mv, stored.rest_mv];
+        let mut voltages = vec![(stored.reference_mv, supplies.reference_volts)];
+        let board_mv = levels_mv(stored.board).into_iter();
+        voltages.extend(board_mv.zip(supplies.board_thresholds));
+        if let Some(rail) = supplies.rail {
+            let rail_reference = supplies.reference_volts * rail.divider_ratio;
+            voltages.push((stored.rail_reference_mv, rail_reference));
+            let rail_mv = levels_mv(stored.rail).into_iter();
+            voltages.extend(rail_mv.zip(rail.thresholds));
+        } else {
+            assert_eq!(stored.rail_reference_mv, 0, "{name}");
+        }
+        for (mv, volts) in voltages {
+            let error_mv = f64::from(mv) - 1000.0 * volts;
+            assert!(error_mv.abs() <= 0.501, "{name} {stored:?}");
         }
     });
 }
@@ -235,6 +225,7 @@ fn the_curves_are_read_back_at_every_point_of_their_tables() {
             // The squared distances between the crank tips with stretched and with folded couplers, in units of four
             // squared steps.
             let [stretched_sq, folded_sq] = [(a + b) * (a + b) / 4.0, (a - b) * (a - b) / 4.0];
+            let min_rise_sq = 2.0 * stretched_sq * folded_sq / (stretched_sq + folded_sq);
             let kinds = [
                 CurveKind::Rise,
                 CurveKind::Stretched,
@@ -258,28 +249,23 @@ fn the_curves_are_read_back_at_every_point_of_their_tables() {
                     };
                     let argument = argument_at(max_argument as u32, index) as f64;
                     let distance_sq = match kind {
-                        CurveKind::Rise => argument
-                            .max(2.0 * stretched_sq * folded_sq / (stretched_sq + folded_sq)),
+                        CurveKind::Rise => argument.max(min_rise_sq),
                         CurveKind::Skew => argument,
                         CurveKind::Stretched => stretched_sq - argument,
                         CurveKind::Folded => folded_sq + argument,
                     };
+                    let beyond_folded_sq = distance_sq - folded_sq;
+                    let below_stretched_sq = stretched_sq - distance_sq;
                     let exact = match kind {
                         CurveKind::Skew => (a * a - b * b).abs() / 4.0 / distance_sq,
-                        _ if distance_sq <= folded_sq || distance_sq >= stretched_sq => 0.0,
-                        _ => {
-                            ((stretched_sq - distance_sq) * (distance_sq - folded_sq)).sqrt()
-                                / distance_sq
-                        }
+                        _ if beyond_folded_sq <= 0.0 || below_stretched_sq <= 0.0 => 0.0,
+                        _ => (below_stretched_sq * beyond_folded_sq).sqrt() / distance_sq,
                     };
                     let exact = (1024.0 * exact).min(32_767.0);
                     // The entry has a rounding error of one unit. Where the curve is steep, the rounding error of
                     // `distance_sq` matters, too.
-                    let tolerance = 1.01
-                        + exact * 2.0
-                            / (distance_sq - folded_sq)
-                                .min(stretched_sq - distance_sq)
-                                .max(1.0);
+                    let room_sq = beyond_folded_sq.min(below_stretched_sq).max(1.0);
+                    let tolerance = 1.01 + exact * 2.0 / room_sq;
                     let error = f64::from(entry) - exact;
                     assert!(
                         error.abs() <= tolerance,
@@ -374,17 +360,14 @@ fn accepts_map_conditions(robot: &Robot, map_index: usize, pose: &Pose) -> bool 
 fn the_exact_guard_accepts_the_maps_conditions_in_every_certified_cell() {
     let mut checked_count = 0;
     let mut robots_with_maps_count = 0;
-    for (named, section) in sections() {
-        let flash = Region::new(section);
-        let robot = Robot::open(flash).expect("the section is valid");
+    for_each_robot(|name, robot, _, flash| {
         let calibration = robot.calibration();
         robots_with_maps_count +=
             usize::from(read_numbers(flash).parts[SectionPart::Rows as usize].count > 0);
         for (map_index, map) in read_maps(flash).into_iter().enumerate() {
             let servos = MAP_SERVOS[map_index];
             for [row, columns] in map {
-                let cell_starts = (*columns.start()..*columns.end()).step_by(128);
-                for cell_start in cell_starts {
+                for cell_start in (*columns.start()..*columns.end()).step_by(128) {
                     for (row_offset, column_offset) in
                         [(0, 0), (255, 0), (0, 127), (255, 127), (128, 64)]
                     {
@@ -397,9 +380,8 @@ fn the_exact_guard_accepts_the_maps_conditions_in_every_certified_cell() {
                             pose.0[servo] = sweep;
                         }
                         if is_within_travel {
-                            let name = &named.name;
                             assert!(
-                                accepts_map_conditions(&robot, map_index, &pose),
+                                accepts_map_conditions(robot, map_index, &pose),
                                 "{name}: map {map_index} {pose:?}"
                             );
                             checked_count += 1;
@@ -408,7 +390,7 @@ fn the_exact_guard_accepts_the_maps_conditions_in_every_certified_cell() {
                 }
             }
         }
-    }
+    });
     println!("{checked_count} poses in cells, {robots_with_maps_count} robots with maps");
     assert!(
         robots_with_maps_count >= 5 && checked_count > 100_000,
@@ -419,9 +401,7 @@ fn the_exact_guard_accepts_the_maps_conditions_in_every_certified_cell() {
 #[test]
 fn a_pose_in_all_four_maps_is_certified_and_accepted_by_the_guard() {
     let rng = &mut rng(153);
-    for (named, section) in sections() {
-        let flash = Region::new(section);
-        let robot = Robot::open(flash).expect("the section is valid");
+    for_each_robot(|name, robot, _, flash| {
         let maps = read_maps(flash);
         let mut certified_count = 0;
         for index in 0..20_000 {
@@ -439,22 +419,20 @@ fn a_pose_in_all_four_maps_is_certified_and_accepted_by_the_guard() {
                 map.iter()
                     .any(|[rows, columns]| rows.contains(&row) && columns.contains(&column))
             });
-            let is_certified = robot.is_certified(&pose);
-            assert_eq!(is_certified, is_in_maps, "{} {pose:?}", named.name);
+            assert_eq!(robot.is_certified(&pose), is_in_maps, "{name} {pose:?}");
             if is_in_maps {
                 certified_count += 1;
-                let hazard = Clearance::measure(&robot, &pose).first_hazard(&robot);
-                assert_eq!(hazard, None, "{} {pose:?}", named.name);
+                let hazard = Clearance::measure(robot, &pose).first_hazard(robot);
+                assert_eq!(hazard, None, "{name} {pose:?}");
             }
         }
         let has_maps = read_numbers(flash).parts[SectionPart::Rows as usize].count > 0;
         assert_eq!(
             certified_count > 100,
             has_maps,
-            "{}: {certified_count} certified poses",
-            named.name
+            "{name}: {certified_count} certified poses"
         );
-    }
+    });
 }
 
 #[test]
@@ -462,14 +440,10 @@ fn different_robots_have_different_hashes_independent_of_the_maps() {
     let mut hashes = std::collections::HashMap::new();
     for_each_robot(|name, robot, file_robot, _| {
         assert_eq!(robot.hash(), file_robot.firmware().hash(), "{name}");
-    });
-    for (named, section) in sections() {
-        let robot = Robot::open(Region::new(section)).expect("the section is valid");
-        let previous = hashes.insert(robot.hash(), (named, named.robot.content()));
+        let content = file_robot.content();
         // robot.toml may be equal to a file in robots/.
-        if let Some((previous, content)) = previous {
-            let (first, second) = (&previous.name, &named.name);
-            assert_eq!(content, named.robot.content(), "{first} {second}");
+        if let Some((first, first_content)) = hashes.insert(robot.hash(), (name, content)) {
+            assert_eq!(first_content, content, "{first} {name}");
         }
-    }
+    });
 }

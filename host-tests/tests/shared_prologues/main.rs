@@ -3,7 +3,9 @@
 
 use std::fs;
 
-use lizard_host_tests::avr_gcc::{assemble, compile_to_object, link, ram_address, shrink};
+use lizard_host_tests::avr_gcc::{
+    assemble, compile_to_object, link, ram_address, run_to_end, shrink,
+};
 use lizard_host_tests::root;
 use lizard_linker::ROUTINES;
 use lizard_linker::frame::LOWEST_REGISTERS;
@@ -82,15 +84,9 @@ int main(void) {
 "#;
 
 /// Runs the program to its end. Returns its results and its stack depth.
-fn run_to_end(image: &Image) -> (Vec<u8>, u16) {
-    let [done_address, results_address] = ["done", "results"].map(|name| ram_address(image, name));
-    let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
-    uno.run_ms(200);
-    assert_eq!(
-        uno.peek(done_address),
-        1,
-        "the program did not finish, or the timer interrupted it too rarely"
-    );
+fn run_stress_program(image: &Image) -> (Vec<u8>, u16) {
+    let results_address = ram_address(image, "results");
+    let uno = run_to_end(image, 200);
     let addresses = results_address..results_address + 160;
     let bytes = addresses.map(|address| uno.peek(address)).collect();
     (bytes, uno.stack_used())
@@ -106,8 +102,8 @@ fn a_program_computes_the_same_results_with_shared_prologues_and_epilogues() {
     let plain_image = link("", &object).expect("the object links");
     let shrunk_image = link(ROUTINES, &shrunk).expect("the rewritten object links");
     assert!(shrunk_image.symbol("__frame_save_2").is_some());
-    let (plain_results, plain_depth) = run_to_end(&plain_image);
-    let (shrunk_results, shrunk_depth) = run_to_end(&shrunk_image);
+    let (plain_results, plain_depth) = run_stress_program(&plain_image);
+    let (shrunk_results, shrunk_depth) = run_stress_program(&shrunk_image);
     assert_eq!(plain_results, shrunk_results);
     assert!(plain_results.iter().any(|byte| *byte != 0));
     // Ten stack frames of `recurse` exist at the same time, and each may save one more register.
@@ -140,10 +136,8 @@ int main(void) { result = return_last(1, 2, 3, 4, 5, 0x1234); done = 1; for (;;)
 fn an_argument_on_the_stack_is_read_where_the_caller_put_it() {
     let object = compile_to_object(STACK_ARGUMENT_PROGRAM).expect("the program compiles");
     let image = link(ROUTINES, &shrink(&object).0).expect("the object links");
-    let [done_address, result_address] = ["done", "result"].map(|name| ram_address(&image, name));
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    uno.run_ms(10);
-    assert_eq!(uno.peek(done_address), 1);
+    let result_address = ram_address(&image, "result");
+    let uno = run_to_end(&image, 10);
     let result_bytes = [uno.peek(result_address), uno.peek(result_address + 1)];
     assert_eq!(result_bytes, [0x34, 0x12]);
 }
@@ -173,10 +167,8 @@ fn generate_frame_program(first_register: u8, locals_bytes: u8) -> String {
             .map(|register| format!("ldi r24, {} $ mov r{register}, r24\n", register + increment))
             .collect()
     };
-    let saved_registers: Vec<u8> = CALL_SAVED_REGISTERS
-        .into_iter()
-        .filter(|register| *register >= first_register)
-        .collect();
+    let mut saved_registers = CALL_SAVED_REGISTERS.to_vec();
+    saved_registers.retain(|register| *register >= first_register);
     let store_code: String = CALL_SAVED_REGISTERS
         .iter()
         .map(|register| format!("sts {}, r{register}\n", 0x100 + u16::from(*register)))
@@ -233,11 +225,8 @@ fn shared_prologues_and_epilogues_restore_the_registers_and_the_stack_pointer() 
             let stack_pointer = [uno.peek(0x140), uno.peek(0x141)];
             assert_eq!(stack_pointer, [0xff, 0x08], "{case}");
             assert_eq!(uno.peek(0x142), 0, "r1");
-            let stack_pointer_mismatches = uno.peek(0x143);
-            assert_eq!(
-                stack_pointer_mismatches, 0,
-                "r28 is not the stack pointer: {case}"
-            );
+            let mismatch_count = uno.peek(0x143);
+            assert_eq!(mismatch_count, 0, "r28 is not the stack pointer: {case}");
             let was_interrupted = uno.peek(0x144);
             assert_eq!(was_interrupted, 1, "the timer never fired: {case}");
         }

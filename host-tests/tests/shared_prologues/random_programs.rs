@@ -8,10 +8,10 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::thread;
 
 use fastrand::Rng;
-use lizard_host_tests::avr_gcc::{compile_to_object, link, ram_address, shrink};
+use lizard_host_tests::avr_gcc::{compile_to_object, link, ram_address, run_to_end, shrink};
 use lizard_host_tests::scaled_count;
 use lizard_linker::ROUTINES;
-use simulated_uno::{Fidelity, Image, Uno};
+use simulated_uno::Image;
 
 /// The number of functions in a program. More functions would not fit into 32 KB.
 const FUNCTION_COUNT: usize = 40;
@@ -144,19 +144,8 @@ fn generate_program(rng: &mut Rng) -> String {
 
 /// Runs a program and returns the two return values of each function.
 fn run_and_read_return_values(image: &Image) -> Vec<[u8; 4]> {
-    let [done_address, results_address] = ["done", "results"].map(|name| ram_address(image, name));
-    let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
-    for _ in 0..200 {
-        uno.run_ms(5);
-        if uno.peek(done_address) == 1 {
-            break;
-        }
-    }
-    assert_eq!(
-        uno.peek(done_address),
-        1,
-        "the program did not finish, or the timer interrupted it too rarely"
-    );
+    let results_address = ram_address(image, "results");
+    let uno = run_to_end(image, 1000);
     let read_values =
         |function| [0, 1, 2, 3].map(|byte| uno.peek(results_address + 4 * function + byte));
     (0..FUNCTION_COUNT as u16).map(read_values).collect()

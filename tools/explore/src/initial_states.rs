@@ -127,12 +127,11 @@ pub fn prepare_all(robot: Robot<'static>) -> Vec<InitialState> {
     foreign_memory.bytes_mut().rotate_left(1);
     let mut worn_memory = saved_memory;
     worn_memory.is_worn = true;
-    let short_travel_memory = build_short_travel_memory(&robot);
     let short_travel_conditions = "saved settings with too little travel for the gaits";
     memories.extend([
         ("foreign bytes in the memory", foreign_memory),
         ("a worn memory", worn_memory),
-        (short_travel_conditions, short_travel_memory),
+        (short_travel_conditions, build_short_travel_memory(&robot)),
         (BOOT_LOADER_CONDITIONS, Eeprom::blank()),
     ]);
     let mut states = Vec::new();

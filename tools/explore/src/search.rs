@@ -48,11 +48,24 @@ struct Step {
     action_index: u8,
 }
 
+/// The parts of a search that all threads share.
+struct Search {
+    actions: Vec<Action>,
+    known_states: Vec<Mutex<Fingerprints>>,
+    /// The number of known states.
+    state_count: AtomicUsize,
+    max_states: usize,
+}
+
 /// Searches from all initial states, until `max_states` distinct states are reached or no state is left to explore.
 pub fn search(robot: Robot<'static>, max_states: usize) -> SearchResult {
-    let actions = Action::all();
+    let search = Search {
+        actions: Action::all(),
+        known_states: (0..64).map(|_| Mutex::default()).collect(),
+        state_count: AtomicUsize::new(0),
+        max_states,
+    };
     let initial_states = initial_states::prepare_all(robot);
-    let known_states: Vec<Mutex<Fingerprints>> = (0..64).map(|_| Mutex::default()).collect();
     let mut steps: Vec<Step> = Vec::new();
     let mut result = SearchResult::default();
     let mut frontier: Vec<(World, u32)> = Vec::new();
@@ -61,21 +74,19 @@ pub fn search(robot: Robot<'static>, max_states: usize) -> SearchResult {
             previous_step: u32::MAX,
             action_index: 0,
         });
-        if insert_if_new(&known_states, initial_state.world.fingerprint()) {
+        if search.insert_if_new(&initial_state.world) {
             frontier.push((initial_state.world.clone(), index as u32));
         }
     }
-    let state_count = AtomicUsize::new(frontier.len());
     // A panic is reported as a violation, so the hook prints nothing.
     let panic_hook = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));
-    while !frontier.is_empty() && state_count.load(Ordering::Relaxed) < max_states {
+    while !frontier.is_empty() && !search.is_at_limit() {
         result.longest_sequence_length += 1;
         let queue = Mutex::new(frontier.into_iter());
         let thread_count = thread::available_parallelism().map_or(1, usize::from);
         let thread_results: Vec<ThreadResult> = thread::scope(|scope| {
-            let run_thread =
-                || explore_queue(&queue, &actions, &known_states, &state_count, max_states);
+            let run_thread = || search.explore_queue(&queue);
             let threads: Vec<_> = (0..thread_count).map(|_| scope.spawn(run_thread)).collect();
             threads
                 .into_iter()
@@ -94,7 +105,7 @@ pub fn search(robot: Robot<'static>, max_states: usize) -> SearchResult {
         for (step, violation) in violations {
             let entry = result.violations.entry(violation.rule);
             let (count, _) = entry.or_insert_with(|| {
-                let description = describe_sequence(&initial_states, &steps, &actions, step);
+                let description = describe_sequence(&initial_states, &steps, &search.actions, step);
                 (0, format!("{description}\n  {}", violation.observation))
             });
             *count += 1;
@@ -107,7 +118,7 @@ pub fn search(robot: Robot<'static>, max_states: usize) -> SearchResult {
     }
     panic::set_hook(panic_hook);
     result.is_complete = frontier.is_empty();
-    result.state_count = state_count.into_inner();
+    result.state_count = search.state_count.into_inner();
     result
 }
 
@@ -119,60 +130,52 @@ struct ThreadResult {
     violations: Vec<(Step, Violation)>,
 }
 
-/// Inserts a fingerprint. Returns true if it was not known before.
-fn insert_if_new(known_states: &[Mutex<Fingerprints>], fingerprint: u64) -> bool {
-    let shard = known_states[(fingerprint >> 58) as usize].lock();
-    shard.expect("no thread has failed").insert(fingerprint)
-}
-
-fn explore_queue(
-    queue: &Mutex<vec::IntoIter<(World, u32)>>,
-    actions: &[Action],
-    known_states: &[Mutex<Fingerprints>],
-    state_count: &AtomicUsize,
-    max_states: usize,
-) -> ThreadResult {
-    let mut result = ThreadResult::default();
-    while state_count.load(Ordering::Relaxed) < max_states {
-        let chunk: Vec<_> = {
-            let mut queue = queue.lock().expect("no thread has failed");
-            queue.by_ref().take(STATES_PER_CHUNK).collect()
-        };
-        if chunk.is_empty() {
-            break;
-        }
-        for (world, step_index) in chunk {
-            result.expand(&world, step_index, actions, known_states, state_count);
-        }
+impl Search {
+    fn is_at_limit(&self) -> bool {
+        self.state_count.load(Ordering::Relaxed) >= self.max_states
     }
-    result
-}
 
-impl ThreadResult {
-    /// Applies every possible action to the state `world`, which the step `step_index` reached.
-    fn expand(
-        &mut self,
-        world: &World,
-        step_index: u32,
-        actions: &[Action],
-        known_states: &[Mutex<Fingerprints>],
-        state_count: &AtomicUsize,
-    ) {
-        for (action_index, action) in actions.iter().enumerate() {
-            if !world.is_possible(*action) {
-                continue;
+    /// Inserts a state's fingerprint, and counts the state if it is new. Returns false if the state was known before.
+    fn insert_if_new(&self, world: &World) -> bool {
+        let fingerprint = world.fingerprint();
+        let shard = self.known_states[(fingerprint >> 58) as usize].lock();
+        let is_new = shard.expect("no thread has failed").insert(fingerprint);
+        self.state_count
+            .fetch_add(usize::from(is_new), Ordering::Relaxed);
+        is_new
+    }
+
+    fn explore_queue(&self, queue: &Mutex<vec::IntoIter<(World, u32)>>) -> ThreadResult {
+        let mut result = ThreadResult::default();
+        while !self.is_at_limit() {
+            let chunk: Vec<_> = {
+                let mut queue = queue.lock().expect("no thread has failed");
+                queue.by_ref().take(STATES_PER_CHUNK).collect()
+            };
+            if chunk.is_empty() {
+                break;
             }
-            self.tried_action_count += 1;
+            for (world, step_index) in chunk {
+                self.expand(&world, step_index, &mut result);
+            }
+        }
+        result
+    }
+
+    /// Applies every possible action to the state `world`, which the step `step_index` reached.
+    fn expand(&self, world: &World, step_index: u32, result: &mut ThreadResult) {
+        let actions = self.actions.iter().enumerate();
+        for (action_index, action) in actions.filter(|(_, action)| world.is_possible(**action)) {
+            result.tried_action_count += 1;
             let mut next_world = world.clone();
             let step = Step {
                 previous_step: step_index,
                 action_index: action_index as u8,
             };
             match apply_catching_panics(&mut next_world, *action) {
-                Err(violation) => self.violations.push((step, violation)),
-                Ok(()) if insert_if_new(known_states, next_world.fingerprint()) => {
-                    state_count.fetch_add(1, Ordering::Relaxed);
-                    self.reached_states.push((next_world, step));
+                Err(violation) => result.violations.push((step, violation)),
+                Ok(()) if self.insert_if_new(&next_world) => {
+                    result.reached_states.push((next_world, step));
                 }
                 Ok(()) => {}
             }

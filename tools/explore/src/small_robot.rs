@@ -58,12 +58,10 @@ pub fn small_robot() -> Robot<'static> {
     let (walk, trot) = (1, 2);
     let round = [(Step::CYCLES, walk, 1), (Step::FRAMES, 0, 10)];
     add_routine(&mut content, "round", &round);
-    let button = Input::button(BUTTON_PIN).byte();
-    let nose = Input::nose(NOSE_PIN).byte();
     let patrol = [
-        (Step::UNTIL, button, 0),
+        (Step::UNTIL, Input::button(BUTTON_PIN).byte(), 0),
         (Step::WAIT, 0, Step::ENDLESS),
-        (Step::UNTIL, nose, 0),
+        (Step::UNTIL, Input::nose(NOSE_PIN).byte(), 0),
         (Step::FRAMES, walk, Step::ENDLESS),
         (Step::CYCLES, trot, 1),
     ];

@@ -170,8 +170,7 @@ impl World {
             Action::Frames(count) => self.run_frames(count)?,
             Action::Stall(ms) => self.stall_main(ms)?,
             Action::SupplyMv(mv) => {
-                let supplies = self.robot().supplies();
-                let reading = compute_reading(&supplies, u32::from(mv), 0);
+                let reading = compute_reading(&self.robot().supplies(), u32::from(mv), 0);
                 self.running_robot.board.adc.set_true_reading(reading);
                 self.observe(Event::SupplyMv(u32::from(mv)));
             }

@@ -14,7 +14,7 @@ pub use observed_board::ObservedBoard;
 use std::sync::LazyLock;
 
 use lizard_core::memory::copies::{COPY_ADDRESSES, REST_POSE_ADDRESS};
-use lizard_core::memory::record::{CONTENT_BYTES, Progress, RecordAddress};
+use lizard_core::memory::record::{CONTENT_BYTES, Progress};
 use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
 use lizard_robot::Robot;
@@ -63,7 +63,9 @@ pub fn check_memory(data: &[u8]) {
         for (byte, change) in content.iter_mut().zip(changes) {
             *byte ^= change;
         }
-        write_record(address, &content, &mut memory);
+        // Writes the record as the core does.
+        let mut writing = address.start_write();
+        while writing.advance(&content, &mut memory) == Progress::InProgress {}
     }
     for patch in patches.chunks_exact(3) {
         let address = u16::from_le_bytes([patch[0], patch[1]]) % 1024;
@@ -83,10 +85,4 @@ pub fn check_memory(data: &[u8]) {
         board.send_byte(*byte);
     }
     board.run_frames(50);
-}
-
-/// Writes a record as the core does.
-fn write_record(address: RecordAddress, content: &[u8; CONTENT_BYTES], memory: &mut Eeprom) {
-    let mut writing = address.start_write();
-    while writing.advance(content, memory) == Progress::InProgress {}
 }

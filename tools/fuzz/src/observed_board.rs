@@ -1,7 +1,6 @@
 //! The core on a virtual board, with an observer that checks the robot after each byte and each frame.
 
 use lizard_core::console::command::{effect, parse};
-use lizard_core::console::word::Effect;
 use lizard_core::memory::copies::{self, REST_POSE_ADDRESS, SavedState};
 use lizard_core::memory::record::Memory;
 use lizard_core::memory::restart::{Cause, Restart};
@@ -126,19 +125,14 @@ impl ObservedBoard {
     /// Passes the answer to a line to the observer.
     fn observe_answer(&mut self, line: &str) {
         let rule = Rule::OneAnswer.sentence();
-        let is_answered = !self.observer.has_unanswered_lines();
-        assert!(is_answered, "{rule}: {line:?}");
+        assert!(!self.observer.has_unanswered_lines(), "{rule}: {line:?}");
         let effect = effect(line, self.robot.firmware());
         let output = std::mem::take(&mut self.output);
         let answer = output.lines().find(|line| !line.starts_with('#'));
         let answer = answer.expect("the observer has counted an answer");
-        if matches!(effect, Effect::Motion | Effect::Freeze | Effect::Rest) {
-            let is_accepted = Some(answer.starts_with("ok "));
-            self.observe(Event::MotionCommand {
-                effect,
-                is_accepted,
-            });
-        }
+        let is_accepted = answer.starts_with("ok ");
+        self.observer
+            .observe_command(self.now, effect, Some(is_accepted));
         self.observe(Event::Answer {
             line,
             effect,

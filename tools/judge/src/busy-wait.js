@@ -8,8 +8,6 @@ const SPMCSR = 0x57;
 const UCSR0A = 0xc0;
 /** Data addresses of registers whose flags change only by a clock event or by the program. */
 const FLAG_REGISTERS = new Set([TIFR1, SPMCSR, UCSR0A]);
-const SREG = 0x5f;
-const SREG_I = 0x80;
 const IO_START = 0x20;
 
 /** Returns the opcode of the RJMP that ends a loop of this many words, including the RJMP itself. */
@@ -49,7 +47,7 @@ export function skipBusyWaits(uno) {
     if (loop === null || !FLAG_REGISTERS.has(loop.address)) return;
     if (((data[loop.address] >> loop.bit) & 1) !== loop.waitingValue) return;
     // A pending interrupt is served before the next iteration.
-    if (cpu.nextInterrupt >= 0 && data[SREG] & SREG_I) return;
+    if (cpu.nextInterrupt >= 0 && cpu.interruptsEnabled) return;
     const nextCycle = Math.min(cpu.nextClockEvent?.cycles ?? Infinity, uno.endCycle);
     const iterationCount = Math.floor((nextCycle - 1 - cpu.cycles) / loop.iterationCycles);
     if (iterationCount > 0) cpu.cycles += iterationCount * loop.iterationCycles;

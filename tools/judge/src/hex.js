@@ -11,26 +11,16 @@ export function loadHex(text, flash) {
     if (bytes.length !== bytes[0] + 5) throw makeError('has a wrong length');
     const address = baseAddress + (bytes[1] << 8) + bytes[2];
     const data = bytes.subarray(4, -1);
-    switch (bytes[3]) {
-      case 0:
-        if (address + data.length > flash.length) throw makeError('is beyond the flash');
-        flash.set(data, address);
-        break;
-      case 1:
-        hasEnded = true;
-        break;
-      case 2:
-        baseAddress = ((data[0] << 8) + data[1]) << 4;
-        break;
-      case 4:
-        baseAddress = ((data[0] << 8) + data[1]) * 0x10000;
-        break;
-      case 3:
-      case 5:
-        break;
-      default:
-        throw makeError('has an unknown type');
-    }
+    const upperAddress = (data[0] << 8) + data[1];
+    const type = bytes[3];
+    if (type === 0) {
+      if (address + data.length > flash.length) throw makeError('is beyond the flash');
+      flash.set(data, address);
+    } else if (type === 1) hasEnded = true;
+    else if (type === 2) baseAddress = upperAddress << 4;
+    else if (type === 4) baseAddress = upperAddress * 0x10000;
+    // Types 3 and 5 are start addresses, which the chip does not use.
+    else if (type > 5) throw makeError('has an unknown type');
   });
   if (!hasEnded) throw new Error('the HEX file has no end record');
 }

@@ -14,8 +14,6 @@ const EEPROM_BYTES = 1024;
 const EEPROM_CYCLES = (3.4e-3 * FREQUENCY_HZ) / 2;
 
 const MCUSR = 0x54;
-const SREG = 0x5f;
-const SREG_I = 0x80;
 const PORF = 0x01;
 const RXC = 0x80;
 
@@ -72,7 +70,7 @@ export class Uno {
   /** Runs to `endCycle`; the last instruction may end later. */
   run(endCycle) {
     const { cpu, executors, executorIndexes } = this;
-    const { data, progMem } = cpu;
+    const { progMem } = cpu;
     this.endCycle = endCycle;
     while (cpu.cycles < endCycle) {
       if (this.passSleep !== null) {
@@ -88,7 +86,7 @@ export class Uno {
       }
       const event = cpu.nextClockEvent;
       const isDue = event !== null && event.cycles <= cpu.cycles;
-      if (isDue || (cpu.nextInterrupt >= 0 && data[SREG] & SREG_I)) cpu.tick();
+      if (isDue || (cpu.nextInterrupt >= 0 && cpu.interruptsEnabled)) cpu.tick();
     }
   }
 

@@ -6,10 +6,11 @@
 //! 1:               1:
 //! ```
 
+use object::build::elf::Relocation;
 use object::elf;
 
 use crate::code::Code;
-use crate::edit::{Edit, Reference};
+use crate::edit::Edit;
 use crate::instruction::{is_branch, is_rjmp, may_skip_next};
 
 /// Distance that every branch reaches, bytes. Later edits never increase a distance.
@@ -21,7 +22,7 @@ const REACH_BYTES: u64 = 2 * 60;
 pub fn find_edit(
     code: &Code,
     targets: &[u64],
-    find_offset: &dyn Fn(&Reference) -> Option<u64>,
+    find_offset: impl Fn(&Relocation) -> Option<u64>,
 ) -> Option<Edit> {
     let mut pairs = code.instructions.windows(2).enumerate();
     pairs.find_map(|(index, pair)| {
@@ -30,11 +31,10 @@ pub fn find_edit(
         if may_be_skipped || !is_branch(branch.first_word) || !is_rjmp(jump.first_word) {
             return None;
         }
-        let next_offset = jump.offset + 2;
         let branch_target = find_offset(code.reference_at(branch.offset)?)?;
         let reference = code.reference_at(jump.offset)?;
         let jump_target = find_offset(reference)?;
-        if branch_target != next_offset
+        if branch_target != jump.offset + 2
             || jump_target.abs_diff(branch.offset) > REACH_BYTES
             || targets.contains(&jump.offset)
         {
@@ -45,9 +45,9 @@ pub fn find_edit(
             removed_size: 4,
             // brbs and brbc differ in one bit. The linker inserts the distance.
             new_words: vec![(branch.first_word ^ 0x0400) & 0xfc07],
-            references: vec![Reference {
-                offset: 0,
-                kind: elf::R_AVR_7_PCREL,
+            references: vec![Relocation {
+                r_offset: 0,
+                r_type: elf::R_AVR_7_PCREL,
                 ..*reference
             }],
         })

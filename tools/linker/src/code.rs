@@ -1,6 +1,7 @@
 //! The code of one function: its instructions and their references.
 
-use crate::edit::Reference;
+use object::build::elf::Relocation;
+
 use crate::instruction::{is_relative, is_two_words};
 
 /// An instruction with its offset in the code.
@@ -18,7 +19,7 @@ pub struct Code {
     /// The instructions in the order of their offsets.
     pub instructions: Vec<PlacedInstruction>,
     /// The references in the order of their offsets.
-    pub references: Vec<Reference>,
+    pub references: Vec<Relocation>,
     /// The size in bytes.
     pub size: u64,
 }
@@ -26,7 +27,7 @@ pub struct Code {
 impl Code {
     /// Decodes code. Returns `None` if the code ends inside an instruction, or if a jump has no reference: the jump's
     /// target is then unknown, so nothing may be moved.
-    pub fn decode(bytes: &[u8], references: Vec<Reference>) -> Option<Self> {
+    pub fn decode(bytes: &[u8], references: Vec<Relocation>) -> Option<Self> {
         let mut instructions = Vec::new();
         let mut offset = 0;
         while offset < bytes.len() {
@@ -50,9 +51,9 @@ impl Code {
     }
 
     /// Returns the reference of the instruction at an offset in bytes; `None` if the instruction has no reference.
-    pub fn reference_at(&self, offset: u64) -> Option<&Reference> {
+    pub fn reference_at(&self, offset: u64) -> Option<&Relocation> {
         let mut references = self.references.iter();
-        references.find(|reference| reference.offset == offset)
+        references.find(|reference| reference.r_offset == offset)
     }
 
     /// Returns the first words of the instructions, from the instruction with this index to the last.

@@ -1,20 +1,7 @@
-//! Replacement of a piece of code with a shorter piece, and the new offsets of the remaining code.
+//! Replacement of a piece of code with a shorter piece, and the new offsets of the remaining code. A reference is a
+//! relocation: the linker writes the address of a symbol plus an addend at an offset.
 
-use object::build::elf::SymbolId;
-use object::elf::RelocationType;
-
-/// The content of a relocation: the linker writes the address `symbol + addend` at an offset.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Reference {
-    /// Offset from the start of the code, bytes.
-    pub offset: u64,
-    /// The form in which the linker writes the address.
-    pub kind: RelocationType,
-    /// The symbol to which the address is relative.
-    pub symbol: SymbolId,
-    /// Offset from the symbol, bytes.
-    pub addend: i64,
-}
+use object::build::elf::Relocation;
 
 /// A replacement of the bytes from `offset` on.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -26,7 +13,7 @@ pub struct Edit {
     /// The new code, in words.
     pub new_words: Vec<u16>,
     /// The references of the new code, with offsets relative to the start of the new code.
-    pub references: Vec<Reference>,
+    pub references: Vec<Relocation>,
 }
 
 impl Edit {
@@ -34,13 +21,9 @@ impl Edit {
         self.offset + self.removed_size
     }
 
-    fn new_size(&self) -> u64 {
-        self.new_words.len() as u64 * 2
-    }
-
     /// Returns the number of bytes that the edit saves.
     pub fn saved_bytes(&self) -> i64 {
-        self.removed_size as i64 - self.new_size() as i64
+        self.removed_size as i64 - 2 * self.new_words.len() as i64
     }
 
     /// True if the byte at an offset is replaced.
@@ -94,24 +77,20 @@ impl Edits {
     }
 
     /// Returns the references after the edits, with new offsets but old addends.
-    pub fn apply_to_references(&self, old_references: &[Reference]) -> Vec<Reference> {
+    pub fn apply_to_references(&self, mut references: Vec<Relocation>) -> Vec<Relocation> {
         let is_replaced = |offset: u64| self.0.iter().any(|edit| edit.replaces(offset));
-        let old_references = old_references.iter();
-        let kept_references = old_references.filter(|reference| !is_replaced(reference.offset));
-        let kept_references = kept_references.map(|reference| Reference {
-            offset: self.new_offset(reference.offset),
-            ..*reference
-        });
-        let new_references = self.0.iter().flat_map(|edit| {
+        references.retain(|reference| !is_replaced(reference.r_offset));
+        for reference in &mut references {
+            reference.r_offset = self.new_offset(reference.r_offset);
+        }
+        for edit in &self.0 {
             let start = self.new_offset(edit.offset);
-            let move_reference = move |reference: &Reference| Reference {
-                offset: start + reference.offset,
+            references.extend(edit.references.iter().map(|reference| Relocation {
+                r_offset: start + reference.r_offset,
                 ..*reference
-            };
-            edit.references.iter().map(move_reference)
-        });
-        let mut references: Vec<Reference> = kept_references.chain(new_references).collect();
-        references.sort_by_key(|reference| reference.offset);
+            }));
+        }
+        references.sort_by_key(|reference| reference.r_offset);
         references
     }
 }

@@ -34,11 +34,11 @@
 
 use std::ops::Range;
 
-use object::build::elf::SymbolId;
+use object::build::elf::{Relocation, SymbolId};
 use object::elf;
 
 use crate::code::Code;
-use crate::edit::{Edit, Reference};
+use crate::edit::Edit;
 use crate::instruction::{
     CALL, JMP, READ_STACK_POINTER, RET, RETI, WRITE_STACK_POINTER, accesses_stack_pointer,
     encode_ldi_r26, may_use_frame_pointer, popped_register, pushed_register,
@@ -79,31 +79,26 @@ impl Frame {
     pub fn recognise(code: &Code) -> Option<Self> {
         let registers: Vec<u8> = code.words_from(0).map_while(pushed_register).collect();
         let is_ascending = registers.windows(2).all(|pair| pair[0] < pair[1]);
-        let lowest = *registers.first()?;
+        let lowest = (*registers.first()?).min(18);
         let is_call_saved = |register: &u8| CALL_SAVED.contains(register);
         if !is_ascending || !registers.iter().all(is_call_saved) {
             return None;
         }
-        let (local_bytes, reserving_count) =
-            parse_reservation(code, registers.len()).unwrap_or_default();
-        let has_locals = reserving_count > 0;
-        if has_locals && !registers.ends_with(&[28, 29]) {
+        let (local_bytes, reserving_count) = parse_reservation(code, registers.len()).unzip();
+        if local_bytes.is_some() && !registers.ends_with(&[28, 29]) {
             return None;
         }
-        let lowest = lowest.min(18);
         let mut lowest_registers = LOWEST_REGISTERS.iter();
         let routine_index = lowest_registers.rposition(|register| *register <= lowest)?;
         let is_saved_by_routine = |register: &&u8| **register >= LOWEST_REGISTERS[routine_index];
         let saved_registers = CALL_SAVED.iter().filter(is_saved_by_routine);
         let has_same_registers = registers.iter().eq(saved_registers);
-        let body_start = registers.len() + reserving_count;
+        let body_start = registers.len() + reserving_count.unwrap_or(0);
         let mut epilogues = Vec::new();
         let mut index = body_start;
         // Every use of the stack pointer, every push, pop and return must belong to an epilogue.
         while let Some(instruction) = code.instructions.get(index) {
-            if let Some(length) =
-                find_epilogue_length(code, index, &registers, local_bytes, has_locals)
-            {
+            if let Some(length) = find_epilogue_length(code, index, &registers, local_bytes) {
                 let end = code.instruction_offset(index + length);
                 epilogues.push(code.instruction_offset(index)..end);
                 index += length;
@@ -112,7 +107,8 @@ impl Frame {
                 || pushed_register(instruction.first_word).is_some()
                 || instruction.first_word == RET
                 || instruction.first_word == RETI
-                || has_locals && !has_same_registers && !uses_only_locals(code, index, local_bytes)
+                || !has_same_registers
+                    && local_bytes.is_some_and(|bytes| !uses_only_locals(code, index, bytes))
             {
                 return None;
             } else {
@@ -121,7 +117,7 @@ impl Frame {
         }
         Some(Self {
             routine_index,
-            local_bytes,
+            local_bytes: local_bytes.unwrap_or(0),
             prologue_size: code.instruction_offset(body_start),
             epilogues,
         })
@@ -133,11 +129,11 @@ impl Frame {
             offset,
             removed_size,
             new_words: vec![encode_ldi_r26(self.local_bytes), opcode, 0],
-            references: vec![Reference {
-                offset: 2,
-                kind: elf::R_AVR_CALL,
-                symbol,
-                addend: 0,
+            references: vec![Relocation {
+                r_offset: 2,
+                symbol: Some(symbol),
+                r_type: elf::R_AVR_CALL,
+                r_addend: 0,
             }],
         };
         let mut edits = vec![replacement(0, self.prologue_size, CALL, routines.save)];
@@ -203,17 +199,16 @@ fn uses_only_locals(code: &Code, index: usize, local_bytes: u8) -> bool {
 }
 
 /// Returns the number of instructions of the epilogue at an index; `None` if no epilogue that matches the prologue
-/// begins at the index.
+/// begins at the index. `local_bytes` is the size of the space that the prologue reserves, if it reserves any.
 fn find_epilogue_length(
     code: &Code,
     index: usize,
     registers: &[u8],
-    local_bytes: u8,
-    has_locals: bool,
+    local_bytes: Option<u8>,
 ) -> Option<usize> {
     let mut words = code.words_from(index);
     let mut count = 0;
-    if has_locals {
+    if let Some(local_bytes) = local_bytes {
         let local_word = u16::from(local_bytes);
         let negated_word = local_word.wrapping_neg();
         let add_word = words.next()?;

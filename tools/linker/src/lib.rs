@@ -24,7 +24,7 @@ mod instruction;
 mod object;
 pub mod order;
 
-pub use object::{Savings, ShrinkError, shrink};
+pub use object::{Savings, shrink};
 
 /// The assembly code of the shared prologues and epilogues. It must be linked before the object, so that the linker
 /// places the routines in the middle of the object's functions.

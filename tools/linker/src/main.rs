@@ -10,7 +10,8 @@ use lizard_linker::{ROUTINES, shrink};
 
 fn main() -> ExitCode {
     match run() {
-        Ok(code) => code,
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
         Err(message) => {
             eprintln!("{message}");
             ExitCode::FAILURE
@@ -18,7 +19,8 @@ fn main() -> ExitCode {
     }
 }
 
-fn run() -> Result<ExitCode, String> {
+/// Shrinks the objects and calls avr-gcc. Returns true if avr-gcc succeeds.
+fn run() -> Result<bool, String> {
     let mut arguments = Vec::new();
     let mut written_files = Vec::new();
     for argument in std::env::args_os().skip(1) {
@@ -34,12 +36,9 @@ fn run() -> Result<ExitCode, String> {
         // A temporary file that cannot be removed does no harm.
         let _ = fs::remove_file(path);
     }
-    let status = status.map_err(|error| {
+    let result = status.map(|status| status.success());
+    result.map_err(|error| {
         format!("avr-gcc, which links the firmware, could not be started: {error}")
-    })?;
-    Ok(match status.success() {
-        true => ExitCode::SUCCESS,
-        false => ExitCode::FAILURE,
     })
 }
 
@@ -50,7 +49,10 @@ fn write_shrunk_files(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
     let (true, Ok(file)) = (path.extension() == Some(OsStr::new("o")), fs::read(path)) else {
         return Ok(None);
     };
-    let result = shrink(&file).map_err(|error| format!("{}: {error}", path.display()));
+    let result = shrink(&file).map_err(|error| {
+        let name = path.display();
+        format!("{name}: cannot edit the object file: {error}")
+    });
     let Some((new_object, _)) = result? else {
         return Ok(None);
     };

@@ -1,34 +1,14 @@
 //! Reader and writer of an object file, which finds the functions, shrinks them, and writes the new file.
 
-use std::fmt;
-
 use object::build::elf::{Builder, Relocation, Section, SectionData, SectionId, SymbolId};
 use object::elf;
 
 use crate::branch;
 use crate::code::Code;
-use crate::edit::{Edit, Edits, Reference};
+use crate::edit::{Edit, Edits};
 use crate::frame::{Frame, LOWEST_REGISTERS, Routines};
 
 mod layout;
-
-/// The error of an object that cannot be read or written.
-#[derive(Debug)]
-pub struct ShrinkError(object::build::Error);
-
-impl fmt::Display for ShrinkError {
-    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        write!(formatter, "cannot edit the object file: {}", self.0)
-    }
-}
-
-impl std::error::Error for ShrinkError {}
-
-impl From<object::build::Error> for ShrinkError {
-    fn from(error: object::build::Error) -> Self {
-        Self(error)
-    }
-}
 
 /// The number of bytes that each kind of edit saves.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -45,8 +25,8 @@ pub struct Savings {
 /// file. The new file refers to the routines of [`ROUTINES`](crate::ROUTINES).
 ///
 /// # Errors
-/// See [`ShrinkError`].
-pub fn shrink(file: &[u8]) -> Result<Option<(Vec<u8>, Savings)>, ShrinkError> {
+/// Fails if the object cannot be read or written.
+pub fn shrink(file: &[u8]) -> object::build::Result<Option<(Vec<u8>, Savings)>> {
     if !file.starts_with(&elf::ELFMAG) {
         return Ok(None);
     }
@@ -59,7 +39,7 @@ pub fn shrink(file: &[u8]) -> Result<Option<(Vec<u8>, Savings)>, ShrinkError> {
         object.apply_edits(section, &edits);
     }
     for section in object.find_function_sections() {
-        while let Some(edits) = object.find_next_edit(section, branch::find_edit) {
+        while let Some(edits) = object.find_branch_edit(section) {
             savings.branch_bytes += edits.saved_bytes();
             object.apply_edits(section, &edits);
         }
@@ -124,19 +104,12 @@ impl Object<'_> {
     }
 
     /// Returns the references in a section's bytes.
-    fn read_references(&self, section: SectionId) -> Vec<Reference> {
+    fn read_references(&self, section: SectionId) -> Vec<Relocation> {
         let tables = self.0.sections.iter();
         let tables = tables.filter(|table| table.sh_info_section == Some(section));
-        let to_reference = |relocation: &Relocation| {
-            Some(Reference {
-                offset: relocation.r_offset,
-                kind: relocation.r_type,
-                symbol: relocation.symbol?,
-                addend: relocation.r_addend,
-            })
-        };
         let relocations = tables.flat_map(section_relocations);
-        relocations.filter_map(to_reference).collect()
+        let references = relocations.filter(|relocation| relocation.symbol.is_some());
+        references.copied().collect()
     }
 
     fn read_bytes(&self, section: SectionId) -> Vec<u8> {
@@ -150,10 +123,11 @@ impl Object<'_> {
         Code::decode(&self.read_bytes(section), self.read_references(section))
     }
 
-    /// Returns the offset of a symbol plus an addend; `None` if the symbol is in another section.
-    fn symbol_offset(&self, section: SectionId, symbol: SymbolId, addend: i64) -> Option<u64> {
-        let symbol = self.0.symbols.get(symbol);
-        (symbol.section == Some(section)).then(|| symbol.st_value.wrapping_add_signed(addend))
+    /// Returns the offset of a reference's target; `None` if the target is in another section.
+    fn target_offset(&self, section: SectionId, reference: &Relocation) -> Option<u64> {
+        let symbol = self.0.symbols.get(reference.symbol?);
+        let is_own = symbol.section == Some(section);
+        is_own.then(|| symbol.st_value.wrapping_add_signed(reference.r_addend))
     }
 
     /// Returns the offsets of all reference targets in a section. References in the code that `edit` replaces do not
@@ -162,12 +136,10 @@ impl Object<'_> {
         let mut targets = Vec::new();
         for table in &self.0.sections {
             let own_edit = edit.filter(|_| table.sh_info_section == Some(section));
-            targets.extend(section_relocations(table).iter().filter_map(|relocation| {
-                let offset = relocation.r_offset;
-                let is_replaced = own_edit.is_some_and(|edit| edit.replaces(offset));
-                let symbol = relocation.symbol.filter(|_| !is_replaced)?;
-                self.symbol_offset(section, symbol, relocation.r_addend)
-            }));
+            let is_replaced = |offset| own_edit.is_some_and(|edit| edit.replaces(offset));
+            let relocations = section_relocations(table).iter();
+            let kept = relocations.filter(|relocation| !is_replaced(relocation.r_offset));
+            targets.extend(kept.filter_map(|relocation| self.target_offset(section, relocation)));
         }
         targets
     }
@@ -184,16 +156,12 @@ impl Object<'_> {
         sections.filter_map(build_edits).collect()
     }
 
-    /// Returns the next edit that `find_edit` finds in a section; `None` if there is no edit.
-    fn find_next_edit<F>(&self, section: SectionId, find_edit: F) -> Option<Edits>
-    where
-        F: Fn(&Code, &[u64], &dyn Fn(&Reference) -> Option<u64>) -> Option<Edit>,
-    {
+    /// Returns the edit of the next branch over a jump in a section; `None` if there is no such branch.
+    fn find_branch_edit(&self, section: SectionId) -> Option<Edits> {
         let code = self.decode(section)?;
         let targets = self.find_targets(section, None);
-        let find_offset =
-            |reference: &Reference| self.symbol_offset(section, reference.symbol, reference.addend);
-        let edit = find_edit(&code, &targets, &find_offset)?;
+        let find_offset = |reference: &Relocation| self.target_offset(section, reference);
+        let edit = branch::find_edit(&code, &targets, find_offset)?;
         let targets = self.find_targets(section, Some(&edit));
         Edits::new(vec![edit], &targets)
     }
@@ -201,43 +169,35 @@ impl Object<'_> {
     /// Edits a section, and updates all references to its offsets.
     fn apply_edits(&mut self, section: SectionId, edits: &Edits) {
         let bytes = edits.apply_to_bytes(&self.read_bytes(section));
-        let mut references = edits.apply_to_references(&self.read_references(section));
+        let references = edits.apply_to_references(self.read_references(section));
         let symbols = self.0.symbols.iter();
         let own_symbols = symbols.filter(|symbol| symbol.section == Some(section));
         let symbol_values = own_symbols.map(|symbol| (symbol.id(), symbol.st_value));
         let symbol_values: Vec<(SymbolId, u64)> = symbol_values.collect();
-        // An addend changes by the difference between the shifts of its target and its symbol.
-        let new_addend = |symbol: SymbolId, addend: i64| {
-            let value = symbol_values.iter().find(|(id, _)| *id == symbol);
-            value.map_or(addend, |(_, value)| {
-                let new_target = edits.new_offset(value.wrapping_add_signed(addend));
-                new_target.wrapping_sub(edits.new_offset(*value)) as i64
-            })
+        // An addend changes by the difference between the shifts of its target and its symbol. The addend of a symbol
+        // outside the section stays.
+        let new_addend = |reference: &Relocation| {
+            let mut values = symbol_values.iter();
+            let (_, value) = values.find(|(id, _)| Some(*id) == reference.symbol)?;
+            let new_target = edits.new_offset(value.wrapping_add_signed(reference.r_addend));
+            Some(new_target.wrapping_sub(edits.new_offset(*value)) as i64)
         };
-        for reference in &mut references {
-            reference.addend = new_addend(reference.symbol, reference.addend);
-        }
         for table in &mut self.0.sections {
-            let is_own = table.sh_info_section == Some(section);
-            let SectionData::Relocation(relocations) = &mut table.data else {
-                continue;
-            };
-            if is_own {
-                relocations.clear();
-                relocations.extend(references.iter().map(to_relocation));
-            } else {
+            if let SectionData::Relocation(relocations) = &mut table.data {
+                if table.sh_info_section == Some(section) {
+                    relocations.clone_from(&references);
+                }
                 for relocation in relocations {
-                    if let Some(symbol) = relocation.symbol {
-                        relocation.r_addend = new_addend(symbol, relocation.r_addend);
+                    if let Some(addend) = new_addend(relocation) {
+                        relocation.r_addend = addend;
                     }
                 }
             }
         }
         for (id, value) in &symbol_values {
             let symbol = self.0.symbols.get_mut(*id);
-            let end = edits.new_offset(value + symbol.st_size);
             symbol.st_value = edits.new_offset(*value);
-            symbol.st_size = end - symbol.st_value;
+            symbol.st_size = edits.new_offset(value + symbol.st_size) - symbol.st_value;
         }
         let code_section = self.0.sections.get_mut(section);
         code_section.sh_size = bytes.len() as u64;
@@ -250,15 +210,5 @@ fn section_relocations<'a>(section: &'a Section) -> &'a [Relocation] {
     match &section.data {
         SectionData::Relocation(relocations) => relocations,
         _ => &[],
-    }
-}
-
-/// Returns the relocation for a reference.
-fn to_relocation(reference: &Reference) -> Relocation {
-    Relocation {
-        r_offset: reference.offset,
-        symbol: Some(reference.symbol),
-        r_type: reference.kind,
-        r_addend: reference.addend,
     }
 }

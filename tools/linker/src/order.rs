@@ -76,20 +76,17 @@ impl Pieces {
 
     /// Returns the number of calls out of reach in an order.
     pub fn count_out_of_reach(&self, order: &[usize]) -> usize {
-        self.bytes_beyond_reach(order)
-            .filter(|bytes| *bytes > 0)
-            .count()
+        self.bytes_beyond_reach(order).count()
     }
 
     /// Returns the cost of an order.
     fn compute_cost(&self, order: &[usize]) -> u64 {
-        let far_distances = self.bytes_beyond_reach(order).filter(|bytes| *bytes > 0);
-        far_distances
-            .map(|bytes| u64::from(OUT_OF_REACH_COST + bytes))
-            .sum()
+        let distances = self.bytes_beyond_reach(order);
+        let costs = distances.map(|bytes| u64::from(OUT_OF_REACH_COST + bytes));
+        costs.sum()
     }
 
-    /// Returns the number of bytes by which each call is out of reach, or 0 for a call within reach.
+    /// Returns the number of bytes by which each call is out of reach. Leaves out the calls within reach.
     fn bytes_beyond_reach(&self, order: &[usize]) -> impl Iterator<Item = u32> {
         let mut offsets = vec![0; self.sizes.len()];
         let mut offset = 0;
@@ -97,10 +94,11 @@ impl Pieces {
             offsets[*piece] = offset;
             offset += self.sizes[*piece];
         }
-        self.calls.iter().map(move |call| {
+        let distances = self.calls.iter().map(move |call| {
             let distance = (offsets[call.caller] + call.offset).abs_diff(offsets[call.callee]);
             distance.saturating_sub(REACH_BYTES)
-        })
+        });
+        distances.filter(|bytes| *bytes > 0)
     }
 }
 

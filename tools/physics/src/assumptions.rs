@@ -1,16 +1,14 @@
 //! Assumptions that MuJoCo can vary but the contact model cannot, and their effect on the gaits: the floor, the pads'
 //! printed shape, the drive of analog servos, and the mass distribution.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use lizard_parts::{Assembly, Pads, Scene};
 use lizard_robot::Robot;
 
 use crate::case::Case;
-use crate::crate_dir;
 use crate::mujoco::make_two_cycle_scene;
-use crate::results::{Displacement, WalkResults};
+use crate::results::{Displacement, GroupedDisplacements, WalkResults};
 use crate::surface::{self, Surface, SurfaceDisplacements};
 use crate::table::Component;
 
@@ -24,8 +22,8 @@ const MIN_CHANGE_PERCENT: f64 = 10.0;
 pub struct Assumption {
     /// The assumption's name in the table.
     pub description: &'static str,
-    /// A line of robot.toml, and the lines that replace the line.
-    line_replacement: Option<(&'static str, &'static str)>,
+    /// Texts of robot.toml, each with the text that replaces it.
+    replacements: &'static [(&'static str, &'static str)],
     /// The surface, unless the floor is level and even.
     surface: Option<Surface>,
     /// A function that changes MuJoCo's scene.
@@ -34,7 +32,7 @@ pub struct Assumption {
 
 const UNCHANGED: Assumption = Assumption {
     description: "",
-    line_replacement: None,
+    replacements: &[],
     surface: None,
     change_scene: |_| {},
 };
@@ -49,7 +47,7 @@ impl Assumption {
         },
         Self {
             description: "bursts, and a rotor of 5 ms",
-            line_replacement: Some(("[servo.A1]", "[servo]\nspin_up_ms = 5.0\n[servo.A1]")),
+            replacements: &[("\n[servo.A1]", "\n[servo]\nspin_up_ms = 5.0\n[servo.A1]")],
             change_scene: |scene| scene.drives_in_bursts = true,
             ..UNCHANGED
         },
@@ -60,12 +58,12 @@ impl Assumption {
         },
         Self {
             description: "centre of mass 25 mm ahead",
-            line_replacement: Some(("[body]", "[body]\ncentre = [25.0, 0.0]")),
+            replacements: &[("\n[body]", "\n[body]\ncentre = [25.0, 0.0]")],
             ..UNCHANGED
         },
         Self {
             description: "centre of mass 25 mm behind",
-            line_replacement: Some(("[body]", "[body]\ncentre = [-25.0, 0.0]")),
+            replacements: &[("\n[body]", "\n[body]\ncentre = [-25.0, 0.0]")],
             ..UNCHANGED
         },
         Self {
@@ -81,10 +79,7 @@ impl Assumption {
     /// # Panics
     /// If robots/paper.toml does not have the replaced line.
     pub fn load_robot(&self) -> Robot {
-        match self.line_replacement {
-            Some((old_line, new_lines)) => parse_paper_with(old_line, new_lines),
-            None => crate::load_robot("paper"),
-        }
+        crate::load_changed_paper(self.description, self.replacements)
     }
 
     /// Returns the scene of a gait's walk. `level_displacement` is the gait's displacement on a level floor with the
@@ -108,28 +103,6 @@ impl Assumption {
     }
 }
 
-/// Loads the paper's robot after replacing a line of its file with other lines.
-fn parse_paper_with(old_line: &str, new_lines: &str) -> Robot {
-    let text = std::fs::read_to_string(crate_dir().join("../../robots/paper.toml"));
-    let text = text.expect("robots/paper.toml is readable");
-    let old_text = format!("\n{old_line}");
-    let has_line = text.contains(&old_text);
-    assert!(has_line, "robots/paper.toml has no line {old_line:?}");
-    Robot::parse(&text.replacen(&old_text, &format!("\n{new_lines}"), 1)).expect(new_lines)
-}
-
-/// MuJoCo's displacements by assumption and gait.
-pub type AssumptionDisplacements = BTreeMap<String, BTreeMap<String, Displacement>>;
-
-/// Loads the displacements stored in `assumptions.json`.
-///
-/// # Panics
-/// If `assumptions.json` is not a table of displacements.
-pub fn load_stored() -> AssumptionDisplacements {
-    serde_json::from_str(include_str!("../assumptions.json"))
-        .expect("assumptions.json has the expected format")
-}
-
 /// Returns a table of each gait's change under each assumption and surface, from the largest change to the smallest,
 /// in percent of MuJoCo's displacement on a level floor.
 ///
@@ -138,34 +111,28 @@ pub fn load_stored() -> AssumptionDisplacements {
 pub fn format_table(
     walk_results: &WalkResults,
     surfaces: &SurfaceDisplacements,
-    assumptions: &AssumptionDisplacements,
+    assumptions: &GroupedDisplacements,
 ) -> String {
+    let percent_change = |gait: &str, displacement: Displacement| {
+        let level = surface::find_level_displacement(walk_results, gait);
+        let component = match level.0[0].abs() > level.0[2].abs() {
+            true => Component::Forward,
+            false => Component::Turn,
+        };
+        100.0 * (component.value(displacement) / component.value(level) - 1.0)
+    };
     let surface_rows = Surface::ALL.map(|surface| {
-        let description = surface.to_string();
-        let displacements = GAITS.map(|gait| surfaces["paper"][gait][&description]);
-        (description, displacements)
+        let name = surface.to_string();
+        let changes = GAITS.map(|gait| percent_change(gait, surfaces["paper"][gait][&name]));
+        (name, changes)
     });
     let assumption_rows = Assumption::ALL.map(|Assumption { description, .. }| {
-        let displacements = GAITS.map(|gait| assumptions[description][gait]);
-        (description.to_owned(), displacements)
+        let changes = GAITS.map(|gait| percent_change(gait, assumptions[description][gait]));
+        (description.to_owned(), changes)
     });
-    let compute_percent_changes = |displacements: [Displacement; GAITS.len()]| {
-        std::array::from_fn(|i| {
-            let level = surface::find_level_displacement(walk_results, GAITS[i]);
-            let component = match level.0[0].abs() > level.0[2].abs() {
-                true => Component::Forward,
-                false => Component::Turn,
-            };
-            100.0 * (component.value(displacements[i]) / component.value(level) - 1.0)
-        })
-    };
     let find_largest_change =
         |changes: &[f64; GAITS.len()]| changes.map(f64::abs).into_iter().fold(0.0, f64::max);
-    let mut rows: Vec<(String, [f64; GAITS.len()])> = surface_rows
-        .into_iter()
-        .chain(assumption_rows)
-        .map(|(description, displacements)| (description, compute_percent_changes(displacements)))
-        .collect();
+    let mut rows = [&surface_rows[..], &assumption_rows].concat();
     rows.sort_by(|(_, a), (_, b)| find_largest_change(b).total_cmp(&find_largest_change(a)));
     let widths = rows.iter().map(|(description, _)| description.len());
     let width = widths.max().unwrap_or(0);

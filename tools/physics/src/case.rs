@@ -5,7 +5,7 @@ use std::fmt;
 use lizard_robot::{Drive, DriveKind, GroundContact, Robot, Stance};
 
 /// The parts that drive the legs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LegDrive {
     /// Bars with two holes.
     Rigid,

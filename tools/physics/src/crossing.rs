@@ -52,7 +52,11 @@ impl Crossing {
             end = end.moved_by_travel(cycle);
             let heading_deg = match turns_on_the_spot {
                 true => 0.0,
-                false => compute_direction(measurement_start, end),
+                false => {
+                    let left = end.left - measurement_start.left;
+                    let forward = end.forward - measurement_start.forward;
+                    left.atan2(forward).to_degrees()
+                }
             };
             // All feet are compared, because their order along the heading may change on an arc.
             let start_feet = project_feet(measurement_start, heading_deg).into_iter();
@@ -84,10 +88,4 @@ impl Crossing {
             rotation: self.heading_deg,
         }
     }
-}
-
-/// Returns the direction from one pose to another, deg counter-clockwise from the forward direction.
-fn compute_direction(origin: BodyPose, target: BodyPose) -> f64 {
-    let offset = [target.left - origin.left, target.forward - origin.forward];
-    offset[0].atan2(offset[1]).to_degrees()
 }

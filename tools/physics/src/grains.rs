@@ -7,11 +7,8 @@ use std::fmt::Write as _;
 use lizard_parts::{Assembly, Scene, Trajectory};
 use lizard_robot::{CheckedGait, GroundContact, Robot, Stance};
 
-use crate::case::LegDrive;
-use crate::crate_dir;
 use crate::mujoco::{MujocoError, WalkBatch};
 use crate::results::{Displacement, DisplacementPair};
-use crate::text;
 
 /// The name of the robot's file, without its extension.
 pub const ROBOT: &str = "grain";
@@ -37,27 +34,6 @@ const SETTLING_S: f64 = 1.5;
 
 /// The results by gait, in the order of [`RATIOS`].
 pub type GrainResults = BTreeMap<String, Vec<DisplacementPair>>;
-
-/// Loads the results stored in `grains.json`.
-///
-/// # Panics
-/// If `grains.json` does not have the format of [`to_json`].
-pub fn load_stored() -> GrainResults {
-    serde_json::from_str(include_str!("../grains.json"))
-        .expect("grains.json has the expected format")
-}
-
-/// Formats the results as the text of `grains.json`, with a line for each walk.
-///
-/// # Panics
-/// Never: names and numbers can always be written as JSON.
-pub fn to_json(grains: &GrainResults) -> String {
-    let format_results = |results: &Vec<DisplacementPair>| {
-        let lines: Vec<String> = results.iter().map(text::to_json).collect();
-        format!("[\n{}\n]", lines.join(",\n"))
-    };
-    text::format_object(grains, format_results) + "\n"
-}
 
 /// Simulates a cycle in the model with level feet. Returns `None` if two feet pull against the other two: the model
 /// then has no result.
@@ -87,12 +63,21 @@ pub fn simulate_all(robot: &Robot) -> Result<GrainResults, MujocoError> {
     let gaits = GAITS.map(|(name, _)| robot.gait(name).expect("the robot has this gait"));
     let mut batch = WalkBatch::new()?;
     let scenes = gaits.iter().flat_map(|gait| {
+        let cycles = count_settling_cycles(gait) + 1;
+        let scene = Scene {
+            trajectory: Some(Trajectory::for_gait(robot, gait, cycles, 1)),
+            has_shapes: false,
+            ..Scene::for_assembly(&assembly)
+        };
         let ratios = RATIOS.into_iter().enumerate();
-        ratios
-            .map(|(index, ratio)| make_scene(make_name(gait.name(), index), &assembly, gait, ratio))
+        ratios.map(move |(index, ratio)| Scene {
+            name: make_name(gait.name(), index),
+            friction_ratio: ratio,
+            ..scene.clone()
+        })
     });
-    batch.add(&assembly, scenes.map(|scene| (LegDrive::Rigid, scene)))?;
-    let mujoco_displacements = batch.start()?.wait()?;
+    batch.add(&assembly, scenes)?;
+    let mujoco_displacements = batch.simulate()?;
     let grains = gaits.iter().map(|gait| {
         let ratios = RATIOS.into_iter().enumerate();
         let results = ratios.map(|(index, ratio)| DisplacementPair {
@@ -114,18 +99,6 @@ pub(crate) fn find_results_at_own_ratio(results: &[DisplacementPair]) -> Displac
     let own_ratio = crate::load_robot(ROBOT).ground().friction_ratio;
     let index = RATIOS.iter().position(|ratio| *ratio == own_ratio);
     results[index.expect("the table has the file's ratio")]
-}
-
-fn make_scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> Scene {
-    let robot = assembly.robot();
-    let cycles = count_settling_cycles(gait) + 1;
-    Scene {
-        name,
-        friction_ratio: ratio,
-        trajectory: Some(Trajectory::for_gait(robot, gait, cycles, 1)),
-        has_shapes: false,
-        ..Scene::for_assembly(assembly)
-    }
 }
 
 /// Returns a message for each of MuJoCo's results that differs too much from the model's.
@@ -182,12 +155,4 @@ pub fn format_table(robot: &Robot, grains: &GrainResults) -> String {
         text.push('\n');
     }
     text
-}
-
-/// Writes the results to `grains.json`.
-///
-/// # Errors
-/// Fails if the file cannot be written.
-pub fn store(grains: &GrainResults) -> std::io::Result<()> {
-    std::fs::write(crate_dir().join("grains.json"), to_json(grains))
 }

@@ -25,7 +25,7 @@ mod walk;
 pub use case::{Case, FootSetup, LegDrive};
 pub use crossing::Crossing;
 pub use expected::format_expected_table;
-pub use results::{Displacement, DisplacementPair, WalkResults};
+pub use results::{Displacement, DisplacementPair, GroupedDisplacements, WalkResults};
 pub use table::{format_displacement_table, format_table};
 pub use walk::{Walk, list_walks};
 
@@ -43,6 +43,21 @@ pub const ROBOT_NAMES: [&str; 4] = ["paper", "own-gaits", "large", "unequal"];
 pub fn load_robot(name: &str) -> Robot {
     let path = crate_dir().join(format!("../../robots/{name}.toml"));
     Robot::load(path).expect(name)
+}
+
+/// Loads the paper's robot with some texts of its file replaced, each where it first occurs. `description` names the
+/// change in error messages.
+///
+/// # Panics
+/// If robots/paper.toml does not have a replaced text.
+fn load_changed_paper(description: &str, replacements: &[(&str, &str)]) -> Robot {
+    let text = std::fs::read_to_string(crate_dir().join("../../robots/paper.toml"));
+    let mut text = text.expect("robots/paper.toml is readable");
+    for &(old, new) in replacements {
+        assert!(text.contains(old), "robots/paper.toml has no {old:?}");
+        text = text.replacen(old, new, 1);
+    }
+    Robot::parse(&text).expect(description)
 }
 
 /// Returns the folder of this crate.

@@ -7,29 +7,23 @@ use std::ops::RangeFrom;
 use std::process::ExitCode;
 
 use lizard_parts::Assembly;
-use lizard_physics::assumptions::{self, Assumption, AssumptionDisplacements};
+use lizard_physics::assumptions::{self, Assumption};
 use lizard_physics::grains::{self, GrainResults};
 use lizard_physics::mujoco::{MujocoError, WalkBatch};
-use lizard_physics::pads::{self, PadShape, SURFACES, ShapeDisplacements};
+use lizard_physics::pads::{self, PadShape, SURFACES};
 use lizard_physics::servos::{self, ServoResults, Variant, format_servos_table};
 use lizard_physics::surface::{self, Surface, SurfaceDisplacements, format_surfaces_table};
-use lizard_physics::text::{map_to_json, nested_map_to_json};
+use lizard_physics::text::{format_stored, load_stored};
 use lizard_physics::{
-    Displacement, DisplacementPair, LegDrive, ROBOT_NAMES, Walk, WalkResults, crate_dir,
+    Displacement, DisplacementPair, GroupedDisplacements, ROBOT_NAMES, WalkResults, crate_dir,
     format_table, list_walks, load_robot,
 };
-use lizard_robot::Robot;
 
 /// The largest difference from a stored displacement that does not count as a change.
 const TOLERANCE_MM: f64 = 0.6;
 const TOLERANCE_DEG: f64 = 0.4;
 /// The message for a walk without a stored result.
 const NOT_STORED: &str = "no result is stored; `make physics WRITE=1` stores the new one";
-/// Prefixes of the walks' names: walks on other floors, with other servos, under other assumptions, and on other pads.
-const SURFACE_PREFIX: &str = "surface";
-const SERVOS_PREFIX: &str = "servos";
-const ASSUMPTIONS_PREFIX: &str = "assumptions";
-const PADS_PREFIX: &str = "pads";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -67,77 +61,68 @@ fn main() -> ExitCode {
     }
 }
 
-/// Returns the name of a walk, which is also the name of its file.
-fn make_walk_name(prefix: &str, index: usize) -> String {
-    format!("{prefix}-{index}")
-}
-
 /// Simulates every `one_in`-th walk and compares the results with the stored ones. If `one_in` is `None`, simulates all
 /// walks and stores their results. Returns a message for each fault.
 fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     let (is_writing, one_in) = (one_in.is_none(), one_in.unwrap_or(1));
-    let robots: Vec<(&str, Robot)> = ROBOT_NAMES.map(|name| (name, load_robot(name))).into();
+    let stored_results = WalkResults::load_stored();
     let mut choice = WalkChoice {
         one_in,
         walk_numbers: 0..,
     };
-    let choose_robot_walks = |(_, robot): &(&str, Robot)| choice.choose(list_walks(robot));
-    let walks_by_robot: Vec<Vec<Walk>> = robots.iter().map(choose_robot_walks).collect();
-    let stored_results = WalkResults::load_stored();
-    let surface_walks = choice.choose(SurfaceWalk::list_all(&stored_results));
-    let mut batch = WalkBatch::new()?;
-    for ((robot_name, robot), walks) in robots.iter().zip(&walks_by_robot) {
-        let assembly = Assembly::new(robot);
-        let indexed_walks = walks.iter().enumerate();
-        let scenes = indexed_walks
-            .map(|(index, walk)| walk.make_scene(&make_walk_name(robot_name, index), &assembly));
-        batch.add(&assembly, scenes)?;
-    }
-    for (index, walk) in surface_walks.iter().enumerate() {
-        let assembly = Assembly::new(&load_robot(walk.robot));
-        let name = make_walk_name(SURFACE_PREFIX, index);
-        let (surface, level) = (walk.surface, walk.level_displacement);
-        let scene = surface.make_scene(&name, &assembly, &walk.gait, level);
-        batch.add(&assembly, [(LegDrive::Rigid, scene)])?;
-    }
+    let robot_walks = ROBOT_NAMES.map(|name| {
+        let robot = load_robot(name);
+        let walks = choice.choose(name, list_walks(&robot));
+        (name, robot, walks)
+    });
+    let surface_walks = choice.choose("surface", SurfaceWalk::list_all(&stored_results));
     let servo_walks = Variant::ALL.map(|variant| servos::GAITS.map(|(gait, _)| (variant, gait)));
-    let servo_walks = choice.choose(servo_walks.concat());
-    for (index, (variant, gait)) in servo_walks.iter().enumerate() {
-        let assembly = Assembly::new(&variant.load_robot());
-        let scene = variant.make_scene(&make_walk_name(SERVOS_PREFIX, index), &assembly, gait);
-        batch.add(&assembly, [(LegDrive::Rigid, scene)])?;
-    }
+    let servo_walks = choice.choose("servos", servo_walks.concat());
     let assumption_walks =
         Assumption::ALL.map(|assumption| assumptions::GAITS.map(|gait| (assumption, gait)));
-    let assumption_walks = choice.choose(assumption_walks.concat());
-    for (index, (assumption, gait)) in assumption_walks.iter().enumerate() {
+    let assumption_walks = choice.choose("assumptions", assumption_walks.concat());
+    let pad_walks = PadShape::ALL.map(|shape| SURFACES.map(|surface| (shape, surface)));
+    let pad_walks = choice.choose("pads", pad_walks.concat());
+
+    let mut batch = WalkBatch::new()?;
+    for (_, robot, walks) in &robot_walks {
+        let assembly = Assembly::new(robot);
+        let walks = walks.iter();
+        let scenes = walks.map(|(name, walk)| walk.make_scene(name, &assembly));
+        batch.add(&assembly, scenes)?;
+    }
+    for (name, walk) in &surface_walks {
+        let assembly = Assembly::new(&load_robot(walk.robot));
+        let (surface, level) = (walk.surface, walk.level_displacement);
+        let scene = surface.make_scene(name, &assembly, &walk.gait, level);
+        batch.add(&assembly, [scene])?;
+    }
+    for (name, (variant, gait)) in &servo_walks {
+        let assembly = Assembly::new(&variant.load_robot());
+        batch.add(&assembly, [variant.make_scene(name, &assembly, gait)])?;
+    }
+    for (name, (assumption, gait)) in &assumption_walks {
         let assembly = Assembly::new(&assumption.load_robot());
         let level = surface::find_level_displacement(&stored_results, gait);
-        let name = make_walk_name(ASSUMPTIONS_PREFIX, index);
-        let scene = assumption.make_scene(&name, &assembly, gait, level);
-        batch.add(&assembly, [(LegDrive::Rigid, scene)])?;
+        let scene = assumption.make_scene(name, &assembly, gait, level);
+        batch.add(&assembly, [scene])?;
     }
-    let pad_walks = PadShape::ALL.map(|shape| SURFACES.map(|surface| (shape, surface)));
-    let pad_walks = choice.choose(pad_walks.concat());
     let paper = Assembly::new(&load_robot("paper"));
     let level = surface::find_level_displacement(&stored_results, pads::GAIT);
-    let indexed_pad_walks = pad_walks.iter().enumerate();
-    let scenes = indexed_pad_walks.map(|(index, (shape, surface))| {
-        let name = make_walk_name(PADS_PREFIX, index);
-        let scene = shape.make_scene(&name, &paper, *surface, level);
-        (LegDrive::Rigid, scene)
-    });
+    let named_pad_walks = pad_walks.iter();
+    let scenes = named_pad_walks
+        .map(|(name, (shape, surface))| shape.make_scene(name, &paper, *surface, level));
     batch.add(&paper, scenes)?;
     let walk_count = batch.walk_count();
     println!("physics: MuJoCo simulates {walk_count} walks, which takes some minutes");
-    let mujoco_displacements = batch.start()?.wait()?;
+    let mujoco_displacements = batch.simulate()?;
 
     let (mut walk_results, mut faults) = (WalkResults::default(), Vec::new());
-    for ((robot_name, robot), walks) in robots.iter().zip(&walks_by_robot) {
-        for (index, walk) in walks.iter().enumerate() {
+    for (robot_name, robot, walks) in &robot_walks {
+        for (name, walk) in walks {
             let results = DisplacementPair {
                 model: walk.simulate_model(robot),
-                mujoco: mujoco_displacements[&make_walk_name(robot_name, index)],
+                mujoco: mujoco_displacements[name],
             };
             let mut messages = Vec::from_iter(results.describe_disagreement(walk.case));
             if !is_writing {
@@ -151,13 +136,14 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         }
         println!("\n{}", format_table(robot_name, robot, &walk_results));
     }
-    let (stored_surfaces, mut surfaces) = (surface::load_stored(), SurfaceDisplacements::new());
-    for (index, walk) in surface_walks.iter().enumerate() {
+    let stored_surfaces: SurfaceDisplacements = load_stored("surfaces.json");
+    let mut surfaces = SurfaceDisplacements::new();
+    for (name, walk) in &surface_walks {
         let (robot, gait, surface) = (walk.robot, &walk.gait, walk.surface);
-        let displacement = mujoco_displacements[&make_walk_name(SURFACE_PREFIX, index)];
+        let displacement = mujoco_displacements[name];
         let level = walk.level_displacement;
         let mut messages = surface::describe_excess_losses(surface, level, displacement);
-        if surface::is_known_shortfall(robot, gait, surface) {
+        if surface::KNOWN_SHORTFALLS.contains(&(robot, gait.as_str(), surface)) {
             messages.clear();
         }
         let surface_name = surface.to_string();
@@ -168,18 +154,18 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         let describe = |message| format!("{robot}: {gait} ({surface}): {message}");
         faults.extend(messages.into_iter().map(describe));
         let by_gait = surfaces.entry(robot.to_owned()).or_default();
-        let by_surface = by_gait.entry(gait.clone()).or_default();
-        by_surface.insert(surface_name, displacement);
+        insert(by_gait, gait, &surface_name, displacement);
     }
     for robot in surface::ROBOT_NAMES {
         let table = format_surfaces_table(robot, &stored_results, &surfaces);
         println!("\nrobots/{robot}.toml\n{table}");
     }
-    let (stored_servos, mut servo_results) = (servos::load_stored(), ServoResults::new());
-    for (index, (variant, gait)) in servo_walks.iter().enumerate() {
+    let stored_servos: ServoResults = load_stored("servos.json");
+    let mut servo_results = ServoResults::new();
+    for (name, (variant, gait)) in &servo_walks {
         let results = DisplacementPair {
             model: Some(variant.simulate_model(gait)),
-            mujoco: mujoco_displacements[&make_walk_name(SERVOS_PREFIX, index)],
+            mujoco: mujoco_displacements[name],
         };
         let mut messages = Vec::from_iter(variant.describe_disagreement(gait, &results));
         if !is_writing {
@@ -188,32 +174,29 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         }
         let describe = |message| format!("paper, {}: {gait}: {message}", variant.name);
         faults.extend(messages.into_iter().map(describe));
-        let by_gait = servo_results.entry(variant.name.to_owned()).or_default();
-        by_gait.insert((*gait).to_owned(), results);
+        insert(&mut servo_results, variant.name, gait, results);
     }
     println!("\n{}", format_servos_table(&servo_results));
-    let mut by_assumption = AssumptionDisplacements::new();
-    for (index, (assumption, gait)) in assumption_walks.iter().enumerate() {
-        let displacement = mujoco_displacements[&make_walk_name(ASSUMPTIONS_PREFIX, index)];
-        let description = assumption.description.to_owned();
-        let by_gait = by_assumption.entry(description).or_default();
-        by_gait.insert((*gait).to_owned(), displacement);
+    let mut by_assumption = GroupedDisplacements::new();
+    for (name, (assumption, gait)) in &assumption_walks {
+        let (group, displacement) = (assumption.description, mujoco_displacements[name]);
+        insert(&mut by_assumption, group, gait, displacement);
     }
-    let mut by_shape = ShapeDisplacements::new();
-    for (index, (shape, surface)) in pad_walks.iter().enumerate() {
-        let by_surface = by_shape.entry(shape.name()).or_default();
-        let displacement = mujoco_displacements[&make_walk_name(PADS_PREFIX, index)];
-        by_surface.insert(surface.to_string(), displacement);
+    let mut by_shape = GroupedDisplacements::new();
+    for (name, (shape, surface)) in &pad_walks {
+        let (shape, surface) = (shape.name(), surface.to_string());
+        insert(&mut by_shape, &shape, &surface, mujoco_displacements[name]);
     }
     println!("\n{}", pads::format_table(&by_shape));
     if !is_writing {
-        for (stored, current) in [
-            (assumptions::load_stored(), &by_assumption),
-            (pads::load_stored(), &by_shape),
+        for (file, current) in [
+            ("assumptions.json", &by_assumption),
+            ("pads.json", &by_shape),
         ] {
-            faults.extend(describe_displacement_changes(&stored, current));
+            faults.extend(describe_displacement_changes(&load_stored(file), current));
         }
     }
+    let write = |file: &str, text: String| std::fs::write(crate_dir().join(file), text);
     let grain_robot = load_robot(grains::ROBOT);
     // A shortened run (`--one-in`) omits the pads with a grain.
     if one_in == 1 {
@@ -221,23 +204,22 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         let table = grains::format_table(&grain_robot, &grain_results);
         println!("\nrobots/grain.toml\n{table}");
         faults.extend(grains::describe_disagreements(&grain_results));
-        match is_writing {
-            true => grains::store(&grain_results)?,
-            false => faults.extend(describe_grain_changes(
-                &grains::load_stored(),
-                &grain_results,
-            )),
+        if is_writing {
+            write("grains.json", format_stored(&grain_results, 2))?;
+        } else {
+            let stored = load_stored("grains.json");
+            faults.extend(describe_grain_changes(&stored, &grain_results));
         }
     }
     if is_writing {
         for (file, text) in [
-            ("figures.json", walk_results.to_json()),
-            ("surfaces.json", nested_map_to_json(&surfaces)),
-            ("assumptions.json", map_to_json(&by_assumption)),
-            ("pads.json", map_to_json(&by_shape)),
-            ("servos.json", nested_map_to_json(&servo_results)),
+            ("figures.json", format_stored(&walk_results, 3)),
+            ("surfaces.json", format_stored(&surfaces, 2)),
+            ("assumptions.json", format_stored(&by_assumption, 1)),
+            ("pads.json", format_stored(&by_shape, 1)),
+            ("servos.json", format_stored(&servo_results, 2)),
         ] {
-            std::fs::write(crate_dir().join(file), text)?;
+            write(file, text)?;
         }
         println!("physics: results stored in tools/physics; `make docs` updates the pages");
     } else if one_in == 1 && stored_results.walk_count() != walk_results.walk_count() {
@@ -250,6 +232,17 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     Ok(faults)
 }
 
+/// Inserts a result into a table by group and name.
+fn insert<T>(
+    table: &mut BTreeMap<String, BTreeMap<String, T>>,
+    group: &str,
+    name: &str,
+    result: T,
+) {
+    let by_name = table.entry(group.to_owned()).or_default();
+    by_name.insert(name.to_owned(), result);
+}
+
 /// A choice of every `one_in`-th walk.
 struct WalkChoice {
     one_in: usize,
@@ -258,10 +251,12 @@ struct WalkChoice {
 }
 
 impl WalkChoice {
-    fn choose<T>(&mut self, walks: Vec<T>) -> Vec<T> {
+    /// Chooses from these walks, and names each chosen walk and its file `prefix-0`, `prefix-1` and so on.
+    fn choose<T>(&mut self, prefix: &str, walks: Vec<T>) -> Vec<(String, T)> {
         let numbered_walks = walks.into_iter().zip(&mut self.walk_numbers);
         let chosen_walks = numbered_walks.filter(|(_, number)| number.is_multiple_of(self.one_in));
-        chosen_walks.map(|(walk, _)| walk).collect()
+        let names = (0..).map(|index: usize| format!("{prefix}-{index}"));
+        names.zip(chosen_walks.map(|(walk, _)| walk)).collect()
     }
 }
 
@@ -305,9 +300,6 @@ fn describe_grain_changes(stored: &GrainResults, current: &GrainResults) -> Vec<
     });
     messages.collect()
 }
-
-/// Displacements by group and name: by assumption and gait, or by pad shape and surface.
-type GroupedDisplacements = BTreeMap<String, BTreeMap<String, Displacement>>;
 
 /// Returns a message for each displacement that differs from the stored displacement.
 fn describe_displacement_changes(

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::io;
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 
 use lizard_parts::{Assembly, Pieces, Scene, StrutSpring, Trajectory};
 use serde::Deserialize;
@@ -55,12 +55,6 @@ pub struct WalkBatch {
     walk_count: usize,
 }
 
-/// A running judge.
-pub struct RunningJudge {
-    judge: Child,
-    _folder: TempDir,
-}
-
 impl WalkBatch {
     /// Creates an empty batch.
     ///
@@ -78,21 +72,22 @@ impl WalkBatch {
         self.walk_count
     }
 
-    /// Adds a robot's walks, each with its legs and its scene. The names of all scenes must differ.
+    /// Adds a robot's walks, each as its scene. The names of all scenes must differ.
     ///
     /// # Errors
     /// Fails if a file cannot be generated or written.
     pub fn add(
         &mut self,
         assembly: &Assembly,
-        walks: impl IntoIterator<Item = (LegDrive, Scene)>,
+        scenes: impl IntoIterator<Item = Scene>,
     ) -> Result<(), MujocoError> {
         let robot = assembly.robot();
         let neutral = robot.lizard().solve(&robot.neutral_pose());
         let neutral = neutral.expect("every loop closes in the neutral pose");
-        let mut known_pieces: BTreeMap<LegDrive, Pieces> = BTreeMap::new();
-        for (legs, scene) in walks {
-            let pieces = match known_pieces.entry(legs) {
+        // The pieces of the robot with rigid struts, and with slotted struts.
+        let mut known_pieces: BTreeMap<bool, Pieces> = BTreeMap::new();
+        for scene in scenes {
+            let pieces = match known_pieces.entry(scene.strut_spring.is_some()) {
                 Entry::Vacant(entry) => entry.insert(Pieces::compute(assembly, &scene)?),
                 Entry::Occupied(entry) => entry.into_mut(),
             };
@@ -103,21 +98,35 @@ impl WalkBatch {
         Ok(())
     }
 
-    /// Starts the judge.
+    /// Simulates all walks with the judge and returns their displacements by name.
     ///
     /// # Errors
-    /// Fails if Python does not start.
-    pub fn start(self) -> Result<RunningJudge, MujocoError> {
+    /// Fails if Python does not start, if the judge failed or could not simulate a walk, or if MuJoCo warned during a
+    /// walk.
+    pub fn simulate(self) -> Result<BTreeMap<String, Displacement>, MujocoError> {
         let judge = Command::new(crate_dir().join("../../target/physics/bin/python"))
             .arg(crate_dir().join("judge.py"))
             .arg(self.folder.path())
             .stdout(Stdio::piped())
             .spawn()
             .map_err(MujocoError::PythonStart)?;
-        Ok(RunningJudge {
-            judge,
-            _folder: self.folder,
-        })
+        let output = judge.wait_with_output()?;
+        if !output.status.success() {
+            return Err(MujocoError::JudgeExit(output.status));
+        }
+        let mut displacements = BTreeMap::new();
+        for line in String::from_utf8_lossy(&output.stdout).lines() {
+            let result: JudgeResult = serde_json::from_str(line)
+                .map_err(|_| MujocoError::InvalidOutput(line.to_owned()))?;
+            let Some(displacement) = result.displacement else {
+                return Err(MujocoError::FailedWalk {
+                    name: result.file,
+                    message: result.error.unwrap_or_default(),
+                });
+            };
+            displacements.insert(result.file, displacement.into());
+        }
+        Ok(displacements)
     }
 }
 
@@ -145,31 +154,5 @@ pub(crate) fn make_two_cycle_scene(
         // Only pictures need shapes; without shapes, MuJoCo reads the file ten times faster.
         has_shapes: false,
         ..Scene::for_assembly(assembly)
-    }
-}
-
-impl RunningJudge {
-    /// Waits for all walks and returns their displacements by name.
-    ///
-    /// # Errors
-    /// Fails if the judge failed or could not simulate a walk, or if MuJoCo warned during a walk.
-    pub fn wait(self) -> Result<BTreeMap<String, Displacement>, MujocoError> {
-        let output = self.judge.wait_with_output()?;
-        if !output.status.success() {
-            return Err(MujocoError::JudgeExit(output.status));
-        }
-        let mut displacements = BTreeMap::new();
-        for line in String::from_utf8_lossy(&output.stdout).lines() {
-            let result: JudgeResult = serde_json::from_str(line)
-                .map_err(|_| MujocoError::InvalidOutput(line.to_owned()))?;
-            let Some(displacement) = result.displacement else {
-                return Err(MujocoError::FailedWalk {
-                    name: result.file,
-                    message: result.error.unwrap_or_default(),
-                });
-            };
-            displacements.insert(result.file, displacement.into());
-        }
-        Ok(displacements)
     }
 }

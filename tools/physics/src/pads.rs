@@ -1,11 +1,10 @@
 //! Comparison of flat and domed pads on walks over edges and blocks.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use lizard_parts::{Assembly, Pads, Scene};
 
-use crate::results::Displacement;
+use crate::results::{Displacement, GroupedDisplacements};
 use crate::surface::Surface;
 
 /// The gait of the comparison.
@@ -64,19 +63,8 @@ impl PadShape {
     }
 }
 
-/// MuJoCo's displacements by shape and surface.
-pub type ShapeDisplacements = BTreeMap<String, BTreeMap<String, Displacement>>;
-
-/// Loads the displacements stored in `pads.json`.
-///
-/// # Panics
-/// If `pads.json` is not a table of displacements.
-pub fn load_stored() -> ShapeDisplacements {
-    serde_json::from_str(include_str!("../pads.json")).expect("pads.json has the expected format")
-}
-
 /// Returns the table in Markdown: mm forward per cycle, or a dash if a walk is missing.
-pub fn format_table(shapes: &ShapeDisplacements) -> String {
+pub fn format_table(shapes: &GroupedDisplacements) -> String {
     let headings = SURFACES.map(|surface| format!(" {surface} |")).concat();
     let lines = "---|".repeat(SURFACES.len());
     let mut text = format!("| radius, mm |{headings}\n|---|{lines}\n");

@@ -6,7 +6,7 @@ use lizard_robot::Travel;
 use serde::{Deserialize, Serialize};
 
 use crate::case::{Case, FootSetup};
-use crate::text::doubly_nested_map_to_json;
+use crate::text;
 
 /// A displacement in one cycle: mm forward, mm to the left, deg counter-clockwise; rounded to two decimals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -86,6 +86,9 @@ impl DisplacementPair {
     }
 }
 
+/// MuJoCo's displacements by group and name: by assumption and gait, by pad shape and surface, or by gait and surface.
+pub type GroupedDisplacements = BTreeMap<String, BTreeMap<String, Displacement>>;
+
 /// The results by robot, gait and case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
@@ -95,18 +98,9 @@ impl WalkResults {
     /// Loads the results stored in `figures.json`.
     ///
     /// # Panics
-    /// If `figures.json` does not have the format of [`WalkResults::to_json`].
+    /// If `figures.json` does not have the format of the results.
     pub fn load_stored() -> Self {
-        serde_json::from_str(include_str!("../figures.json"))
-            .expect("figures.json has the expected format")
-    }
-
-    /// Formats the results as the text of `figures.json`, with a line for each walk.
-    ///
-    /// # Panics
-    /// Never: names and numbers can always be written as JSON.
-    pub fn to_json(&self) -> String {
-        doubly_nested_map_to_json(&self.0)
+        text::load_stored("figures.json")
     }
 
     /// Returns the results for a robot's gait in a case; `None` if no results are stored.

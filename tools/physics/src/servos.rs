@@ -4,10 +4,11 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use lizard_parts::{Assembly, Scene, Trajectory};
+use lizard_parts::{Assembly, Scene};
 use lizard_robot::Robot;
 
-use crate::crate_dir;
+use crate::case::Case;
+use crate::mujoco::make_two_cycle_scene;
 use crate::results::{Displacement, DisplacementPair};
 
 /// The gaits, each with the index of the compared displacement component: 0 for the distance forward, 2 for the turn.
@@ -93,23 +94,20 @@ impl Variant {
     /// # Panics
     /// If robots/paper.toml does not have the replaced lines.
     pub fn load_robot(&self) -> Robot {
-        let text = std::fs::read_to_string(crate_dir().join("../../robots/paper.toml"));
-        let mut text = text.expect("robots/paper.toml is readable");
         let own_mass = crate::load_robot("paper").ground().body.mass;
-        let mut replace = |old: &str, new: &str| {
-            assert!(text.contains(old), "robots/paper.toml has no {old:?}");
-            text = text.replacen(old, new, 1);
-        };
         let servo_tables = format!(
             "[joints]\n{}\n[servo]\n{}\ndead_band_us = 0.0\n[servo.A1]",
             self.joint_lines, self.servo_lines
         );
-        replace("[servo.A1]", &servo_tables);
         let ground_table = format!("[ground]\nfriction = {}", self.friction);
-        replace("[ground]", &ground_table);
-        let mass_line = format!("mass = {:.1}", own_mass + self.extra_mass_g);
-        replace(&format!("mass = {own_mass:.1}"), &mass_line);
-        Robot::parse(&text).expect(self.name)
+        let [old_mass, new_mass] =
+            [own_mass, own_mass + self.extra_mass_g].map(|mass| format!("mass = {mass:.1}"));
+        let replacements: [(&str, &str); 3] = [
+            ("[servo.A1]", &servo_tables),
+            ("[ground]", &ground_table),
+            (&old_mass, &new_mass),
+        ];
+        crate::load_changed_paper(self.name, &replacements)
     }
 
     /// Returns MuJoCo's scene of a gait's walk over two cycles, of which the second is measured.
@@ -117,14 +115,7 @@ impl Variant {
     /// # Panics
     /// If the robot has no such gait.
     pub fn make_scene(&self, name: &str, assembly: &Assembly, gait: &str) -> Scene {
-        let robot = assembly.robot();
-        let gait = robot.gait(gait).expect("the robot has this gait");
-        let mut scene = Scene {
-            name: name.to_owned(),
-            trajectory: Some(Trajectory::for_gait(robot, gait, 2, 1)),
-            has_shapes: false,
-            ..Scene::for_assembly(assembly)
-        };
+        let mut scene = make_two_cycle_scene(name, assembly, gait, Case::ALL[0]);
         if let Some(pin_friction) = self.pin_friction {
             (scene.pin_friction, scene.motors.joint_friction.pin_torque) = (pin_friction, 0.0);
         }
@@ -159,15 +150,6 @@ impl Variant {
 
 /// The results by variant and gait.
 pub type ServoResults = BTreeMap<String, BTreeMap<String, DisplacementPair>>;
-
-/// Loads the results stored in `servos.json`.
-///
-/// # Panics
-/// If `servos.json` does not have the format of [`crate::text::nested_map_to_json`].
-pub fn load_stored() -> ServoResults {
-    serde_json::from_str(include_str!("../servos.json"))
-        .expect("servos.json has the expected format")
-}
 
 /// Returns the table of all variants in Markdown, with a dash for a missing result.
 pub fn format_servos_table(servos: &ServoResults) -> String {

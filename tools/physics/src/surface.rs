@@ -11,10 +11,11 @@ use lizard_robot::Robot;
 
 use crate::case::Case;
 use crate::crossing::Crossing;
-use crate::grains;
+use crate::grains::{self, GrainResults};
 use crate::mujoco::make_two_cycle_scene;
-use crate::results::{Displacement, WalkResults};
+use crate::results::{Displacement, GroupedDisplacements, WalkResults};
 use crate::table::Component;
+use crate::text::load_stored;
 
 /// The names of the robots that walk on other surfaces: `paper` walks on all surfaces, and the other robots walk only
 /// on the highest edge and blocks.
@@ -26,13 +27,8 @@ const MIN_TURN_DEG: f64 = 3.0;
 
 /// Returns the purposes of a gait with this displacement on a level floor: distance, turn, or both. A gait that does
 /// not walk has no purpose.
-pub(crate) fn list_gait_purposes(Displacement([forward, _, turn]): Displacement) -> Vec<Component> {
-    let purposes = [
-        (Component::Forward, forward.abs() > MIN_DISTANCE_MM),
-        (Component::Turn, turn.abs() > MIN_TURN_DEG),
-    ];
-    let components = purposes.map(|(component, is_purpose)| is_purpose.then_some(component));
-    components.into_iter().flatten().collect()
+pub(crate) fn list_gait_purposes(displacement: Displacement) -> Vec<Component> {
+    Component::list_above(displacement, MIN_DISTANCE_MM, MIN_TURN_DEG)
 }
 
 /// Returns a robot's walking gaits, each with MuJoCo's displacement on a level floor.
@@ -41,7 +37,7 @@ pub(crate) fn list_gait_purposes(Displacement([forward, _, turn]): Displacement)
 /// If no displacement of a gait is stored.
 pub fn list_walking_gaits(walk_results: &WalkResults, robot: &str) -> Vec<(String, Displacement)> {
     if robot == grains::ROBOT {
-        let stored = grains::load_stored();
+        let stored: GrainResults = load_stored("grains.json");
         let find_level = |(gait, _): (&str, bool)| {
             let results = grains::find_results_at_own_ratio(&stored[gait]);
             (gait.to_owned(), results.mujoco)
@@ -146,10 +142,8 @@ impl Surface {
         level_displacement: Displacement,
     ) -> Scene {
         let robot = assembly.robot();
-        let direction = match level_displacement.0[0] < -MIN_DISTANCE_MM {
-            true => -1.0,
-            false => 1.0,
-        };
+        let is_backward = level_displacement.0[0] < -MIN_DISTANCE_MM;
+        let direction = if is_backward { -1.0 } else { 1.0 };
         let mut scene = make_two_cycle_scene(name, assembly, gait, Case::ALL[0]);
         scene.friction_ratio = robot.ground().friction_ratio;
         let gait = robot.gait(gait).expect("the robot has this gait");
@@ -224,16 +218,7 @@ impl fmt::Display for Surface {
 }
 
 /// MuJoCo's displacements by robot, gait and surface.
-pub type SurfaceDisplacements = BTreeMap<String, BTreeMap<String, BTreeMap<String, Displacement>>>;
-
-/// Loads the displacements stored in `surfaces.json`.
-///
-/// # Panics
-/// If `surfaces.json` is not a table of displacements.
-pub fn load_stored() -> SurfaceDisplacements {
-    serde_json::from_str(include_str!("../surfaces.json"))
-        .expect("surfaces.json has the expected format")
-}
+pub type SurfaceDisplacements = BTreeMap<String, GroupedDisplacements>;
 
 /// Returns MuJoCo's displacement of a gait of the paper's robot on a level floor.
 ///
@@ -250,11 +235,6 @@ pub const KNOWN_SHORTFALLS: [(&str, &str, Surface); 2] = [
     (grains::ROBOT, "back", Surface::Edge(20)),
     (grains::ROBOT, "back", Surface::Blocks(10)),
 ];
-
-/// Returns true for a gait in [`KNOWN_SHORTFALLS`].
-pub fn is_known_shortfall(robot: &str, gait: &str, surface: Surface) -> bool {
-    KNOWN_SHORTFALLS.contains(&(robot, gait, surface))
-}
 
 /// Returns a message for each purpose (distance, turn) of which the gait loses more than allowed on the surface.
 pub fn describe_excess_losses(

@@ -20,17 +20,21 @@ pub(crate) enum Component {
 }
 
 impl Component {
-    /// Returns a displacement's components that are not negligible; `Forward` if both are negligible.
-    pub(crate) fn for_displacement(displacement: Displacement) -> Vec<Self> {
-        let [forward, _, turn] = displacement.0.map(f64::abs);
-        let mut components = Vec::new();
-        if forward > NEGLIGIBLE_MM || turn <= NEGLIGIBLE_DEG {
-            components.push(Self::Forward);
+    /// Lists the components of a displacement that exceed a distance, mm, or a turn, deg.
+    pub(crate) fn list_above(displacement: Displacement, mm: f64, deg: f64) -> Vec<Self> {
+        let components = [(Self::Forward, mm), (Self::Turn, deg)].into_iter();
+        let exceeds = |(component, min): &(Self, f64)| component.value(displacement).abs() > *min;
+        let components = components.filter(exceeds);
+        components.map(|(component, _)| component).collect()
+    }
+
+    /// Lists a displacement's components that are not negligible; `Forward` if both are negligible.
+    fn list_relevant(displacement: Displacement) -> Vec<Self> {
+        let components = Self::list_above(displacement, NEGLIGIBLE_MM, NEGLIGIBLE_DEG);
+        match components.is_empty() {
+            true => vec![Self::Forward],
+            false => components,
         }
-        if turn > NEGLIGIBLE_DEG {
-            components.push(Self::Turn);
-        }
-        components
     }
 
     pub(crate) fn unit(self) -> &'static str {
@@ -51,51 +55,46 @@ impl Component {
 /// Returns a plain-text table of all results of a robot, with the model and MuJoCo side by side and one block for each
 /// kind of leg drive.
 pub fn format_table(name: &str, robot: &Robot, walk_results: &WalkResults) -> String {
-    let mut text = String::new();
+    let mut lines = Vec::new();
     for legs in [LegDrive::Rigid, LegDrive::Strut] {
         let title = match legs {
             LegDrive::Rigid => "rigid struts",
             LegDrive::Strut => "struts with springs",
         };
-        _ = writeln!(text, "robots/{name}.toml, {title}");
+        lines.push(format!("robots/{name}.toml, {title}"));
         let cases = Case::ALL.into_iter().filter(|case| case.legs == legs);
         let cases: Vec<Case> = cases.collect();
         let width = list_moving_gaits(robot).map(str::len).max().unwrap_or(0);
-        _ = write!(text, "{:width$}    ", "");
         let headings = cases.iter().map(|case| match case.feet {
             FootSetup::Level => "level",
             FootSetup::Stiff => "0.6 mm long, 2 N/mm",
             FootSetup::Soft => "1.0 mm long",
         });
-        for heading in headings {
-            _ = write!(text, "  {heading:<20}");
-        }
-        text = text.trim_end().to_owned();
-        _ = write!(text, "\n{:<width$}    ", "gait");
-        for _ in &cases {
-            _ = write!(text, "  {:>6}  {:>6}      ", "model", "MuJoCo");
-        }
-        text = text.trim_end().to_owned() + "\n";
+        let headings: String = headings.map(|heading| format!("  {heading:<20}")).collect();
+        lines.push(format!("{:width$}    {headings}", ""));
+        let columns = "   model  MuJoCo      ".repeat(cases.len());
+        lines.push(format!("{:<width$}    {columns}", "gait"));
         for gait in list_moving_gaits(robot) {
             let Some(first_results) = walk_results.get(name, gait, cases[0]) else {
                 continue;
             };
             let first_displacement = first_results.model.unwrap_or(first_results.mujoco);
-            for component in Component::for_displacement(first_displacement) {
-                _ = write!(text, "{gait:<width$} {:>3}", component.unit());
+            for component in Component::list_relevant(first_displacement) {
+                let mut line = format!("{gait:<width$} {:>3}", component.unit());
                 let format_value = |displacement| format!("{:+.1}", component.value(displacement));
                 let case_results = cases.iter().map(|case| walk_results.get(name, gait, *case));
                 for results in case_results.flatten() {
                     let model = results.model.map_or("-".to_owned(), format_value);
                     let mujoco = format_value(results.mujoco);
-                    _ = write!(text, "  {model:>6}  {mujoco:>6}      ");
+                    _ = write!(line, "  {model:>6}  {mujoco:>6}      ");
                 }
-                text = text.trim_end().to_owned() + "\n";
+                lines.push(line);
             }
         }
-        text.push('\n');
+        lines.push(String::new());
     }
-    text.trim_end().to_owned() + "\n"
+    let lines: Vec<&str> = lines.iter().map(|line| line.trim_end()).collect();
+    lines.join("\n").trim_end().to_owned() + "\n"
 }
 
 /// Returns the names of the moving gaits, in the order of robot.toml.
@@ -122,7 +121,7 @@ pub fn format_displacement_table(name: &str, robot: &Robot, walk_results: &WalkR
             continue;
         };
         let format_cell = |displacements: &[Displacement]| {
-            let components = Component::for_displacement(model).into_iter();
+            let components = Component::list_relevant(model).into_iter();
             let ranges = components.map(|component| format_range(component, displacements));
             ranges.collect::<Vec<_>>().join(", ")
         };

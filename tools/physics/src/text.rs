@@ -1,44 +1,49 @@
 //! Stored texts: the displacements as JSON, one entry per line, so that a diff shows each change; and the tables in the
 //! documentation.
 
-use std::collections::BTreeMap;
 use std::fs;
 
 use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
 
 use crate::crate_dir;
 
-/// Formats a map as a JSON object with one line per key.
-pub fn map_to_json<T: Serialize>(map: &BTreeMap<String, T>) -> String {
-    format_object(map, to_json) + "\n"
+/// Loads the results stored in a file of this crate's folder, such as `pads.json`.
+///
+/// # Panics
+/// If the file is missing or does not have the format of the results.
+pub fn load_stored<T: DeserializeOwned>(file: &str) -> T {
+    let text = fs::read_to_string(crate_dir().join(file)).expect(file);
+    serde_json::from_str(&text)
+        .unwrap_or_else(|error| panic!("{file} has the expected format: {error:?}"))
 }
 
-/// Formats a map of maps as a JSON object of objects with one line per inner key.
-pub fn nested_map_to_json<T: Serialize>(map: &BTreeMap<String, BTreeMap<String, T>>) -> String {
-    format_object(map, |inner| format_object(inner, to_json)) + "\n"
+/// Formats nested maps and lists as the text of a stored file: JSON with a line for each entry down to this depth.
+///
+/// # Panics
+/// Never: names and numbers can always be written as JSON.
+pub fn format_stored<T: Serialize>(results: &T, depth: usize) -> String {
+    let value = serde_json::to_value(results).expect("the results are serializable as JSON");
+    format_entries(&value, depth) + "\n"
 }
 
-/// Formats a map of maps of maps as nested JSON objects with one line per key of the innermost maps.
-pub fn doubly_nested_map_to_json<T: Serialize>(
-    map: &BTreeMap<String, BTreeMap<String, BTreeMap<String, T>>>,
-) -> String {
-    format_object(map, |outer| {
-        format_object(outer, |inner| format_object(inner, to_json))
-    }) + "\n"
-}
-
-/// Formats a map as a JSON object, one line per key, without a trailing newline.
-pub(crate) fn format_object<T>(
-    map: &BTreeMap<String, T>,
-    format_value: impl Fn(&T) -> String,
-) -> String {
-    let format_line = |(key, value): (&String, &T)| format!("{key:?}: {}", format_value(value));
-    let lines: Vec<String> = map.iter().map(format_line).collect();
-    format!("{{\n{}\n}}", lines.join(",\n"))
-}
-
-pub(crate) fn to_json<T: Serialize>(value: &T) -> String {
-    serde_json::to_string(value).expect("the value is serializable as JSON")
+/// Formats a value as JSON without a trailing newline.
+fn format_entries(value: &Value, depth: usize) -> String {
+    match value {
+        Value::Object(map) if depth > 0 => {
+            let format_line = |(key, value): (&String, &Value)| {
+                format!("{key:?}: {}", format_entries(value, depth - 1))
+            };
+            let lines: Vec<String> = map.iter().map(format_line).collect();
+            format!("{{\n{}\n}}", lines.join(",\n"))
+        }
+        Value::Array(items) if depth > 0 => {
+            let lines = items.iter().map(|item| format_entries(item, depth - 1));
+            format!("[\n{}\n]", lines.collect::<Vec<_>>().join(",\n"))
+        }
+        _ => value.to_string(),
+    }
 }
 
 /// Asserts that the text between `begin` and `end` in one of the project's files equals `expected_text`; if

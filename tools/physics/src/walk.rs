@@ -1,9 +1,9 @@
 //! List of the walks that both the contact model and MuJoCo simulate: every gait in its cases.
 
 use lizard_parts::{Assembly, Scene};
-use lizard_robot::{CheckedGait, Robot};
+use lizard_robot::Robot;
 
-use crate::case::{Case, LegDrive};
+use crate::case::Case;
 use crate::mujoco::make_two_cycle_scene;
 use crate::results::Displacement;
 
@@ -19,10 +19,9 @@ pub struct Walk {
 }
 
 impl Walk {
-    /// Returns the leg drive, and MuJoCo's scene with this name.
-    pub fn make_scene(&self, name: &str, assembly: &Assembly) -> (LegDrive, Scene) {
-        let scene = make_two_cycle_scene(name, assembly, &self.gait, self.case);
-        (self.case.legs, scene)
+    /// Returns MuJoCo's scene with this name.
+    pub fn make_scene(&self, name: &str, assembly: &Assembly) -> Scene {
+        make_two_cycle_scene(name, assembly, &self.gait, self.case)
     }
 
     /// Simulates a cycle in the contact model; returns `None` if the model has no result.
@@ -39,20 +38,17 @@ impl Walk {
 /// Returns the walks of a robot: every moving gait in every case. A gait without a result in the contact model walks
 /// only in the first case.
 pub fn list_walks(robot: &Robot) -> Vec<Walk> {
-    let gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
-    let walks = gaits.flat_map(|gait| list_gait_walks(robot, gait));
-    walks.collect()
-}
-
-fn list_gait_walks(robot: &Robot, gait: &CheckedGait) -> Vec<Walk> {
     let [first_case, ..] = Case::ALL;
-    let is_determined = gait.predict(&first_case.ground(robot)).is_determined();
-    let cases = Case::ALL.into_iter();
-    let cases = cases.filter(|case| is_determined || *case == first_case);
-    let make_walk = |case| Walk {
-        gait: gait.name().to_owned(),
-        case,
-        is_determined,
-    };
-    cases.map(make_walk).collect()
+    let mut walks = Vec::new();
+    for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
+        let is_determined = gait.predict(&first_case.ground(robot)).is_determined();
+        let cases = Case::ALL.into_iter();
+        let cases = cases.filter(|case| is_determined || *case == first_case);
+        walks.extend(cases.map(|case| Walk {
+            gait: gait.name().to_owned(),
+            case,
+            is_determined,
+        }));
+    }
+    walks
 }

@@ -3,7 +3,7 @@
 //! With `BLESS_PHYSICS=1`, as in `make docs`, the tests write the speeds into docs/gaits.md and robots/grain.toml.
 
 use lizard_physics::grains::{self, GAITS, GrainResults, RATIOS};
-use lizard_physics::text::check_or_update_block;
+use lizard_physics::text::{check_or_update_block, format_stored, load_stored};
 use lizard_physics::{crate_dir, load_robot};
 
 /// Returns a gait's speeds at a friction ratio: the model's, if the model has a result, and MuJoCo's. `component` is
@@ -25,7 +25,7 @@ fn are_both_above(speeds: &[f64], min_speed: f64) -> bool {
 
 #[test]
 fn the_documentation_and_the_robot_file_have_the_stored_speeds() {
-    let table = grains::format_table(&load_robot(grains::ROBOT), &grains::load_stored());
+    let table = grains::format_table(&load_robot(grains::ROBOT), &load_stored("grains.json"));
     let begin = "<!-- speeds of robots/grain.toml -->\n```text\n";
     check_or_update_block("docs/gaits.md", begin, "```\n<!-- end -->", &table);
     let comment: String = table.lines().map(|line| format!("# {line}\n")).collect();
@@ -35,10 +35,10 @@ fn the_documentation_and_the_robot_file_have_the_stored_speeds() {
 
 #[test]
 fn every_result_is_stored_as_it_is_formatted_and_agrees_with_the_model() {
-    let stored = grains::load_stored();
+    let stored: GrainResults = load_stored("grains.json");
     let text = std::fs::read_to_string(crate_dir().join("grains.json"));
     let text = text.expect("grains.json is readable");
-    assert_eq!(text, grains::to_json(&stored));
+    assert_eq!(text, format_stored(&stored, 2));
     let disagreements = grains::describe_disagreements(&stored);
     assert_eq!(disagreements, Vec::<String>::new());
     for (gait, _) in GAITS {
@@ -48,7 +48,8 @@ fn every_result_is_stored_as_it_is_formatted_and_agrees_with_the_model() {
 
 #[test]
 fn the_stored_results_of_the_model_are_up_to_date() {
-    let (stored, robot) = (grains::load_stored(), load_robot(grains::ROBOT));
+    let stored: GrainResults = load_stored("grains.json");
+    let robot = load_robot(grains::ROBOT);
     for (name, _) in GAITS {
         let gait = robot.gait(name).expect("the robot has this gait");
         for (ratio, results) in RATIOS.into_iter().zip(&stored[name]) {
@@ -66,7 +67,7 @@ fn the_stored_results_of_the_model_are_up_to_date() {
 
 #[test]
 fn the_robot_runs_at_90_mm_per_second_and_turns_on_pads_with_a_grain() {
-    let stored = grains::load_stored();
+    let stored = load_stored("grains.json");
     let ratio = load_robot(grains::ROBOT).ground().friction_ratio;
     assert_eq!(ratio, 1.5, "the friction ratio in robots/grain.toml");
     let speeds = compute_speeds(&stored, "run", 1.5, 0);

@@ -3,12 +3,12 @@
 //! With `BLESS_PHYSICS=1`, as in `make docs`, the tests write the table into docs/judges.md.
 
 use lizard_physics::crate_dir;
-use lizard_physics::servos::{GAITS, Variant, format_servos_table, load_stored};
-use lizard_physics::text::{check_or_update_block, nested_map_to_json};
+use lizard_physics::servos::{GAITS, ServoResults, Variant, format_servos_table};
+use lizard_physics::text::{check_or_update_block, format_stored, load_stored};
 
 #[test]
 fn the_model_matches_mujoco_for_lagging_servos() {
-    let stored = load_stored();
+    let stored: ServoResults = load_stored("servos.json");
     let mut result_count = 0;
     for variant in Variant::ALL {
         for (gait, component) in GAITS {
@@ -33,12 +33,12 @@ fn the_model_matches_mujoco_for_lagging_servos() {
     assert_eq!(stored_count, result_count, "no other results may be stored");
     let text =
         std::fs::read_to_string(crate_dir().join("servos.json")).expect("servos.json is readable");
-    assert_eq!(text, nested_map_to_json(&stored));
+    assert_eq!(text, format_stored(&stored, 2));
 }
 
 #[test]
 fn the_documentation_has_the_stored_displacements() {
     let begin = "<!-- servos of robots/paper.toml -->\n";
-    let table = format_servos_table(&load_stored());
+    let table = format_servos_table(&load_stored("servos.json"));
     check_or_update_block("docs/judges.md", begin, "<!-- end -->", &table);
 }

@@ -78,8 +78,7 @@ impl Observer {
             && self.now > until
         {
             self.pending_promises.motion = None;
-            let missing_servo = has_pulses.iter().position(|has_pulse| !has_pulse);
-            if let Some(servo) = missing_servo
+            if let Some(servo) = has_pulses.iter().position(|has_pulse| !has_pulse)
                 && !self.was_disturbed_since(from)
             {
                 let observation = format!("A{} has no pulses", servo + 1);

@@ -69,7 +69,9 @@ impl Observer {
             (
                 self.reports.stopped_at.map(rounded_age),
                 self.reports.is_reported,
-                is_within_ms(self.reports.reported_at, 400),
+                self.reports
+                    .reported_at
+                    .is_some_and(|time| is_within_ms(time, 400)),
             ),
             (recent_brown_outs.count(), self.start_cause),
         )

@@ -25,6 +25,18 @@ pub struct Pulse {
     pub is_end_late: bool,
 }
 
+impl Pulse {
+    /// Returns a pulse that is neither cut short nor too long.
+    pub const fn exact(servo: usize, width: u32) -> Self {
+        Self {
+            servo,
+            width,
+            is_cut: false,
+            is_end_late: false,
+        }
+    }
+}
+
 /// An event that a tool observes from outside the robot.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {

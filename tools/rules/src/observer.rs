@@ -163,17 +163,23 @@ impl Observer {
     pub fn observe_frame(&mut self, start: Time, widths: [u16; 4]) {
         let servo_widths = widths.into_iter().enumerate();
         for (servo, width) in servo_widths.filter(|(_, width)| *width > 0) {
-            let pulse = Pulse {
-                servo,
-                width: width.into(),
-                is_cut: false,
-                is_end_late: false,
-            };
+            let pulse = Pulse::exact(servo, width.into());
             // The times are nominal, to about a millisecond: A1's pulse begins 4 ms after the tick, and each further
             // servo's pulse one slot of 4 ms later.
             self.observe(start + (5 + 4 * servo as Time) * MS, Event::Pulse(pulse));
         }
         self.observe(start + 20 * MS, Event::TimePasses);
+    }
+
+    /// Observes a command if it moves, freezes or rests the robot. `is_accepted` is as in [`Event::MotionCommand`].
+    pub fn observe_command(&mut self, time: Time, effect: Effect, is_accepted: Option<bool>) {
+        if matches!(effect, Effect::Motion | Effect::Freeze | Effect::Rest) {
+            let command = Event::MotionCommand {
+                effect,
+                is_accepted,
+            };
+            self.observe(time, command);
+        }
     }
 
     /// Returns `Ok` if no rule was violated since the last call, and forgets all violations.
@@ -276,10 +282,7 @@ impl Observer {
                     servo.record_blocked_interrupts(until);
                 }
             }
-            Event::SupplyMv(mv) => {
-                let min_good_mv = self.limits.min_good_mv();
-                self.supply.record(time, mv, min_good_mv);
-            }
+            Event::SupplyMv(mv) => self.supply.record(time, mv, self.limits.min_good_mv()),
             Event::ByteReceived => self.permission.boot_grant_at = None,
             Event::LineReceived { is_command } => {
                 self.unanswered_line_count += 1;

@@ -4,12 +4,12 @@ use lizard_core::console::word::{Effect, Word};
 use lizard_core::memory::restart::Cause;
 use lizard_core::virtual_board::is_answer;
 
-use crate::event::{MS, NEVER, Time};
+use crate::event::{MS, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
 /// The last stop by a fault, and its report on the console.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Reports {
     /// The time at which a fault stopped the robot; `None` if no fault has occurred since the last motion command.
     pub stopped_at: Option<Time>,
@@ -18,19 +18,8 @@ pub(crate) struct Reports {
     /// True if a command after the report may not have reached the robot. A robot that is still stopped does not report
     /// the stop again.
     may_still_be_stopped: bool,
-    /// The time of the last report of a fault on the console.
-    pub reported_at: Time,
-}
-
-impl Default for Reports {
-    fn default() -> Self {
-        Self {
-            stopped_at: None,
-            is_reported: false,
-            may_still_be_stopped: false,
-            reported_at: NEVER,
-        }
-    }
+    /// The time of the last report of a fault on the console; `None` if there was no report.
+    pub reported_at: Option<Time>,
 }
 
 impl Reports {
@@ -38,7 +27,8 @@ impl Reports {
     pub(crate) fn record_stop(&mut self, time: Time) {
         if self.stopped_at.is_none() {
             self.stopped_at = Some(time);
-            self.is_reported = self.may_still_be_stopped || time - self.reported_at < 400 * MS;
+            let is_recent = |reported_at| time - reported_at < 400 * MS;
+            self.is_reported = self.may_still_be_stopped || self.reported_at.is_some_and(is_recent);
         }
     }
 
@@ -74,7 +64,7 @@ impl Observer {
         self.record_accepted_command(line);
         if line.starts_with("# fault: ") || line.starts_with("# held") {
             self.reports.is_reported = true;
-            self.reports.reported_at = self.now;
+            self.reports.reported_at = Some(self.now);
             if line.contains("no command within") {
                 // Soon after a command, the line may report a stop that the command has already ended.
                 if first_byte_at - self.last_motion_command_at >= self.limits.max_queue_time {
@@ -135,9 +125,8 @@ impl Observer {
 
     /// Checks that the console has reported a stop by now. Call this only while a host reads the console.
     pub fn check_stop_is_reported(&mut self) {
-        let stopped_at = self.reports.stopped_at;
         let is_due = |time| self.now - time > self.limits.max_report_time;
-        if stopped_at.is_some_and(is_due) && !self.reports.is_reported {
+        if self.reports.stopped_at.is_some_and(is_due) && !self.reports.is_reported {
             self.record_violation(Rule::StopReported, "no report on the console");
         }
     }

@@ -1,6 +1,6 @@
 //! The history of the supply voltage, and the rules that depend on it.
 
-use crate::event::{MS, NEVER, Time};
+use crate::event::{MS, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
@@ -15,27 +15,18 @@ const MAX_LOW_DETECTION_TIME: Time = 220 * MS;
 const FIRST_READING_TIME: Time = 20 * MS;
 
 /// The history of the supply voltage over the last two seconds.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct SupplyHistory {
     /// The voltages in mV, each with the time at which it began.
     voltages: Vec<(Time, u32)>,
-    /// The time of the last change to or from a voltage below the good range.
-    pub last_change_below_good: Time,
-}
-
-impl Default for SupplyHistory {
-    fn default() -> Self {
-        Self {
-            voltages: Vec::new(),
-            last_change_below_good: NEVER,
-        }
-    }
+    /// The time of the last change to or from a voltage below the good range; `None` if there was no such change.
+    last_change_below_good: Option<Time>,
 }
 
 impl SupplyHistory {
     pub(crate) fn record(&mut self, time: Time, mv: u32, min_good_mv: u32) {
         if self.current_mv() < min_good_mv || mv < min_good_mv {
-            self.last_change_below_good = time;
+            self.last_change_below_good = Some(time);
         }
         let is_old = |pair: &[(Time, u32)]| pair[1].0 < time - 2_000 * MS;
         let old_spans = self.voltages.windows(2).take_while(|pair| is_old(pair));
@@ -50,7 +41,8 @@ impl SupplyHistory {
 
     /// True if the supply has been at or above `min_good_mv` since a time.
     pub(crate) fn has_been_good_since(&self, since: Time, min_good_mv: u32) -> bool {
-        self.current_mv() >= min_good_mv && self.last_change_below_good <= since
+        self.current_mv() >= min_good_mv
+            && self.last_change_below_good.is_none_or(|time| time <= since)
     }
 
     /// Returns the total time in `from..to` during which the supply was below `mv`.

@@ -4,24 +4,18 @@ use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
 use lizard_rules::{Event, Limits, MS, Observer, Pulse, Rule, Time};
 
-const REST: Event<'_> = Event::MotionCommand {
-    effect: Effect::Rest,
-    is_accepted: Some(true),
-};
-const STAND: Event<'_> = Event::MotionCommand {
-    effect: Effect::Motion,
-    is_accepted: Some(true),
-};
 const REPEATED_RESETS_REPORT: &str =
     "# fault: reset several times in a row by the button or a weak supply, resting";
 
+fn accepted_command(effect: Effect) -> Event<'static> {
+    Event::MotionCommand {
+        effect,
+        is_accepted: Some(true),
+    }
+}
+
 fn pulse(servo: usize) -> Event<'static> {
-    Event::Pulse(Pulse {
-        servo,
-        width: 24_000,
-        is_cut: false,
-        is_end_late: false,
-    })
+    Event::Pulse(Pulse::exact(servo, 24_000))
 }
 
 /// Passes one pulse of each servo to the observer, 4 ms apart from `start_ms` on.
@@ -57,7 +51,7 @@ fn observer_of_hung_robot(rest_ms: Time) -> Observer {
     let mut events = [
         (450, Event::MainStalled(605 * MS)),
         (600, Event::ProgramStart(Cause::Watchdog)),
-        (rest_ms, REST),
+        (rest_ms, accepted_command(Effect::Rest)),
     ];
     events.sort_by_key(|(ms, _)| *ms);
     for (ms, event) in events {
@@ -84,7 +78,7 @@ fn a_rest_in_or_soon_after_a_hang_does_not_forbid_the_pulses_of_the_next_frame()
 #[test]
 fn servos_that_rested_after_a_hang_must_wake_one_by_one() {
     let mut observer = observer_of_hung_robot(620);
-    observer.observe(740 * MS, STAND);
+    observer.observe(740 * MS, accepted_command(Effect::Motion));
     observe_pulses_of_all_servos(&mut observer, 825);
     assert_eq!(take_violated_rules(&mut observer), [Rule::WakeOneByOne; 3]);
 }
@@ -121,7 +115,7 @@ fn a_rest_report_that_may_have_been_queued_before_a_command_does_not_forbid_its_
         let mut observer = observer_of_awake_robot();
         observer.observe(450 * MS, Event::ProgramCut);
         observer.observe(455 * MS, Event::ProgramStart(Cause::BrownOut));
-        observer.observe(530 * MS, STAND);
+        observer.observe(530 * MS, accepted_command(Effect::Motion));
         let report = Event::LinePrinted(printed_from_ms * MS, REPEATED_RESETS_REPORT);
         observer.observe(710 * MS, report);
         observer.observe(760 * MS, pulse(0));

@@ -155,8 +155,8 @@ impl Studio {
         self.aim = [0.0; 2];
     }
 
-    /// Returns the camera's position and its axes (right, down, forward), in the axes of the tilted board.
-    fn camera(&self) -> (Vector, [Vector; 3]) {
+    /// Returns the camera's optics, in the axes of the tilted board.
+    fn optics(&self) -> Optics {
         let tilt = self.camera_tilt.to_radians();
         let direction = self.camera_direction.to_radians();
         let horizontal = [tilt.sin() * direction.cos(), tilt.sin() * direction.sin()];
@@ -174,26 +174,20 @@ impl Studio {
         let right = [0, 1, 2].map(|i| cos * level_right[i] + sin * down[i]);
         let [x, y, z] = self.to_board_axes([eye[0] - TILT_EDGE_X_MM, eye[1], eye[2]]);
         let axes = [right, cross_product(forward, right), forward];
-        let axes = axes.map(|axis| self.to_board_axes(axis));
-        ([x + TILT_EDGE_X_MM, y, z], axes)
+        let [width, height] = self.size.map(|length| length as f64);
+        Optics {
+            eye: [x + TILT_EDGE_X_MM, y, z],
+            axes: axes.map(|axis| self.to_board_axes(axis)),
+            focal_length: self.focal_length * width,
+            distortion: self.distortion,
+            image_centre: [(width - 1.0) / 2.0, (height - 1.0) / 2.0],
+        }
     }
 
     /// Converts a direction from the room's axes to the axes of the tilted board.
     fn to_board_axes(&self, [x, y, z]: Vector) -> Vector {
         let (sin, cos) = self.board_tilt.to_radians().sin_cos();
         [x * cos + z * sin, y, z * cos - x * sin]
-    }
-
-    fn optics(&self) -> Optics {
-        let (eye, axes) = self.camera();
-        let [width, height] = self.size.map(|length| length as f64);
-        Optics {
-            eye,
-            axes,
-            focal_length: self.focal_length * width,
-            distortion: self.distortion,
-            image_centre: [(width - 1.0) / 2.0, (height - 1.0) / 2.0],
-        }
     }
 
     /// Renders the floor and the strips without the robot.
@@ -277,7 +271,9 @@ pub struct Background {
 
 /// The optics of the camera: converts between pixels and points.
 struct Optics {
+    /// The camera's position.
     eye: Vector,
+    /// The camera's axes: right, down, forward.
     axes: [Vector; 3],
     focal_length: f64,
     distortion: f64,

@@ -105,6 +105,7 @@ impl Walk {
         let phase =
             ((seconds - REST_S) / self.period).clamp(0.0, self.deviations.len() as f64 - 1e-9);
         let (cycle, cycle_fraction) = (phase as usize, phase.fract());
+        // The true path is interpolated here, because `Gait::pose_at` is code under test.
         let path = &self.gait.path;
         let position = cycle_fraction * (path.len() - 1) as f64;
         let (i, fraction) = (position as usize, position.fract());

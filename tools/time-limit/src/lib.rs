@@ -161,8 +161,7 @@ fn read_all(mut pipe: impl Read + Send + 'static) -> mpsc::Receiver<io::Result<V
     let (sender, receiver) = mpsc::channel();
     thread::spawn(move || {
         let mut contents = Vec::new();
-        let result = pipe.read_to_end(&mut contents);
-        sender.send(result.map(|_| contents))
+        sender.send(pipe.read_to_end(&mut contents).map(|_| contents))
     });
     receiver
 }

@@ -1,5 +1,5 @@
 // Puts an edited gait into the page's robot and starts it in the simulation.
-import type { EditedGait, Refusal } from '../robot';
+import { type EditedGait, type Refusal, refuse } from '../robot';
 import type { Session } from '../session';
 
 /** Simulated time between a restart and standing, ms. */
@@ -25,9 +25,7 @@ export async function driveGait(session: Session, gait: EditedGait): Promise<Ref
  * board.
  */
 export async function restartWithGait(session: Session, gait: EditedGait): Promise<Refusal | null> {
-  if (session.isReal) {
-    return { refused: 'A real board has only the gaits that were written to it. Write this gait to the board, or return to the simulation to try it.', consequence: null, line: null, key: '' };
-  }
+  if (session.isReal) return refuse('A real board has only the gaits that were written to it. Write this gait to the board, or return to the simulation to try it.');
   const refusal = await applyGait(session, gait);
   if (!refusal) await session.link.wait(WAKE_MS);
   return refusal;

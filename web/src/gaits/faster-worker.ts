@@ -1,4 +1,4 @@
-// The worker of FasterSearch: a robot in WebAssembly that can search for a faster gait.
+// The worker of the button "Make it faster": a robot in WebAssembly that can search for a faster gait.
 import { expose } from 'comlink';
 
 import { type FoundGait, initSync, Robot, type SearchTask, type Trial } from '../../generated/tune';

@@ -60,17 +60,16 @@ export class BluetoothLink implements Link {
     // False without a radio, and also if the page may not use the radio.
     const isAvailable = await bluetooth.getAvailability();
     const filters = [...SERIAL_SERVICES.map(({ service }) => ({ services: [service] })), ...NAME_PREFIXES.map((namePrefix) => ({ namePrefix }))];
-    let device: BluetoothDevice;
-    try {
-      device = await bluetooth.requestDevice({ filters, optionalServices: SERIAL_SERVICES.map(({ service }) => service) });
-    } catch (error) {
+    const request = bluetooth.requestDevice({ filters, optionalServices: SERIAL_SERVICES.map(({ service }) => service) });
+    const device = await request.catch((error: unknown) => {
       // Closing the chooser without a choice and missing permission of the system give the same error with different
       // messages.
       const isNotFound = error instanceof DOMException && error.name === 'NotFoundError';
       if (isNotFound && !isAvailable) throw new Error('Bluetooth is missing on this machine, or it is switched off.');
       if (isNotFound && !/permission|denied/i.test(error.message)) return null;
       throw new Error(`The browser may not use Bluetooth: allow it in the settings of the browser and of the system. The browser reports: ${String(error)}`);
-    }
+    });
+    if (!device) return null;
     const link = new BluetoothLink(device);
     await link.connect();
     return link;

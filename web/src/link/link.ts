@@ -30,21 +30,3 @@ export interface Link {
   /** Closes the link; nothing is received afterwards. */
   close(): Promise<void>;
 }
-
-/** Timers in simulated time, whose unit the caller chooses. */
-export class Timers {
-  private pendingTimers: { dueTime: number; resolve: () => void }[] = [];
-
-  /** Resolves once the simulated time has reached `dueTime`. */
-  waitUntil(dueTime: number): Promise<void> {
-    return new Promise((resolve) => this.pendingTimers.push({ dueTime, resolve }));
-  }
-
-  /** Resolves the timers whose time has come at `now`. */
-  advanceTo(now: number): void {
-    const dueTimers = this.pendingTimers.filter(({ dueTime }) => dueTime <= now);
-    if (dueTimers.length === 0) return;
-    this.pendingTimers = this.pendingTimers.filter(({ dueTime }) => dueTime > now);
-    for (const { resolve } of dueTimers) resolve();
-  }
-}

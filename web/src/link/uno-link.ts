@@ -2,41 +2,39 @@
 import type { Four } from '../robot';
 import { SimulatedBoard, FREQUENCY_HZ } from '../uno/simulated-board';
 import { FrameCollector } from '../uno/frame-collector';
-import { type Link, Timers } from './link';
+import type { Link } from './link';
 
 const CYCLES_PER_MS = FREQUENCY_HZ / 1000;
 /** Simulated time between two reads of the chip's output, ms. */
 const SLICE_MS = 2;
 
-/** Callbacks for the servo pulses of the simulated board. */
-export interface UnoListener {
-  /** Receives a frame: the pulse width of each servo in cycles, 0 for none, and the cycle of the first rising edge. */
-  onFrame(widths: Four<number>, startCycle: number): void;
-  /** Receives a pulse: the Arduino number of its pin, the cycle of its rising edge, and its width in cycles. */
-  onPulse(pin: number, riseCycle: number, width: number): void;
-}
-
 export class UnoLink implements Link {
   readonly kind = 'simulated';
   readonly name = 'simulated UNO';
   onBytes: (bytes: Uint8Array) => void = () => {};
-  private readonly timers = new Timers();
+  /** The calls of `wait` whose time has not come yet. */
+  private waits: { endCycle: number; resolve: () => void }[] = [];
   private readonly frameCollector: FrameCollector;
   /** Bytes that the board has sent in the current slice. */
   private bytesFromBoard: number[] = [];
   /** Remaining cycles to run; negative if the chip has overrun its time. */
   private cyclesToRun = 0;
 
-  /** `pins` are the Arduino numbers of the pins of servos A1 to A4. */
+  /**
+   * `pins` are the Arduino numbers of the pins of servos A1 to A4. `onFrame` receives the pulse width of each servo in
+   * cycles, 0 for none. `onPulse` receives the Arduino number of a pulse's pin, the cycle of its rising edge, and its
+   * width in cycles.
+   */
   constructor(
     readonly board: SimulatedBoard,
     pins: number[],
-    listener: UnoListener,
+    onFrame: (widths: Four<number>) => void,
+    onPulse: (pin: number, riseCycle: number, width: number) => void,
   ) {
-    this.frameCollector = new FrameCollector(pins, listener.onFrame);
+    this.frameCollector = new FrameCollector(pins, onFrame);
     board.onByte = (byte) => this.bytesFromBoard.push(byte);
     board.onPulse = (pin, riseCycle, width) => {
-      listener.onPulse(pin, riseCycle, width);
+      onPulse(pin, riseCycle, width);
       this.frameCollector.add(pin, riseCycle, width);
     };
   }
@@ -57,8 +55,16 @@ export class UnoLink implements Link {
         this.bytesFromBoard = [];
         this.onBytes(bytes);
       }
-      this.timers.advanceTo(this.board.cycle);
+      this.endWaits(this.board.cycle);
     }
+  }
+
+  /** Resolves the calls of `wait` whose time has come at `cycle`. */
+  private endWaits(cycle: number): void {
+    const ended = this.waits.filter(({ endCycle }) => endCycle <= cycle);
+    if (ended.length === 0) return;
+    this.waits = this.waits.filter(({ endCycle }) => endCycle > cycle);
+    for (const { resolve } of ended) resolve();
   }
 
   async write(bytes: Uint8Array): Promise<void> {
@@ -71,7 +77,8 @@ export class UnoLink implements Link {
   }
 
   wait(ms: number): Promise<void> {
-    return this.timers.waitUntil(this.board.cycle + ms * CYCLES_PER_MS);
+    const endCycle = this.board.cycle + ms * CYCLES_PER_MS;
+    return new Promise((resolve) => this.waits.push({ endCycle, resolve }));
   }
 
   /** Does nothing, because no port is open. */

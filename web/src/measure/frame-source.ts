@@ -4,6 +4,14 @@ import { getMessage } from '../problem';
 /** Largest number of pending frames of a video file. */
 const MAX_PENDING_FRAMES = 4;
 const CAMERA_CONSTRAINTS = { video: { facingMode: 'environment', width: { ideal: 1280 }, height: { ideal: 720 }, frameRate: { ideal: 30 } }, audio: false };
+const NO_CAMERA_MESSAGE = 'This machine has no camera. Record a video with another camera and open it here.';
+/** The messages for the user if the camera cannot be opened, by the names of the errors. */
+const CAMERA_MESSAGES: Record<string, string | undefined> = {
+  NotAllowedError: 'The browser was not allowed to use the camera. Allow the camera for this page in the browser\'s settings, or record a video and open it here.',
+  NotFoundError: NO_CAMERA_MESSAGE,
+  OverconstrainedError: NO_CAMERA_MESSAGE,
+  NotReadableError: 'Another program uses the camera. Close that program and try again.',
+};
 
 /** Processes a frame that was taken at `seconds`; resolves when the frame is processed. */
 type ProcessFrame = (frame: VideoFrame | ImageBitmap, seconds: number) => Promise<void>;
@@ -40,7 +48,8 @@ export class FrameSource {
     const { mediaDevices } = navigator as { mediaDevices?: MediaDevices };
     if (!mediaDevices) throw new Error('This page may not use a camera: open it with an address that begins with https, or open a video file.');
     const stream = await mediaDevices.getUserMedia(CAMERA_CONSTRAINTS).catch((error: unknown) => {
-      throw new Error(describeCameraError(error));
+      const { name = '' } = error as { name?: string };
+      throw new Error(CAMERA_MESSAGES[name] ?? `The camera cannot be opened: ${getMessage(error)}`);
     });
     if (this.generation !== startGeneration) {
       for (const track of stream.getTracks()) track.stop();
@@ -112,19 +121,3 @@ export class FrameSource {
 
 /** Captures the current frame of a video; browsers with VideoFrame do not copy it. */
 const captureFrame = async (video: HTMLVideoElement) => ('VideoFrame' in window ? new VideoFrame(video) : createImageBitmap(video));
-
-/** Returns the message for the user if the camera cannot be opened. */
-function describeCameraError(error: unknown): string {
-  const { name } = error as { name?: string };
-  switch (name) {
-    case 'NotAllowedError':
-      return 'The browser was not allowed to use the camera. Allow the camera for this page in the browser\'s settings, or record a video and open it here.';
-    case 'NotFoundError':
-    case 'OverconstrainedError':
-      return 'This machine has no camera. Record a video with another camera and open it here.';
-    case 'NotReadableError':
-      return 'Another program uses the camera. Close that program and try again.';
-    default:
-      return `The camera cannot be opened: ${getMessage(error)}`;
-  }
-}

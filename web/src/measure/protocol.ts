@@ -77,10 +77,8 @@ interface ActiveWalk {
   nearestMm: number | null;
   /** True if the walk was ended before its last cycle. */
   isCutShort: boolean;
-  /** The end of the walk on the video's clock, s; null until it has ended. */
-  endSeconds: number | null;
-  resolve: () => void;
-  reject: (error: Error) => void;
+  /** Ends the walk now, with an error if the whole protocol has ended; has no effect on an ended walk. */
+  finish: (error?: Error) => void;
 }
 
 const distance = ({ forward, left }: OffsetToCentre) => Math.hypot(forward, left);
@@ -140,7 +138,7 @@ export class Protocol {
   /** Handles a line from the robot. `DONE_LINE` ends a walk, and arrives before `setActivity` is called. */
   handleReceived(line: string): void {
     if (line !== DONE_LINE || !this.activeWalk) return;
-    this.finish(this.activeWalk);
+    this.activeWalk.finish();
     this.activeWalk = null;
   }
 
@@ -163,7 +161,7 @@ export class Protocol {
   /** Ends the protocol: nothing more is sent. */
   end(reason: string): void {
     this.endReason ??= new ProtocolInterrupted(reason);
-    if (this.activeWalk) this.finish(this.activeWalk, this.endReason);
+    this.activeWalk?.finish(this.endReason);
     this.activeWalk = null;
     this.onEnd();
   }
@@ -206,25 +204,23 @@ export class Protocol {
    */
   private async walk(gait: string, cycles: number, record: (during: [number, number]) => void = () => {}): Promise<[number, number]> {
     const { environment } = this;
-    const activeWalk: ActiveWalk = { gait, nearestMm: null, isCutShort: false, endSeconds: null, resolve: () => {}, reject: () => {} };
-    const walkEnd = new Promise<void>((resolve, reject) => Object.assign(activeWalk, { resolve, reject }));
-    // The promise may reject before it is awaited.
-    walkEnd.catch(() => {});
+    const activeWalk: ActiveWalk = { gait, nearestMm: null, isCutShort: false, finish: () => {} };
+    const walkEnd = new Promise<{ end: number; error?: Error }>((resolve) => {
+      activeWalk.finish = (error) => resolve({ end: environment.now(), error });
+    });
     this.activeWalk = activeWalk;
     const start = environment.now();
     await this.ask(`${gait} ${cycles}`);
     activeWalk.nearestMm = this.lastOffset ? distance(this.lastOffset) : Infinity;
     void this.watch(activeWalk);
-    try {
-      await walkEnd;
-    } finally {
-      record([start, activeWalk.endSeconds ?? start]);
-    }
+    const { end, error } = await walkEnd;
+    record([start, end]);
+    if (error) throw error;
     if (activeWalk.isCutShort) {
       await this.ask(GAITS.stand);
       this.activeWalk = null;
     }
-    return [start, activeWalk.endSeconds ?? start];
+    return [start, end];
   }
 
   /** Ends a walk when the robot is no longer detected. */
@@ -238,13 +234,7 @@ export class Protocol {
   /** Ends a walk before its last cycle; the robot walks on until it is told to stand. */
   private cutShort(activeWalk: ActiveWalk): void {
     activeWalk.isCutShort = true;
-    this.finish(activeWalk);
-  }
-
-  private finish(activeWalk: ActiveWalk, error?: Error): void {
-    activeWalk.endSeconds ??= this.environment.now();
-    if (error) activeWalk.reject(error);
-    else activeWalk.resolve();
+    activeWalk.finish();
   }
 
   private throwIfEnded(): void {

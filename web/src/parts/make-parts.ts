@@ -28,7 +28,10 @@ export class UnfitError extends Error {
 }
 
 /** A worker that makes parts; it throws a refusal as an {@link UnfitError}. */
-class PartsWorker extends CallableWorker<PartsWorkerApi> {
+export class PartsWorker extends CallableWorker<PartsWorkerApi> {
+  /** True while the worker computes a pose. */
+  private isBusy = false;
+
   constructor() {
     super(new Worker(new URL('./worker.ts', import.meta.url), { type: 'module' }));
   }
@@ -41,65 +44,52 @@ class PartsWorker extends CallableWorker<PartsWorkerApi> {
       throw 'refused' in error ? new UnfitError(error) : error;
     });
   }
-}
-
-/** A robot's solids and their places in a pose. */
-export class Solids {
-  /** True while the worker computes a pose. */
-  private isBusy = false;
-
-  private constructor(private readonly worker: PartsWorker) {}
 
   /**
-   * Makes the solids of a robot.toml, in the order of `BodyEntry.solid`. Throws an {@link UnfitError} for a robot that
-   * cannot be built.
-   */
-  static async make(toml: string): Promise<{ solids: Solids; model: Model; meshes: Solid[] }> {
-    const worker = new PartsWorker();
-    try {
-      const { model, solids } = await worker.loadAndCall((parts) => parts.makeModel(toml));
-      return { solids: new Solids(worker), model, meshes: solids };
-    } catch (error) {
-      worker.terminate();
-      throw error;
-    }
-  }
-
-  /**
-   * Returns the places of all mounts for the servos' `angles` and the legs' `lags`, deg; null if a loop does not close,
-   * or if the worker is still computing an earlier pose.
+   * Returns the places of all mounts of the made model for the servos' `angles` and the legs' `lags`, deg; null if a
+   * loop does not close, or if the worker is still computing an earlier pose.
    */
   async computeMountPlaces(angles: number[], lags: number[]): Promise<Float64Array | null> {
     if (this.isBusy) return null;
     this.isBusy = true;
-    return this.worker.call((parts) => parts.computeMountPlaces(angles, lags)).finally(() => (this.isBusy = false));
-  }
-
-  dispose(): void {
-    this.worker.terminate();
+    return this.call((parts) => parts.computeMountPlaces(angles, lags)).finally(() => (this.isBusy = false));
   }
 }
 
-/** A running computation; after `cancel`, `result` never settles. */
-interface Job<Result> {
-  result: Promise<Result>;
-  cancel: () => void;
-}
-
-function startJob<Result>(invoke: (parts: Remote<PartsWorkerApi>) => Promise<Result>): Job<Result> {
+/**
+ * Makes the model of a robot.toml and its solids, in the order of `BodyEntry.solid`, with the worker that computes their
+ * places. Throws an {@link UnfitError} for a robot that cannot be built.
+ */
+export async function makeModel(toml: string): Promise<{ worker: PartsWorker; model: Model; solids: Solid[] }> {
   const worker = new PartsWorker();
-  return { result: worker.loadAndCall(invoke).finally(() => worker.terminate()), cancel: () => worker.terminate() };
+  try {
+    const { model, solids } = await worker.loadAndCall((parts) => parts.makeModel(toml));
+    return { worker, model, solids };
+  } catch (error) {
+    worker.terminate();
+    throw error;
+  }
+}
+
+/** Runs a computation in its own worker; resolves to null once `signal` is aborted. */
+function runInWorker<Result>(invoke: (parts: Remote<PartsWorkerApi>) => Promise<Result>, signal: AbortSignal): Promise<Result | null> {
+  const worker = new PartsWorker();
+  const result = new Promise<Result | null>((resolve, reject) => {
+    signal.addEventListener('abort', () => resolve(null));
+    worker.loadAndCall(invoke).then(resolve, reject);
+  });
+  return result.finally(() => worker.terminate());
 }
 
 /**
  * Proves that the parts of a robot.toml fit. The result is the smallest distance between two parts, mm, or null if no
- * pair was checked. Rejects with an {@link UnfitError} if the parts do not fit.
+ * pair was checked or `signal` was aborted. Rejects with an {@link UnfitError} if the parts do not fit.
  */
-export const proveFit = (toml: string): Job<number | null> => startJob((parts) => parts.proveFit(toml));
+export const proveFit = (toml: string, signal: AbortSignal): Promise<number | null> => runInWorker((parts) => parts.proveFit(toml), signal);
 
 /**
  * Proves that the parts fit, makes all files and packs them. If `previousToml` is not null, packs only the files that
- * differ from the previous robot's files.
+ * differ from the previous robot's files. Resolves to null once `signal` is aborted.
  */
-export const makeArchive = (toml: string, previousToml: string | null, onProgress: (progress: Progress) => void): Job<PartsArchive> =>
-  startJob((parts) => parts.makeArchive(toml, previousToml, proxy(onProgress)));
+export const makeArchive = (toml: string, previousToml: string | null, onProgress: (progress: Progress) => void, signal: AbortSignal): Promise<PartsArchive | null> =>
+  runInWorker((parts) => parts.makeArchive(toml, previousToml, proxy(onProgress)), signal);

@@ -2,13 +2,6 @@
 // keep their neutral angles; a crank's tip therefore moves along the crank. Points are in mm in the chassis frame.
 import type { Edits, Point, Scene } from '../robot';
 
-/** A bar between two points; `key` is the key of its length in robot.toml. */
-export interface Bar {
-  key: string;
-  from: Point;
-  to: Point;
-}
-
 /** A joint that the user can drag. */
 export interface Joint {
   name: string;
@@ -40,9 +33,11 @@ const ENDS = [
   { name: 'tail', left: 3, right: 2, base: 5, leftCrank: 6, leftCoupler: 7, rightCoupler: 8, rightCrank: 9 },
 ] as const;
 
+/** Makes a bar between two points; `key` is the key of its length in robot.toml. */
+const makeBar = (key: string, from: Point, to: Point) => ({ key, from, to });
+
 /** Returns the bars of the robot's loops and legs in the scene's pose. */
-export function listBars({ shafts, tips, points, sliders, legs }: Scene): Bar[] {
-  const makeBar = (key: string, from: Point, to: Point): Bar => ({ key, from, to });
+export function listBars({ shafts, tips, points, sliders, legs }: Scene) {
   return [
     ...SIDES.flatMap((side, n) => {
       const { tips: [front, rear], tube } = sliders[n];

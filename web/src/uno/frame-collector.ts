@@ -15,7 +15,7 @@ export class FrameCollector {
   /** `pins` are the Arduino numbers of the pins of servos A1 to A4. */
   constructor(
     private readonly pins: number[],
-    private readonly onFrame: (widths: Four<number>, cycle: number) => void,
+    private readonly onFrame: (widths: Four<number>) => void,
   ) {}
 
   /** Adds a pulse: the Arduino number of its pin, the cycle of its rising edge, and its width in cycles. */
@@ -37,10 +37,10 @@ export class FrameCollector {
 
   private closeFrame(): void {
     if (this.startCycle === null) return;
-    const { widths, startCycle } = this;
+    const { widths } = this;
     this.widths = [0, 0, 0, 0];
     this.startCycle = null;
     this.lastServo = -1;
-    this.onFrame(widths, startCycle);
+    this.onFrame(widths);
   }
 }

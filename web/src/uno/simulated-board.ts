@@ -2,7 +2,7 @@
 // new chip with the memory contents of the previous chip.
 import { skipBusyWaits } from '../../../tools/judge/src/busy-wait.js';
 import { corrections } from '../../../tools/judge/src/corrections/index.js';
-import { PulseRecorder } from '../../../tools/judge/src/pulse-recorder.js';
+import { recordPulses } from '../../../tools/judge/src/pulse-recorder.js';
 import { addReceiveBuffer } from '../../../tools/judge/src/receive-buffer.js';
 import { addSelfProgramming } from '../../../tools/judge/src/self-programming.js';
 import { Uno } from '../../../tools/judge/src/uno.js';
@@ -145,7 +145,7 @@ export class SimulatedBoard {
     for (const [pin, isClosed] of this.contacts) this.setPinLevel(pin, isClosed);
     uno.usart.onByteTransmit = (byte: number) => this.onByte(this.isGarbled ? UNREADABLE_BYTE : byte);
     const cyclesBefore = this.cyclesBeforeReset;
-    new PulseRecorder(uno, (pin: number, rise: number, width: number) => this.onPulse(pin, cyclesBefore + rise, width));
+    recordPulses(uno, (pin: number, rise: number, width: number) => this.onPulse(pin, cyclesBefore + rise, width));
   }
 
   /** True if the baud rates of the chip and the other end differ too much. */

@@ -12,47 +12,37 @@ import type { ProblemList } from './problems';
 /** A robot that the page can show: its file name and its robot.toml, which the user may have changed. */
 type KnownRobot = Pick<SavedChanges, 'file' | 'toml'>;
 
-export class BoardRobotWarning {
+/** Shows a message while the board has a different robot; `showRobot` loads a robot into the page. */
+export function warnOfBoardRobot(session: Session, problems: ProblemList, showRobot: (robot: KnownRobot) => void): void {
   /** An instance that only reads robots: an instance has one robot, and the page's instance must keep its robot. */
-  private readonly reader = new Robot();
-
-  /** `showRobot` loads a robot into the page. */
-  constructor(
-    private readonly session: Session,
-    private readonly problems: ProblemList,
-    private readonly showRobot: (robot: KnownRobot) => void,
-  ) {
-    effect(() => void this.update());
-  }
-
-  /** Reports a different robot on the board, or removes the message. */
-  private async update(): Promise<void> {
-    const { session } = this;
+  const reader = new Robot();
+  const update = async () => {
     const { otherRobot } = session;
-    if (!session.isReal || !otherRobot) return this.problems.setMessage('other', null);
-    const knownRobot = await this.findByHash(otherRobot.hash);
+    if (!session.isReal || !otherRobot) return problems.setMessage('other', null);
+    const knownRobot = await findByHash(reader, otherRobot.hash);
     if (session.otherRobot?.hash !== otherRobot.hash) return;
     const message = `The ${session.link.name} has another robot, ${otherRobot.name}, but the page draws and predicts ${formatRobotName(session)}.`;
-    if (!knownRobot) return this.problems.setMessage('other', `${message} It is not among the page’s robots: open its robot.toml in Build, or write this robot.`);
-    this.problems.setMessage('other', message, { label: `Show ${otherRobot.name}`, action: () => this.showRobot(knownRobot) });
-  }
+    if (!knownRobot) return problems.setMessage('other', `${message} It is not among the page’s robots: open its robot.toml in Build, or write this robot.`);
+    problems.setMessage('other', message, { label: `Show ${otherRobot.name}`, action: () => showRobot(knownRobot) });
+  };
+  effect(() => void update());
+}
 
-  /**
-   * Finds the robot with this hash among the user's robots put aside and the page's own robots; returns null if none
-   * has this hash.
-   */
-  private async findByHash(hash: string): Promise<KnownRobot | null> {
-    const hasHash = (toml: string) => {
-      const result = this.reader.read(toml);
-      return !isRefused(result) && result.hash === hash;
-    };
-    const ownRobot = browserStorage.getRobotsAside().find(({ toml }) => hasHash(toml));
-    if (ownRobot) return ownRobot;
-    const { all } = await files.robots().catch(() => ({ all: [] }));
-    for (const file of all) {
-      const toml = await files.toml(file).catch(() => '');
-      if (hasHash(toml)) return { file, toml };
-    }
-    return null;
+/**
+ * Finds the robot with this hash among the user's robots put aside and the page's own robots; returns null if none
+ * has this hash.
+ */
+async function findByHash(reader: Robot, hash: string): Promise<KnownRobot | null> {
+  const hasHash = (toml: string) => {
+    const result = reader.read(toml);
+    return !isRefused(result) && result.hash === hash;
+  };
+  const ownRobot = browserStorage.getRobotsAside().find(({ toml }) => hasHash(toml));
+  if (ownRobot) return ownRobot;
+  const { all } = await files.robots().catch(() => ({ all: [] }));
+  for (const file of all) {
+    const toml = await files.toml(file).catch(() => '');
+    if (hasHash(toml)) return { file, toml };
   }
+  return null;
 }

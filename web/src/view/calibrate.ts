@@ -7,98 +7,76 @@ import { WORDS } from '../words';
 import { element, make } from './elements';
 import { isShown } from './rooms';
 
-/** The inputs of a servo. */
-interface ServoInputs {
-  trim: HTMLInputElement;
-  scale: HTMLInputElement;
-  min: HTMLInputElement;
-  max: HTMLInputElement;
-  dir: HTMLSelectElement;
-}
+type ShowSettings = (settings: ServoSettings) => void;
 
-export class CalibrationView {
-  private readonly container = element('calibration');
-  private readonly message = element('cal-message');
-  private servoInputs: ServoInputs[] = [];
+export function setUpCalibration(session: Session): void {
+  const message = element('cal-message');
+  /** For each servo, the function that shows its settings; empty before the first settings. */
+  let servos: ShowSettings[] = [];
   /** True after a command without an answer: the shown settings may differ from the robot's settings. */
-  private mayBeOutdated = false;
-
-  constructor(private readonly session: Session) {
-    element('cal-read').addEventListener('click', () => void this.read());
-    element('cal-save').addEventListener('click', () => void this.send(WORDS.save));
-    for (const word of [WORDS.load, WORDS.factory]) {
-      element(`cal-${word}`).addEventListener('click', () => void this.send(word).then(() => this.read()));
-    }
-    const panel = element<HTMLDetailsElement>('calibrate');
-    panel.addEventListener('toggle', () => isShown(panel) && void this.read());
-    // The robot answers again.
-    session.state.status.subscribe(() => this.mayBeOutdated && void this.read());
-  }
+  let mayBeOutdated = false;
 
   /** Reads the robot's settings and shows them. */
-  async read(): Promise<void> {
-    const answer = await this.session.ask(WORDS.cal, true);
+  async function read(): Promise<void> {
+    const answer = await session.ask(WORDS.cal, true);
     const board = await loadBoardModule().catch((error: unknown) => {
-      this.message.textContent = getMessage(error);
+      message.textContent = getMessage(error);
       return null;
     });
     const settings = answer && board?.readCalibration(answer.notes);
     if (!settings) return;
-    this.mayBeOutdated = false;
-    if (this.servoInputs.length === 0) this.buildInputs();
-    settings.servos.forEach((servo, index) => this.showServo(index, servo));
+    mayBeOutdated = false;
+    if (servos.length === 0) servos = settings.servos.map((_, index) => addServo(index + 1, send));
+    settings.servos.forEach((servo, index) => servos[index](servo));
   }
 
-  private showServo(index: number, { trim, limit, dir, scale }: ServoSettings): void {
-    const inputs = this.servoInputs[index];
-    inputs.trim.value = String(trim);
-    inputs.trim.dispatchEvent(new Event('value-set'));
-    inputs.scale.value = String(scale);
-    [inputs.min.value, inputs.max.value] = limit.map(String);
-    inputs.dir.value = dir;
+  async function send(line: string): Promise<void> {
+    const answer = await session.ask(line);
+    message.textContent = answer?.text ?? '';
+    mayBeOutdated ||= answer === null;
+    if (answer && !answer.ok) await read();
   }
 
-  private async send(line: string): Promise<void> {
-    const answer = await this.session.ask(line);
-    this.message.textContent = answer?.text ?? '';
-    this.mayBeOutdated ||= answer === null;
-    if (answer && !answer.ok) await this.read();
-  }
+  element('cal-read').addEventListener('click', () => void read());
+  element('cal-save').addEventListener('click', () => void send(WORDS.save));
+  for (const word of [WORDS.load, WORDS.factory]) element(`cal-${word}`).addEventListener('click', () => void send(word).then(read));
+  const panel = element<HTMLDetailsElement>('calibrate');
+  panel.addEventListener('toggle', () => isShown(panel) && void read());
+  // The robot answers again.
+  session.state.status.subscribe(() => mayBeOutdated && void read());
+}
 
-  private buildInputs(): void {
-    this.servoInputs = [1, 2, 3, 4].map((servoNumber) => {
-      const group = make('fieldset', {}, make('legend', {}, `A${servoNumber}`));
-      const trim = this.makeTrim(group, servoNumber);
-      const numbers = make('div', { className: 'numbers' });
-      group.append(numbers);
-      this.container.append(group);
-      const addNumber = (label: string, step: string) => {
-        const input = make('input', { type: 'number', step });
-        numbers.append(make('label', {}, label, input));
-        return input;
-      };
-      const min = addNumber('from, deg', '1');
-      const max = addNumber('to, deg', '1');
-      const scale = addNumber('µs per deg', '0.01');
-      const dir = make('select', {}, new Option('left (+)', '+'), new Option('right (−)', '-'));
-      numbers.append(make('label', {}, 'longer pulse turns', dir));
-      for (const input of [min, max]) {
-        input.addEventListener('change', () => void this.send(`${WORDS.limit} ${servoNumber} ${min.value} ${max.value}`));
-      }
-      scale.addEventListener('change', () => void this.send(`${WORDS.scale} ${servoNumber} ${scale.value}`));
-      dir.addEventListener('change', () => void this.send(`${WORDS.dir} ${servoNumber} ${dir.value}`));
-      return { trim, scale, min, max, dir };
-    });
-  }
-
-  private makeTrim(group: HTMLElement, servoNumber: number): HTMLInputElement {
-    const trim = make('input', { type: 'range', min: '-20', max: '20', step: '0.25' });
-    const output = make('output', {});
-    group.append(make('label', { className: 'slider' }, 'trim ', trim, output));
-    const showTrim = () => (output.textContent = `${Number(trim.value).toFixed(2)}°`);
-    trim.addEventListener('input', showTrim);
-    trim.addEventListener('value-set', showTrim);
-    trim.addEventListener('change', () => void this.send(`${WORDS.trim} ${servoNumber} ${trim.value}`));
-    return trim;
-  }
+/** Adds the inputs of a servo, which send its settings; returns the function that shows settings in them. */
+function addServo(servoNumber: number, send: (line: string) => Promise<void>): ShowSettings {
+  const trimInput = make('input', { type: 'range', min: '-20', max: '20', step: '0.25' });
+  const trimText = make('output', {});
+  const showTrim = () => (trimText.textContent = `${Number(trimInput.value).toFixed(2)}°`);
+  trimInput.addEventListener('input', showTrim);
+  const makeNumber = (step: string) => make('input', { type: 'number', step });
+  const minInput = makeNumber('1');
+  const maxInput = makeNumber('1');
+  const scaleInput = makeNumber('0.01');
+  const dirList = make('select', {}, new Option('left (+)', '+'), new Option('right (−)', '-'));
+  const numbers = make(
+    'div',
+    { className: 'numbers' },
+    make('label', {}, 'from, deg', minInput),
+    make('label', {}, 'to, deg', maxInput),
+    make('label', {}, 'µs per deg', scaleInput),
+    make('label', {}, 'longer pulse turns', dirList),
+  );
+  const trimLabel = make('label', { className: 'slider' }, 'trim ', trimInput, trimText);
+  element('calibration').append(make('fieldset', {}, make('legend', {}, `A${servoNumber}`), trimLabel, numbers));
+  const sendOnChange = (input: HTMLElement, formatLine: () => string) => input.addEventListener('change', () => void send(formatLine()));
+  sendOnChange(trimInput, () => `${WORDS.trim} ${servoNumber} ${trimInput.value}`);
+  for (const input of [minInput, maxInput]) sendOnChange(input, () => `${WORDS.limit} ${servoNumber} ${minInput.value} ${maxInput.value}`);
+  sendOnChange(scaleInput, () => `${WORDS.scale} ${servoNumber} ${scaleInput.value}`);
+  sendOnChange(dirList, () => `${WORDS.dir} ${servoNumber} ${dirList.value}`);
+  return ({ trim, limit, dir, scale }) => {
+    trimInput.value = String(trim);
+    showTrim();
+    scaleInput.value = String(scale);
+    [minInput.value, maxInput.value] = limit.map(String);
+    dirList.value = dir;
+  };
 }

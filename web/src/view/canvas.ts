@@ -1,18 +1,10 @@
 // Canvases at the screen's resolution and at the size of their elements.
 
-/** A canvas prepared for drawing. */
-export interface Surface {
-  context: CanvasRenderingContext2D;
-  /** Width and height, CSS pixels. */
-  width: number;
-  height: number;
-}
-
 /**
- * Prepares a canvas for drawing in CSS pixels; returns null while the canvas is hidden. Clears the canvas unless it is
- * opaque. An opaque canvas saves blending, but the caller must fill it.
+ * Prepares a canvas for drawing; returns its context and its width and height in CSS pixels, or null while the canvas
+ * is hidden. Clears the canvas unless it is opaque. An opaque canvas saves blending, but the caller must fill it.
  */
-export function prepareSurface(canvas: HTMLCanvasElement, isOpaque = false): Surface | null {
+export function prepareSurface(canvas: HTMLCanvasElement, isOpaque = false) {
   const { clientWidth: width, clientHeight: height } = canvas;
   if (width === 0 || height === 0) return null;
   const scale = devicePixelRatio;

@@ -26,10 +26,8 @@ export function formatDisplacement(displacement: Displacement | null): string {
 }
 
 export class DriveView {
-  private readonly buttonList = element('gaits');
   /** The buttons with their labels; `moves` is true if the gait moves a servo. */
   private buttons: { command: string; button: HTMLButtonElement; predictionLabel: HTMLElement; loadLabel: HTMLElement; moves: boolean }[] = [];
-  private readonly message = element('drive-message');
   /** The commands of the buttons in index.html, which exist for every robot. */
   readonly commands: string[] = [...document.querySelectorAll<HTMLElement>('[data-command]')].map(({ dataset }) => dataset.command ?? '');
 
@@ -41,10 +39,8 @@ export class DriveView {
       const button = event.target instanceof Element ? event.target.closest<HTMLElement>('[data-command]') : null;
       if (button?.dataset.command) void session.drive(button.dataset.command);
     });
-    document.addEventListener('keydown', (event) => {
-      if (event.key === 'Escape') void session.drive(WORDS.stop);
-    });
-    session.state.refusal.subscribe((refusal) => showMessage(this.message, refusal));
+    document.addEventListener('keydown', ({ key }) => key === 'Escape' && void session.drive(WORDS.stop));
+    session.state.refusal.subscribe((refusal) => showMessage(element('drive-message'), refusal));
     session.followRobot((description) => this.showRobot(description));
     session.state.gait.subscribe((gait) => this.markCurrentCommand(gait));
     effect(() => this.showPredictions());
@@ -52,7 +48,7 @@ export class DriveView {
 
   /** Replaces the buttons with those of a new robot. */
   private showRobot({ gaits, routines }: Description): void {
-    this.buttonList.replaceChildren();
+    element('gaits').replaceChildren();
     this.buttons = [...gaits, ...routines.map((command) => ({ command, moves: false }))].map(({ command, moves }) => {
       const predictionLabel = make('span', {});
       const predictionBox = make('small', {}, predictionLabel);
@@ -61,7 +57,7 @@ export class DriveView {
       // A button with a long name is twice as wide.
       const button = make('button', { type: 'button', ariaPressed: 'false', className: command.length > MAX_BUTTON_CHARACTERS ? 'long' : '' }, command, predictionBox, ...(moves ? [loadLabel] : []));
       button.dataset.command = command;
-      this.buttonList.append(button);
+      element('gaits').append(button);
       return { command, button, predictionLabel, loadLabel, moves };
     });
     this.session.state.refusal.value = '';

@@ -20,6 +20,18 @@ export function setText(box: HTMLElement, text: string): void {
   if (box.textContent !== text) box.textContent = text;
 }
 
+/** Shows a slider's value as a text: on the page in the element `ID-out`, and for screen readers. */
+export function showSliderText(slider: HTMLInputElement, text: string): void {
+  setText(element(`${slider.id}-out`), text);
+  slider.setAttribute('aria-valuetext', text);
+}
+
+/** Sets an attribute of an element, or removes it if the value is null. */
+export function putAttribute(node: Element, name: string, value: string | null): void {
+  if (value === null) node.removeAttribute(name);
+  else node.setAttribute(name, value);
+}
+
 /** Makes an HTML element with these properties and children. */
 export function make<K extends keyof HTMLElementTagNameMap>(tag: K, properties: Partial<HTMLElementTagNameMap[K]>, ...children: Child[]): HTMLElementTagNameMap[K] {
   const node = Object.assign(document.createElement(tag), properties);
@@ -52,6 +64,20 @@ export const list = (...items: Child[]): HTMLElement => make('ul', {}, ...items.
 /** Makes a button that calls `action`; `isMain` marks the button that the user is expected to press. */
 export function button(label: string, action: () => void, isMain = false): HTMLButtonElement {
   return make('button', { type: 'button', className: isMain ? 'main' : '', onclick: action }, label);
+}
+
+/** Calls `action` with the file that the user chooses in a file input. */
+export function onFile(input: HTMLInputElement, action: (file: File) => void): void {
+  input.addEventListener('change', () => {
+    const file = input.files?.[0];
+    if (file) action(file);
+  });
+}
+
+/** Converts a pointer's position to the units of an SVG picture; null while the picture is not shown. */
+export function toPicture(picture: SVGSVGElement, { clientX, clientY }: PointerEvent): DOMPoint | null {
+  const matrix = picture.getScreenCTM();
+  return matrix && new DOMPoint(clientX, clientY).matrixTransform(matrix.inverse());
 }
 
 /** Replaces the options of a list. Returns true if the chosen option still exists, which then stays chosen. */

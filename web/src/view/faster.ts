@@ -1,11 +1,22 @@
 // The button "Make it faster", which searches for a gait that is faster than the edited gait, and offers it.
+import type { SearchTask } from '../../generated/tune';
+import { CallableWorker } from '../callable-worker';
 import { files } from '../files';
-import { type SearchReport, type BestGait, FasterSearch } from '../gaits/faster';
-import type { Bars, Trial } from '../robot';
+import type { BestGait, FasterWorkerApi } from '../gaits/faster-worker';
+import { getMessage } from '../problem';
+import type { Bars, OnFloor, Trial } from '../robot';
 import type { Session } from '../session';
 import { element, setText, tableRow } from './elements';
 import { setUpNumberInput } from './number-input';
 import { formatResults } from './trial';
+
+/** Number of gaits between two reports of the best gait so far: a population of the search. */
+const GAITS_PER_REPORT = 20;
+/**
+ * Number of random robots on which gaits are compared, for a report during the search and for the final report, as in
+ * `lizard tune`.
+ */
+const ROBOT_COUNT = { progress: 20, final: 200 };
 
 /** Access to the edited gait. */
 export interface GaitEditor {
@@ -23,10 +34,12 @@ export class FasterView {
   private readonly startButton = element<HTMLButtonElement>('faster-start');
   private readonly takeButton = element<HTMLButtonElement>('faster-take');
   private readonly progressBar = element<HTMLProgressElement>('faster-progress');
-  private readonly message = element('faster-message');
   private readonly resultBox = element('faster-result');
   private readonly settings = { rate: null as number | null, rounds: 5, seed: 1 };
-  private search: FasterSearch | null = null;
+  /** The worker of the running search; null while there is none. */
+  private worker: CallableWorker<FasterWorkerApi> | null = null;
+  /** True once the user has stopped the search, which then ends after the current gait. */
+  private isStopped = false;
   /** The gait to beat, and its trial. */
   private referenceGait: Bars | null = null;
   private referenceTrial: Trial | null = null;
@@ -35,18 +48,19 @@ export class FasterView {
   private replacedGait: Bars | null = null;
   /** The robot.toml of the running search or the shown result; empty for none. */
   private toml = '';
-  /** Number of gaits that the search tries. */
-  private gaitCount = 0;
 
   constructor(
     private readonly session: Session,
     private readonly editor: GaitEditor,
   ) {
     const { settings } = this;
-    setUpNumberInput(element('faster-rate'), { min: 10, max: 1000, step: 1 }, (value) => (settings.rate = value));
-    setUpNumberInput(element('faster-rounds'), { min: 1, max: 200, step: 1 }, (value) => (settings.rounds = Math.round(value ?? 5)));
-    setUpNumberInput(element('faster-seed'), { min: 0, max: 1e9, step: 1 }, (value) => (settings.seed = Math.round(value ?? 1)));
-    this.startButton.addEventListener('click', () => (this.search ? this.search.stop() : this.startSearch()));
+    setUpNumberInput(element('faster-rate'), (value) => (settings.rate = value));
+    setUpNumberInput(element('faster-rounds'), (value) => (settings.rounds = Math.round(value ?? 5)));
+    setUpNumberInput(element('faster-seed'), (value) => (settings.seed = Math.round(value ?? 1)));
+    this.startButton.addEventListener('click', () => {
+      if (this.worker) this.isStopped = true;
+      else void this.startSearch();
+    });
     this.takeButton.addEventListener('click', () => this.useFoundGait());
     element('faster-both').addEventListener('click', () => void this.compare());
   }
@@ -56,16 +70,17 @@ export class FasterView {
     if (this.toml === '' || this.session.toml === this.toml) return;
     this.toml = '';
     this.resultBox.hidden = true;
-    if (!this.search) return this.setMessage('');
-    this.search.cancel();
+    if (!this.worker) return this.setMessage('');
     this.endSearch();
     this.setMessage('The robot has changed; the search for the previous robot has ended.');
   }
 
-  private startSearch(): void {
+  private async startSearch(): Promise<void> {
     const bars = this.editor.gait();
     if (!bars) return this.setMessage('There is no gait to start from.');
     const { toml, floor, servos } = this.session;
+    this.worker = new CallableWorker<FasterWorkerApi>(new Worker(new URL('../gaits/faster-worker.ts', import.meta.url), { type: 'module' }));
+    this.isStopped = false;
     this.toml = toml;
     this.referenceGait = bars;
     this.referenceTrial = this.best = null;
@@ -74,32 +89,40 @@ export class FasterView {
     this.progressBar.removeAttribute('value');
     this.progressBar.hidden = false;
     this.setMessage('Searching for the widest stride within the limits…');
-    this.search = new FasterSearch(files.searchModule(), { toml, floor, servos, task: { bars, ...this.settings } }, (report) => this.handleReport(report));
-  }
-
-  private handleReport(report: SearchReport): void {
-    switch (report.kind) {
-      case 'start':
-        this.referenceTrial = report.referenceTrial;
-        this.gaitCount = this.progressBar.max = report.total;
-        this.progressBar.value = 0;
-        return this.setMessage(`Trying ${report.total} gaits with servo speeds of at most ${report.rate.toFixed(0)} °/s…`);
-      case 'progress':
-        this.progressBar.value = report.done;
-        return;
-      case 'best':
-        if (report.best.is_better) this.show(report.best);
-        return this.setMessage(report.best.is_better ? `${formatGain(report.best)} faster so far.` : 'No faster gait so far.');
-      case 'end':
-        this.showEnd(report);
+    try {
+      await this.search(this.worker, { toml, floor, servos, task: { bars, ...this.settings } });
+    } catch (error) {
+      this.endSearch();
+      this.setMessage(`This gait cannot be made faster: ${getMessage(error)}.`);
     }
   }
 
-  private showEnd(report: SearchReport & { kind: 'end' }): void {
+  /** Tries gaits until all are tried or the user stops the search; shows the progress and the result. */
+  private async search(worker: CallableWorker<FasterWorkerApi>, request: OnFloor & { task: SearchTask }): Promise<void> {
+    const module = await files.searchModule();
+    const { total, rate, referenceTrial } = await worker.call((search) => search.begin(module, request));
+    this.referenceTrial = referenceTrial;
+    this.progressBar.max = total;
+    this.progressBar.value = 0;
+    this.setMessage(`Trying ${total} gaits with servo speeds of at most ${rate.toFixed(0)} °/s…`);
+    let [reportedScore, done] = [-Infinity, 0];
+    while (done < total && !this.isStopped) {
+      const progress = await worker.call((search) => search.tryNext());
+      done = progress.done;
+      this.progressBar.value = done;
+      if (done % GAITS_PER_REPORT !== 0 || done === total || progress.best_score === null || progress.best_score <= reportedScore) continue;
+      reportedScore = progress.best_score;
+      const best = await worker.call((search) => search.compareBest(ROBOT_COUNT.progress));
+      if (best?.is_better) this.show(best);
+      if (best) this.setMessage(best.is_better ? `${formatGain(best)} faster so far.` : 'No faster gait so far.');
+    }
+    const best = await worker.call((search) => search.compareBest(ROBOT_COUNT.final));
     this.endSearch();
-    if ('refused' in report) return this.setMessage(`This gait cannot be made faster: ${report.refused}.`);
-    const { best, done } = report;
-    const stopText = done < this.gaitCount ? `Stopped after ${done} of ${this.gaitCount} gaits. ` : '';
+    this.showEnd(best, done, done < total ? `Stopped after ${done} of ${total} gaits. ` : '');
+  }
+
+  /** Shows the result after `done` tried gaits: the best gait, or null if no gait was valid. */
+  private showEnd(best: BestGait | null, done: number, stopText: string): void {
     if (best?.is_better) {
       this.show(best);
       const { comparison } = best;
@@ -110,9 +133,10 @@ export class FasterView {
     this.setMessage(`${stopText}No faster gait was found for the slowest random robots and floors. More rounds or another seed may find a faster gait.`);
   }
 
-  /** Resets the view after a search, so that the button starts a new one. */
+  /** Ends the search at once, and resets the view, so that the button starts a new one. */
   private endSearch(): void {
-    this.search = null;
+    this.worker?.terminate();
+    this.worker = null;
     this.progressBar.hidden = true;
     this.startButton.textContent = BUTTON_LABELS.start;
   }
@@ -150,7 +174,7 @@ export class FasterView {
     await this.editor.compare(referenceGait, best.bars, element('faster-distances'));
   }
 
-  private readonly setMessage = (text: string): void => setText(this.message, text);
+  private readonly setMessage = (text: string): void => setText(element('faster-message'), text);
 }
 
 const formatGain = ({ gain }: BestGait) => `${(100 * gain).toFixed(0)} %`;

@@ -15,13 +15,6 @@ const STEP_MM = 0.5;
 /** Lengths by their keys, mm. */
 type Lengths = Map<string, number>;
 
-/** A check of the parts, which the next change cancels. */
-interface Check {
-  isCancelled: boolean;
-  /** The functions that cancel the proofs, each in its own worker. */
-  cancels: Set<() => void>;
-}
-
 /** A request for the printable range of lengths that change together. */
 interface RangeRequest {
   keys: string[];
@@ -37,7 +30,8 @@ export class FitView {
   private fittingLengths: Lengths = new Map();
   private rangeRequest: RangeRequest | null = null;
   private timer = 0;
-  private check: Check = { isCancelled: true, cancels: new Set() };
+  /** The scheduled or running check of the parts, which the next change cancels. */
+  private check = new AbortController();
 
   constructor(
     private readonly session: Session,
@@ -58,16 +52,16 @@ export class FitView {
     // for changes outside the room Build.
     if (file === '' || toml === original || document.body.dataset.at !== 'room-build') this.fittingLengths = robotLengths;
     const changedLengths = [...robotLengths].filter(([key, value]) => this.fittingLengths.get(key) !== value);
-    if (changedLengths.length > 0) this.schedule((check) => this.checkRobot(robotLengths, new Map(changedLengths), check));
+    if (changedLengths.length > 0) this.schedule((signal) => this.checkRobot(robotLengths, new Map(changedLengths), signal));
   }
 
   /** Checks the parts of a robot.toml during a drag; null if its lengths are refused. */
   checkDragged(toml: string | null): void {
     this.cancelCheck();
     if (toml === null) return;
-    this.schedule(async (check) => {
+    this.schedule(async (signal) => {
       this.parts.show3d(toml);
-      await this.proveAndReport(toml, check);
+      await this.proveAndReport(toml, signal);
     });
   }
 
@@ -77,10 +71,9 @@ export class FitView {
    */
   findRange(keys: string[], range: [number, number], show: RangeRequest['show']): void {
     this.rangeRequest = { keys, range, show };
-    if (this.isKnownToFit) {
-      this.cancelCheck();
-      this.schedule((check) => this.searchRange(check));
-    }
+    if (!this.isKnownToFit) return;
+    this.cancelCheck();
+    this.schedule((signal) => this.searchRange(signal));
   }
 
   /** True if the parts of the session's robot are known to fit. */
@@ -91,56 +84,37 @@ export class FitView {
   /** Cancels the scheduled or running check, and clears the message. */
   private cancelCheck(): void {
     clearTimeout(this.timer);
-    this.check.isCancelled = true;
-    for (const cancel of this.check.cancels) cancel();
+    this.check.abort();
     this.setMessage('', null);
   }
 
-  private schedule(run: (check: Check) => Promise<void>): void {
-    const check: Check = { isCancelled: false, cancels: new Set() };
-    this.check = check;
-    const runAndReport = () => run(check).catch((error: unknown) => this.setMessage(`Cannot check the parts: ${getMessage(error)}.`, null));
+  private schedule(run: (signal: AbortSignal) => Promise<void>): void {
+    this.check = new AbortController();
+    const { signal } = this.check;
+    const runAndReport = () => run(signal).catch((error: unknown) => this.setMessage(`Cannot check the parts: ${getMessage(error)}.`, null));
     this.timer = setTimeout(() => void runAndReport(), CHECK_DELAY_MS);
   }
 
   /** Proves that a robot's parts fit, and shows the result; returns true if they fit. */
-  private async proveAndReport(toml: string, check: Check): Promise<boolean> {
+  private async proveAndReport(toml: string, signal: AbortSignal): Promise<boolean> {
     this.setMessage('Checking that the parts fit…', null);
-    const result = await this.proveParts(toml, check);
-    if (check.isCancelled) return false;
+    const result = await proveParts(toml, signal);
+    if (signal.aborted) return false;
     if (result instanceof Error) this.setMessage(describeUnfit(result), result.clash);
     else this.setMessage(`The parts fit${result === null ? '' : `: no two come nearer than ${result.toFixed(2)} mm`}.`, null);
     return !(result instanceof Error);
   }
 
-  /**
-   * Returns the smallest distance between two parts, mm; null if the distance is unknown; or an error if the parts do
-   * not fit.
-   */
-  private async proveParts(toml: string, check: Check) {
-    const { proveFit, UnfitError } = await import('../parts/make-parts');
-    if (check.isCancelled) return null;
-    const { result, cancel } = proveFit(toml);
-    check.cancels.add(cancel);
-    return result
-      .catch((error: unknown) => {
-        if (error instanceof UnfitError) return error;
-        throw error;
-      })
-      .finally(() => check.cancels.delete(cancel));
-  }
-
-  private async checkRobot(robotLengths: Lengths, changedLengths: Lengths, check: Check): Promise<void> {
-    const { toml } = this.session;
-    if (await this.proveAndReport(toml, check)) {
+  private async checkRobot(robotLengths: Lengths, changedLengths: Lengths, signal: AbortSignal): Promise<void> {
+    if (await this.proveAndReport(this.session.toml, signal)) {
       this.fittingLengths = robotLengths;
-      return this.searchRange(check);
+      return this.searchRange(signal);
     }
-    if (check.isCancelled) return;
+    if (signal.aborted) return;
     const refusalText = this.message.textContent ?? '';
     this.message.textContent = `${refusalText} Searching for the nearest printable lengths…`;
-    const nearest = await this.findNearest(changedLengths, check);
-    if (check.isCancelled) return;
+    const nearest = await this.findNearest(changedLengths, signal);
+    if (signal.aborted) return;
     this.message.textContent = refusalText;
     const { lengths } = this.session.description;
     const names = lengths.filter(({ key }) => changedLengths.has(key)).map(({ key, label }) => `${label} ${nearest.lengths.get(key)}`);
@@ -150,17 +124,17 @@ export class FitView {
   }
 
   /** Searches for the requested range of printable values, if there is a request. */
-  private async searchRange(check: Check): Promise<void> {
+  private async searchRange(signal: AbortSignal): Promise<void> {
     const { rangeRequest } = this;
     if (!rangeRequest) return;
     const { keys, range, show } = rangeRequest;
     show(null, 'Searching for the printable range…');
     const findLimit = async (target: number) => {
-      const { lengths } = await this.findNearest(new Map(keys.map((key) => [key, target])), check, true);
+      const { lengths } = await this.findNearest(new Map(keys.map((key) => [key, target])), signal, true);
       return lengths.get(keys[0] ?? '') ?? target;
     };
     const [shortest, longest] = await Promise.all([findLimit(range[0]), findLimit(range[1])]);
-    if (check.isCancelled) return;
+    if (signal.aborted) return;
     const { unit } = this.session.description.lengths.find(({ key }) => key === keys[0]) ?? { unit: '' };
     show([shortest, longest], `Printable from ${shortest} to ${longest} ${unit}.`);
   }
@@ -169,19 +143,17 @@ export class FitView {
    * Bisects between the last lengths that fit and the target lengths, down to `STEP_MM`; returns the lengths nearest to
    * the target whose parts fit. If `triesTargetFirst`, tries the target lengths first, because they may fit.
    */
-  private async findNearest(targetLengths: Lengths, check: Check, triesTargetFirst = false): Promise<{ lengths: Lengths; text: string }> {
+  private async findNearest(targetLengths: Lengths, signal: AbortSignal, triesTargetFirst = false): Promise<{ lengths: Lengths; text: string }> {
     const { toml } = this.session;
-    const interpolate = (fraction: number): Lengths =>
-      new Map([...targetLengths].map(([key, to]) => {
+    const makeRobot = (fraction: number) => {
+      const lengths: Lengths = new Map([...targetLengths].map(([key, to]) => {
         const from = this.fittingLengths.get(key) ?? to;
         return [key, fraction === 0 ? from : STEP_MM * Math.round((from + (to - from) * fraction) / STEP_MM)];
       }));
-    const makeRobot = (fraction: number) => {
-      const lengths = interpolate(fraction);
       const { text, refusal } = Robot.tryLengths(toml, [...lengths], false);
       return { lengths, text, isAccepted: refusal === null };
     };
-    const checkFit = async ({ text, isAccepted }: ReturnType<typeof makeRobot>) => isAccepted && !((await this.proveParts(text, check)) instanceof Error);
+    const checkFit = async ({ text, isAccepted }: ReturnType<typeof makeRobot>) => isAccepted && !((await proveParts(text, signal)) instanceof Error);
     let best = makeRobot(0);
     if (triesTargetFirst) {
       const targetRobot = makeRobot(1);
@@ -189,7 +161,7 @@ export class FitView {
     }
     let [low, high] = [0, 1];
     const largestChange = Math.max(...[...targetLengths].map(([key, to]) => Math.abs(to - (this.fittingLengths.get(key) ?? to))));
-    while ((high - low) * largestChange > STEP_MM && !check.isCancelled) {
+    while ((high - low) * largestChange > STEP_MM && !signal.aborted) {
       const middle = (low + high) / 2;
       const candidate = makeRobot(middle);
       if (await checkFit(candidate)) [low, best] = [middle, candidate];
@@ -205,6 +177,19 @@ export class FitView {
     this.showOverlapButton.hidden = clash === null;
     this.parts.showClash(clash);
   }
+}
+
+/**
+ * Returns the smallest distance between two parts, mm; null if the distance is unknown; or an error if the parts do
+ * not fit.
+ */
+async function proveParts(toml: string, signal: AbortSignal) {
+  const { proveFit, UnfitError } = await import('../parts/make-parts');
+  if (signal.aborted) return null;
+  return proveFit(toml, signal).catch((error: unknown) => {
+    if (error instanceof UnfitError) return error;
+    throw error;
+  });
 }
 
 /** Returns a message with the two parts that come too close, or else with the reason that prevents the parts. */

@@ -4,7 +4,7 @@ import { effect } from '@preact/signals-core';
 import { loadBoardModule } from '../board-module';
 import { NO_WRITING_BY_RADIO, type Session } from '../session';
 import { getMessage } from '../problem';
-import { element } from './elements';
+import { element, onFile } from './elements';
 import { reveal } from './rooms';
 import type { WriteContent, BoardWriter } from './writer';
 
@@ -14,8 +14,7 @@ export class FlashView {
   private readonly writeAllButton = element<HTMLButtonElement>('flash-write');
   private readonly writeRobotButton = element<HTMLButtonElement>('flash-robot');
   private readonly confirmationBox = element('flash-question');
-  readonly progress = element<HTMLProgressElement>('flash-progress');
-  readonly message = element('flash-message');
+  private readonly message = element('flash-message');
   /** The image of the chosen file until the user confirms or rejects it; null if there is none. */
   private chosenImage: Uint8Array | null = null;
 
@@ -25,10 +24,7 @@ export class FlashView {
   ) {
     this.writeAllButton.addEventListener('click', () => this.write('all'));
     this.writeRobotButton.addEventListener('click', () => this.write('robot'));
-    this.fileInput.addEventListener('change', () => {
-      const file = this.fileInput.files?.[0];
-      if (file) void this.askToConfirm(file).finally(() => (this.fileInput.value = ''));
-    });
+    onFile(this.fileInput, (file) => void this.askToConfirm(file).finally(() => (this.fileInput.value = '')));
     element('flash-yes').addEventListener('click', () => {
       const { chosenImage } = this;
       this.dropChosenImage();
@@ -57,7 +53,7 @@ export class FlashView {
     reveal(this.note);
     this.message.scrollIntoView({ block: 'nearest' });
     this.dropChosenImage();
-    void this.writer.write(content, this);
+    void this.writer.write(content, 'flash');
   }
 
   /** Reads a file and asks the user to confirm that it is to be written. */

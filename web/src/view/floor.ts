@@ -33,9 +33,7 @@ interface Position {
 }
 
 /** The label of the scale bar and its position. */
-interface ScaleLabel extends Position {
-  text: string;
-}
+type ScaleLabel = Position & { text: string };
 
 export class FloorView {
   private readonly canvas = element<HTMLCanvasElement>('floor');
@@ -67,8 +65,7 @@ export class FloorView {
     element('zoom-out').addEventListener('click', () => this.zoomBy(0.8));
     element('home').addEventListener('click', () => {
       onHome();
-      this.isZoomAutomatic = true;
-      this.setFollowing(true);
+      this.fitView();
     });
     this.followButton.addEventListener('click', () => this.setFollowing(!this.isFollowing));
     this.canvas.addEventListener('pointerdown', (event) => {
@@ -127,10 +124,9 @@ export class FloorView {
     const robots = [frame, secondFrame].map((robot) => robot && [robot.place, robot.scene, robot.slides]);
     const state = JSON.stringify([width, height, devicePixelRatio, this.zoom, this.centre, plate, robots, this.tracks.map((track) => [track.length, track.at(-1)])]);
     if (state === this.drawnState && !this.drawsAlways) return;
-    const surface = prepareSurface(this.canvas, true);
-    if (!surface) return;
-    const { context } = surface;
-    const label = this.drawPicture(context, width, height);
+    const context = prepareSurface(this.canvas, true)?.context;
+    if (!context) return;
+    const label = this.drawPicture(context);
     context.fillStyle = getPalette().ink;
     context.font = '12px system-ui, sans-serif';
     context.fillText(label.text, label.x, label.y);
@@ -148,22 +144,18 @@ export class FloorView {
     this.centre = { x: this.centre.x + dx * fraction, y: this.centre.y + dy * fraction };
   }
 
-  /** Makes the view follow both robots and fits the zoom to them. */
-  fitTwoRobots(): void {
+  /** Makes the view follow the robots and fits the zoom to them. */
+  fitView(): void {
     this.isZoomAutomatic = true;
     this.setFollowing(true);
   }
 
   /**
-   * Draws the last picture with another context, in CSS pixels, for SVG. Returns the scale bar's label, which the
-   * caller must add.
+   * Draws the picture in CSS pixels, with the canvas's own context or with another one for SVG. Returns the scale bar's
+   * label, which the caller must add.
    */
-  drawWith(context: CanvasRenderingContext2D): ScaleLabel {
+  drawPicture(context: CanvasRenderingContext2D): ScaleLabel {
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    return this.drawPicture(context, width, height);
-  }
-
-  private drawPicture(context: CanvasRenderingContext2D, width: number, height: number): ScaleLabel {
     const [plate, frame, secondFrame] = this.lastDrawn ?? [null, null, null];
     context.fillStyle = getPalette().floor;
     context.fillRect(0, 0, width, height);

@@ -4,7 +4,7 @@ import { type Bars, type Description, type Four, Robot } from '../robot';
 import type { Session } from '../session';
 import { type GaitEditor, FasterView } from './faster';
 import { element, make, makeSvg, replaceOptions, setAttributes, tableRow } from './elements';
-import { setUpNumberInput, putNumber, type Range } from './number-input';
+import { setUpNumberInput, putNumber } from './number-input';
 import { followShownRobot } from './rooms';
 import { TrialView } from './trial';
 import type { BoardWriter } from './writer';
@@ -19,16 +19,9 @@ const BAR_WIDTH = 16;
 /** Fraction of the cycle that a bar covers in a gait whose legs hold still in between. */
 const HELD_STANCE_FRACTION = 0.25;
 
-/** The key of a gait's number with an input. */
-type GaitNumber = 'period' | 'duty' | 'amplitude';
-
-/** Ranges of the gait's numbers, as in robot.toml. */
-const NUMBER_RANGES: Record<GaitNumber, Range> = {
-  period: { min: 0.1, max: 10, step: 0.01 },
-  duty: { min: 0.05, max: 0.95, step: 0.005 },
-  amplitude: { min: 0.5, max: 60, step: 0.1 },
-};
-const LEG_NUMBER_RANGES = { start: { min: 0, max: 1, step: 0.005 }, gain: { min: -2, max: 2, step: 0.05 } };
+/** The keys of a gait's numbers with an input, which has the number's range in robot.toml. */
+const GAIT_NUMBERS = ['period', 'duty', 'amplitude'] as const;
+const LEG_NUMBER_RANGES = { start: { min: '0', max: '1', step: '0.005' }, gain: { min: '-2', max: '2', step: '0.05' } };
 
 /** Rounds a value to a multiple of `step`. */
 const roundToMultiple = (value: number, step: number) => Number((Math.round(value / step) * step).toFixed(4));
@@ -40,8 +33,7 @@ export class GaitEditorView {
   private readonly nameInput = element<HTMLInputElement>('gait-name');
   private readonly kindList = element<HTMLSelectElement>('gait-kind');
   private readonly circle = element<HTMLElement>('gait-circle') as unknown as SVGSVGElement;
-  private readonly startInputs: HTMLInputElement[] = [];
-  private readonly gainInputs: HTMLInputElement[] = [];
+  private readonly legInputs: Record<'start' | 'gain', HTMLInputElement[]> = { start: [], gain: [] };
   private readonly bars: SVGPathElement[] = [];
   private readonly handles: SVGCircleElement[] = [];
   private readonly trial: TrialView;
@@ -61,27 +53,19 @@ export class GaitEditorView {
     this.templateList.addEventListener('change', () => this.editTemplate());
     this.nameInput.addEventListener('input', () => this.changeGait({ name: this.nameInput.value.trim().replaceAll(' ', '-') }));
     this.kindList.addEventListener('change', () => this.changeGait({ held: this.kindList.value === 'held' }));
-    for (const key of Object.keys(NUMBER_RANGES) as GaitNumber[]) {
-      setUpNumberInput(element(`gait-${key}`), NUMBER_RANGES[key], (value) => value !== null && this.changeGait({ [key]: value }));
-    }
+    for (const key of GAIT_NUMBERS) setUpNumberInput(element(`gait-${key}`), (value) => value !== null && this.changeGait({ [key]: value }));
     LEGS.forEach((_, leg) => this.addLeg(leg));
     element('gait-mirror').addEventListener('click', () => this.mirror());
     element('gait-turn-round').addEventListener('click', () => this.gait && this.changeGait(Robot.reversed(this.gait)));
   }
 
   /** Shows another robot; an edited gait stays. */
-  private showRobot(description: Description): void {
-    this.fillTemplateList(description);
+  private showRobot({ gaits }: Description): void {
+    const { robot } = this.session;
+    const options = gaits.flatMap(({ name }, index) => (robot.bars(index) ? [new Option(name, String(index))] : []));
+    replaceOptions(this.templateList, options);
     if (!this.gait || this.templateList.value === '') return this.editTemplate();
     this.showGait();
-    this.trial.requestTrial();
-  }
-
-  private fillTemplateList({ gaits }: Description): void {
-    const { robot } = this.session;
-    const options = gaits.flatMap(({ name }, index) =>
-      robot.bars(index) ? [new Option(name, String(index))] : []);
-    replaceOptions(this.templateList, options);
   }
 
   /** Starts editing a copy of the robot's gait that the user chose as a template. */
@@ -90,7 +74,6 @@ export class GaitEditorView {
     if (!bars) return this.trial.setMessage('This robot has no gait of four bars to start from.');
     this.gait = { ...bars, name: this.nameInput.value || 'mine' };
     this.showGait();
-    this.trial.requestTrial();
   }
 
   private changeGait(changes: Partial<Bars>): void {
@@ -98,14 +81,10 @@ export class GaitEditorView {
     this.gait = { ...this.gait, ...changes };
     browserStorage.putGait(this.gait);
     this.showGait();
-    this.trial.requestTrial();
   }
 
   private setLegValue(key: 'start' | 'gain', leg: number, value: number): void {
-    if (!this.gait) return;
-    const values = [...this.gait[key]] as Four<number>;
-    values[leg] = value;
-    this.changeGait({ [key]: values });
+    if (this.gait) this.changeGait({ [key]: this.gait[key].with(leg, value) });
   }
 
   /** Swaps the left and the right legs. */
@@ -125,11 +104,11 @@ export class GaitEditorView {
     this.addDragHandler(bar, (cycles, startGait) => this.setLegValue('start', leg, roundToMultiple(wrapPhase((startGait.start[leg] ?? 0) + cycles), 0.005)));
     this.addDragHandler(handle, (cycles, startGait) => this.changeGait({ duty: roundToMultiple(Math.min(0.95, Math.max(0.05, startGait.duty + cycles)), 0.005) }));
     const row = element('gait-legs').appendChild(tableRow([LEGS[leg] ?? '']));
-    for (const [key, label, list] of [['start', 'starts at', this.startInputs], ['gain', 'gain', this.gainInputs]] as const) {
-      const input = make('input', { ariaLabel: `${LEGS[leg]} ${label}` });
+    for (const [key, label] of [['start', 'starts at'], ['gain', 'gain']] as const) {
+      const input = make('input', { type: 'number', ...LEG_NUMBER_RANGES[key], ariaLabel: `${LEGS[leg]} ${label}` });
       row.append(make('td', {}, input));
-      setUpNumberInput(input, LEG_NUMBER_RANGES[key], (value) => value !== null && this.setLegValue(key, leg, value));
-      list.push(input);
+      setUpNumberInput(input, (value) => value !== null && this.setLegValue(key, leg, value));
+      this.legInputs[key].push(input);
     }
   }
 
@@ -157,25 +136,27 @@ export class GaitEditorView {
     for (const eventName of ['pointerup', 'pointercancel']) mark.addEventListener(eventName, () => (startGait = null));
   }
 
+  /** Shows the edited gait and requests its trial. */
   private showGait(): void {
     const { gait } = this;
     if (!gait) return;
     const put = (input: HTMLInputElement, value: number) => putNumber(input, roundToMultiple(value, 0.001));
-    for (const key of Object.keys(NUMBER_RANGES) as GaitNumber[]) put(element(`gait-${key}`), gait[key]);
+    for (const key of GAIT_NUMBERS) put(element(`gait-${key}`), gait[key]);
     element<HTMLInputElement>('gait-duty').disabled = gait.held;
     if (document.activeElement !== this.nameInput) this.nameInput.value = gait.name;
     this.kindList.value = gait.held ? 'held' : 'wave';
     const fraction = gait.held ? HELD_STANCE_FRACTION : gait.duty;
     LEGS.forEach((_, leg) => {
       const [start, radius] = [gait.start[leg] ?? 0, RING_RADII[leg] ?? 0];
-      put(this.startInputs[leg], start);
-      put(this.gainInputs[leg], gait.gain[leg] ?? 1);
+      put(this.legInputs.start[leg], start);
+      put(this.legInputs.gain[leg], gait.gain[leg] ?? 1);
       this.bars[leg]?.setAttribute('d', makeSectorPath(radius, start, fraction));
       // A negative gain makes the foot push the robot backward.
       this.bars[leg]?.classList.toggle('against', (gait.gain[leg] ?? 1) < 0);
       const [cx, cy] = locateOnRing(radius, start + fraction);
       setAttributes(this.handles[leg], { cx, cy, display: gait.held ? 'none' : 'inline' });
     });
+    this.trial.requestTrial();
   }
 }
 

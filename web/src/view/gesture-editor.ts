@@ -1,8 +1,8 @@
 // The panel in which the user draws a gesture: a closed line that the end point of the head or the tail follows.
 import type { DrawnGait, End, Workspace } from '../robot';
 import type { Session } from '../session';
-import { element, makeSvg, setAttributes } from './elements';
-import { setUpNumberInput, putNumber, type Range } from './number-input';
+import { element, makeSvg, setAttributes, toPicture } from './elements';
+import { setUpNumberInput, putNumber } from './number-input';
 import { followShownRobot } from './rooms';
 import { TrialView } from './trial';
 import type { BoardWriter } from './writer';
@@ -29,14 +29,11 @@ const SHAPES: Record<string, ((angle: number) => Point) | undefined> = {
   nod: (angle) => [0, Math.sin(angle)],
 };
 
-/** The numeric properties of a gesture that have an input. */
-type NumericKey = 'period' | 'size' | 'terms';
-/** Ranges of the inputs: the period in s, the size in percent, and the number of terms of the Fourier series. */
-const NUMBER_RANGES: Record<NumericKey, Range> = {
-  period: { min: 0.2, max: 20, step: 0.1 },
-  size: { min: 5, max: 200, step: 1 },
-  terms: { min: 1, max: 16, step: 1 },
-};
+/**
+ * The numeric properties of a gesture that have an input: the period in s, the size in percent, and the number of terms
+ * of the Fourier series.
+ */
+const NUMERIC_KEYS = ['period', 'size', 'terms'] as const;
 
 export class GestureEditorView {
   private readonly plane = element<HTMLElement>('gesture-plane') as unknown as SVGSVGElement;
@@ -66,8 +63,8 @@ export class GestureEditorView {
     });
     this.shapeList.addEventListener('change', () => this.showPlane());
     this.nameInput.addEventListener('input', () => this.changeGesture({ name: this.nameInput.value.trim().replaceAll(' ', '-') }));
-    for (const key of Object.keys(NUMBER_RANGES) as NumericKey[]) {
-      setUpNumberInput(element(`gesture-${key}`), NUMBER_RANGES[key], (value) => {
+    for (const key of NUMERIC_KEYS) {
+      setUpNumberInput(element(`gesture-${key}`), (value) => {
         if (value === null) return;
         this.changeGesture({ [key]: key === 'size' ? value / 100 : key === 'terms' ? Math.round(value) : value });
       });
@@ -133,7 +130,7 @@ export class GestureEditorView {
 
   private showGesture(): void {
     const { gesture } = this;
-    const put = (key: NumericKey, value: number) => putNumber(element(`gesture-${key}`), Number(value.toFixed(2)));
+    const put = (key: (typeof NUMERIC_KEYS)[number], value: number) => putNumber(element(`gesture-${key}`), Number(value.toFixed(2)));
     put('period', gesture.period);
     put('size', gesture.size * 100);
     put('terms', gesture.terms);
@@ -146,16 +143,12 @@ export class GestureEditorView {
   /** Records the lines that the user draws with a finger or a mouse. */
   private recordLines(): void {
     let points: Point[] | null = null;
-    const toPlane = ({ clientX, clientY }: PointerEvent): Point | null => {
-      const matrix = this.plane.getScreenCTM();
-      if (!matrix) return null;
-      const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(matrix.inverse());
-      return this.convertPoint([x, y]);
-    };
     const addPoint = (event: PointerEvent) => {
-      const nextPoint = toPlane(event);
-      const lastPoint = points?.at(-1);
-      if (!points || !nextPoint || (lastPoint && Math.hypot(nextPoint[0] - lastPoint[0], nextPoint[1] - lastPoint[1]) < MIN_POINT_DISTANCE_MM)) return;
+      const position = toPicture(this.plane, event);
+      if (!points || !position) return;
+      const nextPoint = this.convertPoint([position.x, position.y]);
+      const lastPoint = points.at(-1);
+      if (lastPoint && Math.hypot(nextPoint[0] - lastPoint[0], nextPoint[1] - lastPoint[1]) < MIN_POINT_DISTANCE_MM) return;
       points.push(nextPoint);
       this.drawnLine.setAttribute('d', this.formatPath(points, ''));
     };

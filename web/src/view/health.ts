@@ -19,25 +19,18 @@ const FORMATTERS: Record<string, (status: Status) => string> = {
   restarts: ({ resetCount }) => String(resetCount),
 };
 
-export class HealthView {
-  private readonly panel = element<HTMLDetailsElement>('power');
-  private readonly values = Object.entries(FORMATTERS).map(([label, format]) => ({ label, format, box: make('dd', {}, '–') }));
+export function setUpHealth(session: Session, writer: BoardWriter): void {
+  const panel = element<HTMLDetailsElement>('power');
+  const values = Object.entries(FORMATTERS).map(([label, format]) => ({ label, format, box: make('dd', {}, '–') }));
+  element('health').append(...values.map(({ label, box }) => make('div', {}, make('dt', {}, label), box)));
   /** True while a request has no answer. */
-  private isPending = false;
-
-  constructor(
-    private readonly session: Session,
-    private readonly writer: BoardWriter,
-  ) {
-    element('health').append(...this.values.map(({ label, box }) => make('div', {}, make('dt', {}, label), box)));
-    setInterval(() => void this.requestStatus(), REQUEST_PERIOD_MS);
-  }
-
-  private async requestStatus(): Promise<void> {
-    if (this.isPending || this.writer.isBusy.value || document.hidden || !this.session.mayAsk) return;
-    this.isPending = true;
-    const status = await this.session.status();
-    this.isPending = false;
-    if (status && isShown(this.panel)) for (const { box, format } of this.values) setText(box, format(status));
-  }
+  let isPending = false;
+  const requestStatus = async () => {
+    if (isPending || writer.isBusy.value || document.hidden || !session.mayAsk) return;
+    isPending = true;
+    const status = await session.status();
+    isPending = false;
+    if (status && isShown(panel)) for (const { box, format } of values) setText(box, format(status));
+  };
+  setInterval(() => void requestStatus(), REQUEST_PERIOD_MS);
 }

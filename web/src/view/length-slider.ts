@@ -4,25 +4,21 @@ import type { Edits, Length } from '../robot';
 import { element } from './elements';
 import { makeEditsWithTwin } from './tried-lengths';
 
-/** Called with the edits of lengths while the slider is dragged; `isLast` is true at the end of the drag. */
-export type TryLengths = (edits: Edits, isLast: boolean) => void;
-
 export class LengthSlider {
   private readonly slider = element<HTMLInputElement>('length-slide');
-  private readonly valueText = element('length-out');
   private readonly symmetryBox = element<HTMLInputElement>('alike');
-  private readonly printableText = element('length-printed');
   private readonly printableMarks = element('length-marks');
   private lengths: Length[] = [];
   /** True once the user has chosen a length; only then does the page search for printable values. */
   isChosen = false;
 
   /**
-   * `onChoice` is called when the user chooses another length or switches the symmetry. `chosenKey` is the key of the
-   * initial length.
+   * `tryLengths` is called with the edits of lengths while the slider is dragged; `isLast` is true at the end of the
+   * drag. `onChoice` is called when the user chooses another length or switches the symmetry. `chosenKey` is the key of
+   * the initial length.
    */
   constructor(
-    tryLengths: TryLengths,
+    tryLengths: (edits: Edits, isLast: boolean) => void,
     private readonly onChoice: () => void,
     private chosenKey = 'leg.crank',
   ) {
@@ -77,7 +73,7 @@ export class LengthSlider {
 
   /** Marks the range of printable values (null while it is unknown) and shows a message. */
   markPrintable(range: [number, number] | null, message: string): void {
-    this.printableText.textContent = message;
+    element('length-printed').textContent = message;
     this.printableMarks.hidden = range === null;
     const { min, max } = this.slider;
     const toPercent = (value: number) => `${(100 * (value - Number(min))) / (Number(max) - Number(min))}%`;
@@ -88,6 +84,6 @@ export class LengthSlider {
 
   private showValue(value: number): void {
     if (this.slider.valueAsNumber !== value) this.slider.value = String(value);
-    this.valueText.textContent = `${value} ${this.chosenLength?.unit === 'deg' ? '°' : 'mm'}`;
+    element('length-out').textContent = `${value} ${this.chosenLength?.unit === 'deg' ? '°' : 'mm'}`;
   }
 }

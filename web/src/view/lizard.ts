@@ -18,14 +18,14 @@ function drawBar(context: Context, from: Point, to: Point, colour: string, width
   context.stroke();
 }
 
-function drawDisc(context: Context, [x, y]: Point, radiusMm: number, fill: string, edge?: string): void {
+function drawDisc(context: Context, [x, y]: Point, radiusMm: number, fill: string, edge?: string, edgeWidthMm = 0.8): void {
   context.fillStyle = fill;
   context.beginPath();
   addCircle(context, x, y, radiusMm);
   context.fill();
   if (edge === undefined) return;
   context.strokeStyle = edge;
-  context.lineWidth = 0.8;
+  context.lineWidth = edgeWidthMm;
   context.stroke();
 }
 
@@ -80,10 +80,7 @@ function drawFoot(context: Context, scene: Scene, servo: number, slideMm: number
   const { joints, foot } = scene.legs[servo];
   drawBar(context, joints[1], foot, colours.steel, 2.2);
   // A sticking foot is a disc; a slipping foot is a ring.
-  drawDisc(context, foot, FOOT_RADIUS_MM, slideMm > SLIP_THRESHOLD_MM ? colours.card : colours.ink);
-  context.strokeStyle = colours.ink;
-  context.lineWidth = 2;
-  context.stroke();
+  drawDisc(context, foot, FOOT_RADIUS_MM, slideMm > SLIP_THRESHOLD_MM ? colours.card : colours.ink, colours.ink, 2);
   drawBar(context, joints[0], joints[1], getServoColour(servo), 4.2);
 }
 

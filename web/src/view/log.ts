@@ -5,7 +5,6 @@ import { element, make } from './elements';
 const MAX_LINES = 400;
 
 export class LogView {
-  private readonly box = element('log');
   private readonly lineInput = element<HTMLInputElement>('typed');
   /** The lines that the user has entered, with the latest line at the end. */
   private readonly history: string[] = [];
@@ -41,7 +40,7 @@ export class LogView {
   }
 
   private add(text: string, className: string): void {
-    const { box } = this;
+    const box = element('log');
     // The view stays for a user who has scrolled up to older lines.
     const isAtEnd = box.scrollHeight - box.scrollTop - box.clientHeight < 24;
     box.append(make('div', { className }, text));

@@ -1,5 +1,5 @@
 // The panel of the margins, the distances between the pose and the singularities.
-import type { Description, Scene } from '../robot';
+import type { Scene } from '../robot';
 import type { Session } from '../session';
 import { element, make, setText } from './elements';
 import { isShown } from './rooms';
@@ -9,19 +9,15 @@ export class MarginsView {
   private bars: { row: HTMLElement; fill: HTMLElement; value: HTMLElement; limit: number }[] = [];
 
   constructor(session: Session) {
-    session.followRobot((description) => this.showRobot(description));
-  }
-
-  /** Shows another robot: makes a bar for each margin, with a mark at its limit. */
-  private showRobot({ margins }: Description): void {
-    const list = element('margins');
-    list.replaceChildren();
-    this.bars = margins.map(({ name, limit }) => {
-      const [fill, mark, value] = [make('div', { className: 'fill' }), make('div', { className: 'limit' }), make('span', {})];
-      mark.style.left = `${limit * 100}%`;
-      const row = make('div', { className: 'bar' }, make('span', {}, name.replace('_', ' ')), make('div', { className: 'track' }, fill, mark), value);
-      list.append(row);
-      return { row, fill, value, limit };
+    // Each margin has a bar, with a mark at its limit.
+    session.followRobot(({ margins }) => {
+      this.bars = margins.map(({ name, limit }) => {
+        const [fill, mark, value] = [make('div', { className: 'fill' }), make('div', { className: 'limit' }), make('span', {})];
+        mark.style.left = `${limit * 100}%`;
+        const row = make('div', { className: 'bar' }, make('span', {}, name.replace('_', ' ')), make('div', { className: 'track' }, fill, mark), value);
+        return { row, fill, value, limit };
+      });
+      element('margins').replaceChildren(...this.bars.map(({ row }) => row));
     });
   }
 
@@ -38,8 +34,6 @@ export class MarginsView {
   /** Updates the numbers; called less often than `draw`, because each change of a text causes a layout. */
   updateNumbers(scene: Scene | null): void {
     if (!isShown(this.panel)) return;
-    this.bars.forEach(({ value }, index) => {
-      setText(value, scene?.margins[index]?.value.toFixed(3) ?? '–');
-    });
+    this.bars.forEach(({ value }, index) => setText(value, scene?.margins[index]?.value.toFixed(3) ?? '–'));
   }
 }

@@ -1,6 +1,6 @@
 // The room in which a camera measures the robot: the camera's picture or a video file, the controls of the protocol
 // with which the page drives the robot, and the results.
-import { transfer } from 'comlink';
+import { type Remote, transfer } from 'comlink';
 
 import type { RequestedWalk } from '../../generated/measure';
 import { files } from '../files';
@@ -15,22 +15,16 @@ import type { Session } from '../session';
 import { getMessage } from '../problem';
 import { WORDS } from '../words';
 import { saveFile } from './download';
-import { element, make, replaceOptions, setText } from './elements';
-import { ResultsView } from './results';
-import { setUpNumberInput, putNumber, type Range } from './number-input';
+import { element, make, onFile, replaceOptions, setText } from './elements';
+import { setUpResults } from './results';
+import { setUpNumberInput, putNumber } from './number-input';
 import { ROOM_OPENED } from './rooms';
 import { drawTracking } from './draw-tracking';
 
 /** Smallest displacement per cycle with which a gait is ticked by default. */
 const MIN_DISPLACEMENT = { forwardMm: 3, turnDeg: 2 };
-/** Range and default value of each number input; null for no default. */
-const NUMBER_INPUTS: Record<string, Range & { value: number | null }> = {
-  speed: { min: 10, max: 100, step: 5, value: 100 },
-  cycles: { min: MIN_CYCLES, max: 50, step: 1, value: 8 },
-  pause: { min: 0.5, max: 30, step: 0.5, value: 1 },
-  height: { min: 0, max: 500, step: 0.5, value: null },
-  ruler: { min: 85, max: 115, step: 0.1, value: 100 },
-};
+/** The default value of each number input; null for no default. */
+const DEFAULT_NUMBERS: Record<string, number | null> = { speed: 100, cycles: 8, pause: 1, height: null, ruler: 100 };
 
 /**
  * The task of the room: `record` adds the camera's frames to the video until the user presses Done, `drive` does so
@@ -58,8 +52,8 @@ export class MeasureView {
   private readonly cameraButton = element<HTMLButtonElement>('measure-camera');
   private readonly putBackButton = element<HTMLButtonElement>('measure-go');
   /** The numbers in the inputs, indexed by the inputs' names. */
-  private readonly values: Record<string, number | null> = {};
-  private readonly resultsView: ResultsView;
+  private readonly values = { ...DEFAULT_NUMBERS };
+  private readonly showResults: ReturnType<typeof setUpResults>;
   private readonly source: FrameSource;
   /** The worker that stores and measures the video; null until it is needed. */
   private videoWorker: Promise<VideoWorker> | null = null;
@@ -80,21 +74,18 @@ export class MeasureView {
     private readonly predictor: Predictor,
     private readonly isSetupOpen: () => boolean,
   ) {
-    this.resultsView = new ResultsView(() => this.session.description.name);
+    this.showResults = setUpResults(session);
     const video = this.view.querySelector('video');
     if (!video) throw new Error('the page has no video for the camera');
     this.source = new FrameSource(video, (frame, seconds) => this.processFrame(frame, seconds));
-    for (const [name, { value, ...range }] of Object.entries(NUMBER_INPUTS)) {
+    element<HTMLInputElement>('measure-cycles').min = String(MIN_CYCLES);
+    for (const [name, value] of Object.entries(DEFAULT_NUMBERS)) {
       const input = element<HTMLInputElement>(`measure-${name}`);
-      this.values[name] = value;
-      setUpNumberInput(input, range, (typed) => (this.values[name] = typed ?? value));
+      setUpNumberInput(input, (typed) => (this.values[name] = typed ?? value));
       if (value !== null) putNumber(input, value);
     }
     this.cameraButton.addEventListener('click', () => void this.runAction(() => this.toggleCamera()));
-    element('measure-file').addEventListener('change', ({ target }) => {
-      const file = (target as HTMLInputElement).files?.[0];
-      if (file) void this.runAction(() => this.readVideo(file));
-    });
+    onFile(element('measure-file'), (file) => void this.runAction(() => this.readVideo(file)));
     element('measure-sheet').addEventListener('click', () => void this.runAction(() => this.saveSheet()));
     this.startButton.addEventListener('click', () => void this.runAction(() => this.handleStartButton()));
     this.driverList.addEventListener('change', () => this.updateControls());
@@ -150,6 +141,10 @@ export class MeasureView {
     return this.videoWorker;
   }
 
+  private async callVideo<Result>(invoke: (video: Remote<VideoWorkerApi>) => Promise<Result>): Promise<Result> {
+    return (await this.getVideoWorker()).call(invoke);
+  }
+
   /** Runs an action of the user; shows the reason if it fails. */
   private async runAction(action: () => Promise<void>): Promise<void> {
     try {
@@ -188,10 +183,9 @@ export class MeasureView {
 
   /** Finds the tags in a frame that was taken at `seconds`, and draws them over the video. */
   private async processFrame(frame: VideoFrame | ImageBitmap, seconds: number): Promise<void> {
-    const videoWorker = await this.getVideoWorker();
     const isKept = this.task === 'record' || this.task === 'play' || (this.task === 'drive' && !this.isBeingPutBack);
     try {
-      this.tracker.addDetection(await videoWorker.call((video) => video.findTags(transfer(frame, [frame]), seconds, isKept)));
+      this.tracker.addDetection(await this.callVideo((video) => video.findTags(transfer(frame, [frame]), seconds, isKept)));
       this.protocol?.setOffset(this.tracker.offsetToCentre);
       drawTracking(this.view.querySelector('canvas') as HTMLCanvasElement, this.tracker);
     } catch (error) {
@@ -202,8 +196,7 @@ export class MeasureView {
   /** Reads a video file and measures the walks in it. */
   private async readVideo(file: File): Promise<void> {
     this.switchCameraOff();
-    const videoWorker = await this.getVideoWorker();
-    await videoWorker.call((video) => video.clear());
+    await this.callVideo((video) => video.clear());
     this.tracker = new TagTracker();
     this.task = 'play';
     this.hasVideo = false;
@@ -232,8 +225,7 @@ export class MeasureView {
     if (this.hasVideo) return this.measureWalks(this.wholeVideoWalks);
     const isPageDriving = this.driverList.value === 'page';
     const gaits = isPageDriving ? this.getDrivableGaits() : [];
-    const videoWorker = await this.getVideoWorker();
-    await videoWorker.call((video) => video.clear());
+    await this.callVideo((video) => video.clear());
     this.tracker.path = [];
     if (isPageDriving) return this.driveGaits(gaits);
     this.task = 'record';
@@ -277,9 +269,7 @@ export class MeasureView {
       await this.measureWalks(this.withGaitNames(protocol.walks), speed, [`Ended before all gaits were walked: ${error.message}`]);
     } finally {
       this.protocol = null;
-      this.isBeingPutBack = false;
       this.task = 'idle';
-      this.putBackButton.hidden = true;
     }
   }
 
@@ -307,14 +297,13 @@ export class MeasureView {
     this.task = 'compute';
     this.setMessage('Measuring…');
     this.updateControls();
-    const videoWorker = await this.getVideoWorker();
     const { height = null, ruler } = this.values;
     try {
-      const results = await videoWorker.call((video) => video.measure({ toml: this.session.toml, speed, deck_height: height, ruler_length: ruler ?? 100, walks }));
-      this.resultsView.show(results.gaits);
+      const results = await this.callVideo((video) => video.measure({ toml: this.session.toml, speed, deck_height: height, ruler_length: ruler ?? 100, walks }));
+      this.showResults(results.gaits);
       problems.push(...results.problems);
     } catch (error) {
-      this.resultsView.show([]);
+      this.showResults([]);
       problems.push(getMessage(error));
     }
     this.task = 'idle';
@@ -323,8 +312,7 @@ export class MeasureView {
 
   private async saveSheet(): Promise<void> {
     const isLetter = element<HTMLSelectElement>('measure-paper').value === 'letter';
-    const videoWorker = await this.getVideoWorker();
-    saveFile('sheet.pdf', [await videoWorker.call((video) => video.drawSheet(isLetter))], 'application/pdf');
+    saveFile('sheet.pdf', [await this.callVideo((video) => video.drawSheet(isLetter))], 'application/pdf');
     this.setMessage('sheet.pdf: print it at 100 % ("actual size"), then measure the line of 100 mm on it.');
   }
 

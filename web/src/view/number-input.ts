@@ -1,22 +1,17 @@
 // A number input that marks and ignores values out of range.
-
-/** The range of valid numbers, and the step of the input's arrows. */
-export interface Range {
-  min: number;
-  max: number;
-  step: number;
-}
+import { putAttribute } from './elements';
 
 /**
- * Sets an input's range. `onNumber` is called with each valid number that the user types, and with null when the input
- * is empty. When the user leaves the input with an invalid number, the last valid number is restored.
+ * Calls `onNumber` with each number in the input's range that the user types, and with null when the input is empty.
+ * When the user leaves the input with an invalid number, the last valid number is restored.
  */
-export function setUpNumberInput(input: HTMLInputElement, { min, max, step }: Range, onNumber: (value: number | null) => void): void {
-  Object.assign(input, { type: 'number', min: String(min), max: String(max), step: String(step), title: `from ${min} to ${max}` });
+export function setUpNumberInput(input: HTMLInputElement, onNumber: (value: number | null) => void): void {
+  const { min, max } = input;
+  input.title = `from ${min} to ${max}`;
   input.addEventListener('input', () => {
     const value = input.valueAsNumber;
     const isEmpty = input.value === '' && !input.validity.badInput;
-    const isInRange = value >= min && value <= max;
+    const isInRange = value >= Number(min) && value <= Number(max);
     markInvalid(input, !isEmpty && !isInRange);
     if (isInRange || isEmpty) input.defaultValue = input.value;
     if (isInRange || isEmpty) onNumber(isInRange ? value : null);
@@ -36,7 +31,5 @@ export function putNumber(input: HTMLInputElement, value: number): void {
   markInvalid(input, false);
 }
 
-function markInvalid(input: HTMLInputElement, isInvalid: boolean): void {
-  if (isInvalid) input.setAttribute('aria-invalid', 'true');
-  else input.removeAttribute('aria-invalid');
-}
+/** Marks the number of an input as invalid or valid. */
+export const markInvalid = (input: HTMLInputElement, isInvalid: boolean) => putAttribute(input, 'aria-invalid', isInvalid ? 'true' : null);

@@ -31,9 +31,8 @@ export class OwnRobots {
     if (!ownRobot) return;
     const previous = browserStorage.getChanges();
     await this.loadFile(ownRobot.file);
-    const session = this.session;
     // If the robot's file has changed meanwhile, only the stored text is loaded.
-    if (!(await session.restoreSaved(ownRobot)) && (await session.change(ownRobot.toml))) return;
+    if (!(await this.session.restoreSaved(ownRobot)) && (await this.session.change(ownRobot.toml))) return;
     this.storeAside(robotsAside.filter((_, n) => n !== index));
     this.putAside(previous);
   }

@@ -1,40 +1,29 @@
 // The slider for the pace of all gaits, which also shows the reported pace.
 import type { Session } from '../session';
 import { WORDS } from '../words';
-import { element } from './elements';
+import { element, showSliderText } from './elements';
 
-export class PaceView {
-  private readonly slider = element<HTMLInputElement>('speed');
-  private readonly valueText = element('speed-out');
+export function setUpPace(session: Session): void {
+  const slider = element<HTMLInputElement>('speed');
   /** True between the user's first move of the slider and the answer to the line with its value. */
-  private isPending = false;
-
-  constructor(session: Session) {
-    this.slider.addEventListener('input', () => {
-      this.isPending = true;
-      this.showText(this.slider.valueAsNumber);
-    });
-    this.slider.addEventListener('change', () => {
-      this.isPending = true;
-      void session.drive(`${WORDS.speed} ${this.slider.value}`).finally(() => {
-        this.isPending = false;
-        this.show(session.pace);
-      });
-    });
-    session.state.pace.subscribe((percent) => this.show(percent));
-  }
-
+  let isPending = false;
+  const showText = (percent: number) => showSliderText(slider, `${percent} %`);
   /** Shows the robot's pace in percent, unless the user is changing it. */
-  private show(percent: number): void {
-    if (this.isPending) return;
-    this.slider.value = String(percent);
-    this.showText(percent);
-  }
-
-  private showText(percent: number): void {
-    const text = `${percent} %`;
-    if (this.valueText.textContent === text) return;
-    this.valueText.textContent = text;
-    this.slider.setAttribute('aria-valuetext', text);
-  }
+  const show = (percent: number) => {
+    if (isPending) return;
+    slider.value = String(percent);
+    showText(percent);
+  };
+  slider.addEventListener('input', () => {
+    isPending = true;
+    showText(slider.valueAsNumber);
+  });
+  slider.addEventListener('change', () => {
+    isPending = true;
+    void session.drive(`${WORDS.speed} ${slider.value}`).finally(() => {
+      isPending = false;
+      show(session.pace);
+    });
+  });
+  session.state.pace.subscribe(show);
 }

@@ -1,7 +1,7 @@
 // The robot in 3D on the stage, and its panel: the parts, the steps of the building guide, and all files to print and
 // to cut. The 3D code is loaded only when 3D is shown or the panel is opened.
 import type { RobotView } from '../parts/robot-view';
-import type { PartsArchive, Clash, Model, Progress, Solids } from '../parts/make-parts';
+import type { PartsArchive, Clash, Model, Progress, PartsWorker } from '../parts/make-parts';
 import type { Frame, Place } from '../robot';
 import type { Session } from '../session';
 import { getMessage } from '../problem';
@@ -27,7 +27,8 @@ export class PartsView {
   /** The buttons that make files: `all` makes every file, `changed` only the files that the edited lengths change. */
   private readonly buttons = { all: element<HTMLButtonElement>('parts-save'), changed: element<HTMLButtonElement>('parts-changed') };
   private robotView: RobotView | null = null;
-  private solids: Solids | null = null;
+  /** The worker that computes the poses of the shown robot. */
+  private worker: PartsWorker | null = null;
   private model: Model | null = null;
   /** The robot.toml that is shown or being loaded; empty for none. */
   private shownToml = '';
@@ -95,17 +96,17 @@ export class PartsView {
   private async load(toml: string): Promise<void> {
     setMessage('parts-message', 'Building the 3D model…');
     try {
-      const [{ Solids }, { RobotView }] = await Promise.all([import('../parts/make-parts'), import('../parts/robot-view')]);
-      const { solids, model, meshes } = await Solids.make(toml);
-      if (toml !== this.shownToml) return solids.dispose();
+      const [{ makeModel }, { RobotView }] = await Promise.all([import('../parts/make-parts'), import('../parts/robot-view')]);
+      const { worker, model, solids } = await makeModel(toml);
+      if (toml !== this.shownToml) return worker.terminate();
       // Until now, the previous robot was shown.
-      this.solids?.dispose();
-      this.solids = solids;
+      this.worker?.terminate();
+      this.worker = worker;
       this.model = model;
       this.requestedPose = '';
       this.fillPartList(model);
       this.robotView ??= this.createRobotView(RobotView);
-      this.robotView?.showModel(model, meshes);
+      this.robotView?.showModel(model, solids);
       this.showStep(this.step !== null && this.step <= model.steps.length ? this.step : null);
       this.pickBody(null);
     } catch (error) {
@@ -192,8 +193,8 @@ export class PartsView {
 
   /** Renders the robot; called in every animation frame. */
   render(frame: Frame | null): void {
-    const { robotView, solids } = this;
-    if (!robotView || !solids || !robotView.renderBudget.mayRender() || !this.is3d) return;
+    const { robotView, worker } = this;
+    if (!robotView || !worker || !robotView.renderBudget.mayRender() || !this.is3d) return;
     const neutral = this.session.description.servos.map((servo) => servo.neutral);
     // The robot stands still while a step of the guide or a clash is shown.
     const isMoving = this.step === null && !this.clash && frame?.scene != null;
@@ -201,8 +202,8 @@ export class PartsView {
     const poseText = [...angles, ...lags].map((angle) => angle.toFixed(2)).join(' ');
     if (poseText !== this.requestedPose) {
       this.requestedPose = poseText;
-      void solids.computeMountPlaces(angles, lags).then((places) => {
-        if (solids !== this.solids) return;
+      void worker.computeMountPlaces(angles, lags).then((places) => {
+        if (worker !== this.worker) return;
         if (places) robotView.placeMounts(places);
         // Another pose was being computed; this pose is requested again.
         else if (this.requestedPose === poseText) this.requestedPose = '';
@@ -225,25 +226,19 @@ export class PartsView {
     this.cancelMaking = () => {};
     setMessage('files-message', 'Loading…');
     this.listFiles([]);
-    let isCancelled = false;
+    const cancellation = new AbortController();
     let isOver = false;
     try {
       const { makeArchive } = await import('../parts/make-parts');
-      const { result, cancel } = makeArchive(toml, selection === 'all' ? null : original, ({ stage, done, total }: Progress) => {
+      this.cancelMaking = () => cancellation.abort();
+      const showProgress = ({ stage, done, total }: Progress) => {
         // Reports have their own channel: some arrive after the result, or after the worker was terminated.
         if (isOver) return;
         progressBar.max = total;
         progressBar.value = done;
         setMessage('files-message', `${stageTexts[stage]}: ${done} of ${total}.`);
-      });
-      const cancellation = new Promise<null>((resolve) => {
-        this.cancelMaking = () => {
-          isCancelled = true;
-          cancel();
-          resolve(null);
-        };
-      });
-      const archive = await Promise.race([result, cancellation]).finally(() => (isOver = true));
+      };
+      const archive = await makeArchive(toml, selection === 'all' ? null : original, showProgress, cancellation.signal).finally(() => (isOver = true));
       if (!archive) return;
       if (archive.paths.length > 0) saveFile(`${file || 'robot'}-${selection === 'all' ? 'parts' : 'changed-parts'}.zip`, [archive.zip], 'application/zip');
       setMessage('files-message', this.describeArchive(archive, selection));
@@ -254,7 +249,7 @@ export class PartsView {
       this.cancelMaking = null;
       progressBar.hidden = true;
       button.textContent = label;
-      if (isCancelled) setMessage('files-message', 'Stopped; nothing was saved.');
+      if (cancellation.signal.aborted) setMessage('files-message', 'Stopped; nothing was saved.');
     }
   }
 

@@ -15,11 +15,11 @@ import { isShown } from './rooms';
 
 /** MIME types of videos with their file extensions, in order of preference: smallest files first. */
 const VIDEO_FORMATS = [
-  ['video/webm;codecs=vp9', 'webm'],
-  ['video/webm;codecs=vp8', 'webm'],
-  ['video/webm', 'webm'],
-  ['video/mp4', 'mp4'],
-] as const;
+  { type: 'video/webm;codecs=vp9', extension: 'webm' },
+  { type: 'video/webm;codecs=vp8', extension: 'webm' },
+  { type: 'video/webm', extension: 'webm' },
+  { type: 'video/mp4', extension: 'mp4' },
+];
 
 /** Period of the firmware's frames. */
 const FRAME_SECONDS = 0.02;
@@ -37,7 +37,6 @@ interface RobotPair {
 }
 
 export class RecordView {
-  private readonly panel = element<HTMLDetailsElement>('keep');
   private readonly timeSlider = element<HTMLInputElement>('moment');
   private readonly firstGaitList = element<HTMLSelectElement>('mine');
   private readonly secondGaitList = element<HTMLSelectElement>('other');
@@ -78,7 +77,6 @@ export class RecordView {
       this.playback = null;
       this.updateButtons();
     });
-    element<HTMLButtonElement>('video').disabled = !this.videoFormat;
     this.updateButtons();
     session.followRobot((description) => this.showRobot(description));
     session.state.gait.subscribe((gait) => this.followGait(gait));
@@ -148,7 +146,7 @@ export class RecordView {
   /** Updates the texts with numbers; called several times per second. */
   updateNumbers(): void {
     const { recording, companion, pair } = this;
-    if (recording && isShown(this.panel)) {
+    if (recording && isShown(element<HTMLDetailsElement>('keep'))) {
       if (this.isRecording) this.timeSlider.max = String(recording.duration);
       const time = this.isRecording && !this.isReplaying ? recording.duration : this.timeSlider.valueAsNumber;
       const totalText = this.isRecording ? '' : ` of ${recording.duration.toFixed(1)}`;
@@ -193,15 +191,15 @@ export class RecordView {
   }
 
   /** The first format that the browser can record; undefined for none. */
-  private get videoFormat(): (typeof VIDEO_FORMATS)[number] | undefined {
-    return typeof MediaRecorder === 'undefined' ? undefined : VIDEO_FORMATS.find(([type]) => MediaRecorder.isTypeSupported(type));
+  private get videoFormat() {
+    return typeof MediaRecorder === 'undefined' ? undefined : VIDEO_FORMATS.find(({ type }) => MediaRecorder.isTypeSupported(type));
   }
 
   private toggleVideo(): void {
     const { videoFormat } = this;
     if (this.video) this.video.stop();
     else if (videoFormat) {
-      const [type, extension] = videoFormat;
+      const { type, extension } = videoFormat;
       const pieces: Blob[] = [];
       const video = new MediaRecorder(element<HTMLCanvasElement>('floor').captureStream(), { mimeType: type });
       video.addEventListener('dataavailable', ({ data }) => pieces.push(data));
@@ -230,7 +228,7 @@ export class RecordView {
       const { Context } = await import('svgcanvas');
       const { clientWidth, clientHeight } = element('floor');
       const context = new Context(clientWidth, clientHeight);
-      const label = this.floor.drawWith(context as unknown as CanvasRenderingContext2D);
+      const label = this.floor.drawPicture(context as unknown as CanvasRenderingContext2D);
       // The package would measure text with an inline style, which the page's Content Security Policy forbids.
       context.getSvg().append(makeSvg('text', { x: label.x, y: label.y, fill: getPalette().ink, 'font-size': 12, 'font-family': 'sans-serif' }, label.text));
       saveFile('floor.svg', [context.getSerializedSvg()], 'image/svg+xml');
@@ -257,13 +255,11 @@ export class RecordView {
 
   /** Starts both robots in the same frame, each from its own start. */
   private async startBoth(pair: RobotPair): Promise<void> {
-    const session = this.session;
-    const { toml, floor, servos, volts } = session;
+    const { session } = this;
     this.removeCompanion();
     this.setMessage('Switching on the second robot…', pair.output);
     try {
-      const companion = Companion.create(pair.toml, floor, servos, volts);
-      if (toml !== this.session.toml) return;
+      const companion = new Companion(pair.toml, session);
       await session.drive(WORDS.stop);
       session.returnToStart();
       this.floor.clearTracks();
@@ -271,7 +267,7 @@ export class RecordView {
       companion.step();
       Object.assign(this, { companion, pair, isWaiting: true, pendingSeconds: 0 });
       this.updateButtons();
-      this.floor.fitTwoRobots();
+      this.floor.fitView();
       await session.drive(pair.gaits[0]);
     } catch (error) {
       this.setMessage(`Cannot start the second robot: ${getMessage(error)}`, pair.output);

@@ -4,54 +4,44 @@ import { element } from './elements';
 
 const VIBRATION_MS = 200;
 
-export class RemoteView {
-  private readonly button = element('remote');
-  private wakeLock: WakeLockSentinel | null = null;
+const isRemote = () => document.body.classList.contains('remote');
 
-  constructor() {
-    this.button.addEventListener('click', () => void (this.isOn ? this.leave() : this.enter()));
-    // The system's gesture that leaves full screen also leaves the remote control.
-    document.addEventListener('fullscreenchange', () => !document.fullscreenElement && this.setRemote(false));
-    // A hidden page loses its wake lock.
-    document.addEventListener('visibilitychange', () => !document.hidden && this.isOn && void this.keepScreenOn());
-  }
+/** Vibrates the phone to report that the robot has stopped by itself. */
+export function vibrate(): void {
+  if (navigator.userActivation?.hasBeenActive) navigator.vibrate?.(VIBRATION_MS);
+}
 
-  private get isOn(): boolean {
-    return document.body.classList.contains('remote');
-  }
-
-  /** Vibrates the phone to report that the robot has stopped by itself. */
-  vibrate(): void {
-    if (navigator.userActivation?.hasBeenActive) navigator.vibrate?.(VIBRATION_MS);
-  }
-
-  private async enter(): Promise<void> {
-    this.setRemote(true);
+export function setUpRemote(): void {
+  const button = element('remote');
+  let wakeLock: WakeLockSentinel | null = null;
+  const releaseWakeLock = () => {
+    void wakeLock?.release();
+    wakeLock = null;
+  };
+  const keepScreenOn = async () => {
+    wakeLock = (await navigator.wakeLock?.request('screen').catch(() => null)) ?? null;
+    if (!isRemote()) releaseWakeLock();
+  };
+  const setRemote = (isOn: boolean) => {
+    document.body.classList.toggle('remote', isOn);
+    button.setAttribute('aria-pressed', String(isOn));
+    if (!isOn) releaseWakeLock();
+  };
+  const enter = async () => {
+    setRemote(true);
     // Some browsers, for example on an iPhone, do not have all these features; the remote control works without them.
     await document.documentElement.requestFullscreen?.().catch(() => {});
     const { orientation } = screen as Screen & { orientation?: { lock?(to: string): Promise<void> } };
     await orientation?.lock?.('landscape').catch(() => {});
-    await this.keepScreenOn();
-  }
-
-  private async leave(): Promise<void> {
-    this.setRemote(false);
+    await keepScreenOn();
+  };
+  const leave = async () => {
+    setRemote(false);
     if (document.fullscreenElement) await document.exitFullscreen().catch(() => {});
-  }
-
-  private async keepScreenOn(): Promise<void> {
-    this.wakeLock = (await navigator.wakeLock?.request('screen').catch(() => null)) ?? null;
-    if (!this.isOn) this.releaseWakeLock();
-  }
-
-  private releaseWakeLock(): void {
-    void this.wakeLock?.release();
-    this.wakeLock = null;
-  }
-
-  private setRemote(isOn: boolean): void {
-    document.body.classList.toggle('remote', isOn);
-    this.button.setAttribute('aria-pressed', String(isOn));
-    if (!isOn) this.releaseWakeLock();
-  }
+  };
+  button.addEventListener('click', () => void (isRemote() ? leave() : enter()));
+  // The system's gesture that leaves full screen also leaves the remote control.
+  document.addEventListener('fullscreenchange', () => !document.fullscreenElement && setRemote(false));
+  // A hidden page loses its wake lock.
+  document.addEventListener('visibilitychange', () => !document.hidden && isRemote() && void keepScreenOn());
 }

@@ -1,24 +1,21 @@
 // The list of robots: the user's own robots, the page's robots, and, under a heading, the robots for tests.
-import { files } from '../files';
-import { element } from './elements';
+import { element, make } from './elements';
 
 export class RobotChoice {
-  private readonly list = element<HTMLSelectElement>('robot');
-  private readonly ownGroup = document.createElement('optgroup');
+  readonly list = element<HTMLSelectElement>('robot');
+  private readonly ownGroup = make('optgroup', { label: 'your own' });
+  private readonly robots: string[];
 
-  private constructor(
-    private readonly robots: string[],
-    testRobots: string[],
-  ) {
-    const testGroup = document.createElement('optgroup');
-    testGroup.label = 'for tests';
-    robots.forEach((name) => {
+  /** Lists `all` of the page's robots; those for `tests` are under a heading. */
+  constructor({ all, tests }: { all: string[]; tests: string[] }) {
+    this.robots = all;
+    const testGroup = make('optgroup', { label: 'for tests' });
+    for (const name of all) {
       const option = new Option(`${name}.toml`, name);
-      if (testRobots.includes(name)) testGroup.append(option);
+      if (tests.includes(name)) testGroup.append(option);
       else this.list.add(option);
-    });
+    }
     if (testGroup.childElementCount > 0) this.list.append(testGroup);
-    this.ownGroup.label = 'your own';
   }
 
   /** Lists the names of the user's own robots. */
@@ -34,17 +31,6 @@ export class RobotChoice {
     return index < 0 ? null : index;
   }
 
-  /** Loads the list of the page's robots. Throws an error with a message for the user if the list is missing. */
-  static async load(): Promise<RobotChoice> {
-    const { all, tests } = await files.robots();
-    return new RobotChoice(all, tests);
-  }
-
-  /** Calls `action` when the user chooses a robot. */
-  onChange(action: () => void): void {
-    this.list.addEventListener('change', action);
-  }
-
   /** The file name of the chosen robot; the first file name if one of the user's own robots is chosen. */
   get chosenFile(): string {
     return this.robots.find((name) => name === this.list.value) ?? this.robots[0];
@@ -55,10 +41,5 @@ export class RobotChoice {
     const isListed = this.robots.includes(name);
     if (isListed) this.list.value = name;
     return isListed;
-  }
-
-  /** True if the user may choose a robot. */
-  set isEnabled(isEnabled: boolean) {
-    this.list.disabled = !isEnabled;
   }
 }

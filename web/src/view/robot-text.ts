@@ -1,10 +1,10 @@
 // The panel with the robot.toml as text: the user can edit, open, drop, undo and share it.
 import { parseFragment } from '../address';
 import { makeLink, unpack } from '../share-link';
-import type { Refusal } from '../robot';
+import { type Refusal, refuse } from '../robot';
 import type { Session } from '../session';
 import { getMessage } from '../problem';
-import { element, setText, showMessage } from './elements';
+import { element, onFile, setText, showMessage } from './elements';
 import { reveal } from './rooms';
 import type { BoardWriter } from './writer';
 
@@ -15,12 +15,10 @@ export class RobotTextView {
   private readonly textBox = element<HTMLTextAreaElement>('robot-text');
   private readonly undoButton = element<HTMLButtonElement>('robot-undo');
   private readonly redoButton = element<HTMLButtonElement>('robot-redo');
-  /** The robot.toml texts before the last changes, with the latest text at the end. */
-  private undoStack: string[] = [];
-  /** The undone robot.toml texts, with the latest text at the end. */
-  private redoStack: string[] = [];
-  /** The last shown robot.toml of the session; empty before the first. */
-  private shownToml = '';
+  /** The robot.toml texts before and after the last changes, including undone changes. */
+  private history: string[] = [];
+  /** The index of the shown robot.toml in the history. */
+  private position = 0;
   /** The refusal of the shown text; null if the session has loaded this text. */
   refusal: Refusal | null = null;
 
@@ -39,15 +37,14 @@ export class RobotTextView {
     });
     this.textBox.addEventListener('input', onChange);
     this.undoButton.addEventListener('click', () => void this.undo());
-    this.redoButton.addEventListener('click', () => void this.redo());
+    this.redoButton.addEventListener('click', () => void this.restore(this.position + 1));
     element('robot-line').addEventListener('click', () => this.selectErrorLine());
     element('robot-link').addEventListener('click', () => void this.copyLink());
     element('robot-code').addEventListener('click', () => void this.toggleQrCode());
     session.followRobot(() => this.showRobot());
     const fileInput = element<HTMLInputElement>('robot-open');
-    fileInput.addEventListener('change', () => {
-      const file = fileInput.files?.[0];
-      if (file) void this.openFile(file);
+    onFile(fileInput, (file) => {
+      void this.openFile(file);
       // Without this reset, the same file could not be chosen again.
       fileInput.value = '';
     });
@@ -65,11 +62,15 @@ export class RobotTextView {
   /** Shows the session's robot. */
   private showRobot(): void {
     const { toml, file } = this.session;
+    if (this.history[this.position] !== toml) {
+      this.history = [...this.history.slice(0, this.position + 1).slice(-MAX_UNDO_STEPS), toml];
+      this.position = this.history.length - 1;
+    }
     // The name is empty while a robot chosen from the list is loading: it has no changes to undo.
-    if (file === '') this.undoStack = [];
-    else if (this.shownToml !== '' && this.shownToml !== toml) this.undoStack = [...this.undoStack.slice(1 - MAX_UNDO_STEPS), this.shownToml];
-    if (this.shownToml !== toml) this.redoStack = [];
-    this.shownToml = toml;
+    if (file === '') {
+      this.history.splice(0, this.position);
+      this.position = 0;
+    }
     this.textBox.value = toml;
     this.showRefusal(null);
   }
@@ -81,7 +82,7 @@ export class RobotTextView {
 
   /** True if there is a change to undo. */
   get canUndo(): boolean {
-    return this.undoStack.length > 0 || this.refusal !== null;
+    return this.position > 0 || this.refusal !== null;
   }
 
   /** Loads the robot in an address, if any; returns false if the robot is invalid. */
@@ -92,7 +93,7 @@ export class RobotTextView {
       return toml === this.session.toml || (await this.loadAndShow(toml));
     } catch (error) {
       reveal(this.textBox);
-      this.showRefusal({ refused: getMessage(error), consequence: null, line: null, key: '' });
+      this.showRefusal(refuse(getMessage(error)));
       return false;
     }
   }
@@ -101,7 +102,7 @@ export class RobotTextView {
     reveal(this.textBox);
     // The box must not show a binary file.
     const toml = file.size > 1_000_000 ? '' : await file.text();
-    if (toml === '' || toml.includes('\0')) return this.showRefusal({ refused: `${file.name} is not a robot.toml.`, consequence: null, line: null, key: '' });
+    if (toml === '' || toml.includes('\0')) return this.showRefusal(refuse(`${file.name} is not a robot.toml.`));
     await this.loadAndShow(toml);
   }
 
@@ -127,35 +128,27 @@ export class RobotTextView {
 
   /** Loads the text as the robot and writes the robot to the board. */
   private async loadAndWrite(): Promise<void> {
-    const session = this.session;
-    if (this.textBox.value !== session.toml) await this.loadAndShow(this.textBox.value);
-    if (this.textBox.value !== session.toml) return;
-    await this.writer.writeRobot({ message: element('robot-message'), progress: element('robot-progress') });
+    if (this.textBox.value !== this.session.toml) await this.loadAndShow(this.textBox.value);
+    if (this.textBox.value !== this.session.toml) return;
+    await this.writer.writeRobot('robot');
   }
 
   /** Undoes the last change: restores the previous robot, or the current one if the shown text is refused. */
   async undo(): Promise<void> {
     if (this.refusal) return this.showRobot();
-    const { undoStack, redoStack, shownToml } = this;
-    const lastToml = undoStack.at(-1);
-    if (lastToml !== undefined) await this.restore(lastToml, undoStack.slice(0, -1), [...redoStack, shownToml]);
+    await this.restore(this.position - 1);
   }
 
-  /** Restores the last undone robot. */
-  private async redo(): Promise<void> {
-    const { undoStack, redoStack, shownToml } = this;
-    const nextToml = redoStack.at(-1);
-    if (nextToml !== undefined) await this.restore(nextToml, [...undoStack, shownToml], redoStack.slice(0, -1));
-  }
-
-  /** Loads another robot into the session, with its stacks for undo and redo. */
-  private async restore(toml: string, undoStack: string[], redoStack: string[]): Promise<void> {
-    const current = { undoStack: this.undoStack, redoStack: this.redoStack, shownToml: this.shownToml };
-    // The stacks are set first, so that the restored robot does not count as a new change.
-    Object.assign(this, { undoStack, redoStack, shownToml: toml });
+  /** Loads the robot at another position of the history, if there is one. */
+  private async restore(position: number): Promise<void> {
+    const toml = this.history[position];
+    if (toml === undefined) return;
+    const previousPosition = this.position;
+    // The position is set first, so that the restored robot does not count as a new change.
+    this.position = position;
     const refusal = await this.session.change(toml);
     if (!refusal) return;
-    Object.assign(this, current);
+    this.position = previousPosition;
     this.showRefusal(refusal);
   }
 
@@ -209,7 +202,7 @@ export class RobotTextView {
     element('robot-code').setAttribute('aria-pressed', 'false');
     this.textBox.setAttribute('aria-invalid', String(refusal !== null));
     this.undoButton.disabled = !this.canUndo;
-    this.redoButton.disabled = this.redoStack.length === 0;
+    this.redoButton.disabled = this.position >= this.history.length - 1;
     this.onChange();
   }
 }

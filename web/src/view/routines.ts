@@ -4,7 +4,7 @@ import { type OnFloor, type Place, type Refusal, Robot, type RoundPath, type Rou
 import { createRobotQueue } from '../robot-requests';
 import { DriveRecorder } from '../routines/drive-recorder';
 import type { Session } from '../session';
-import { element, make, replaceOptions, setText, showMessage } from './elements';
+import { element, make, putAttribute, replaceOptions, setText, showMessage } from './elements';
 import { isShown } from './rooms';
 import type { RobotTextView } from './robot-text';
 import type { BoardWriter } from './writer';
@@ -54,7 +54,7 @@ export class RoutinesView {
     onClick('add', () => void this.addStep());
     onClick('undo', () => void this.text.undo());
     onClick('start', () => void this.startRoutine());
-    onClick('write', () => void writer.writeRobot({ message: element('routine-message'), progress: element('routine-progress') }));
+    onClick('write', () => void writer.writeRobot('routine'));
     const { state } = session;
     session.followRobot(() => this.recorder && this.toggleRecording());
     state.gait.subscribe((activity) => {
@@ -181,8 +181,7 @@ export class RoutinesView {
       if (input.value !== step) input.value = step;
       block.classList.toggle('held', this.drag?.to === index);
       input.setAttribute('aria-invalid', String(invalidIndex === index));
-      if (invalidIndex === index) input.setAttribute('aria-describedby', this.refusalBox.id);
-      else input.removeAttribute('aria-describedby');
+      putAttribute(input, 'aria-describedby', invalidIndex === index ? this.refusalBox.id : null);
     });
     showMessage(this.refusalBox, refusal?.refused ?? '');
     if (invalidIndex !== null) stepList.children[invalidIndex]?.append(this.refusalBox);
@@ -200,10 +199,9 @@ export class RoutinesView {
     const block = make('li', {}, grip, input);
     input.addEventListener('change', () => void this.replaceSteps(this.chosenRoutine?.steps.with(index, input.value.trim()) ?? []));
     const addButton = (text: string, label: string, action: () => Promise<void>, nextIndex: () => number) => {
-      const buttonElement = make('button', { type: 'button', ariaLabel: `${label} ${index + 1}` }, text);
-      block.append(buttonElement);
       // The focus follows the step to its new index.
-      buttonElement.addEventListener('click', () => void action().then(() => this.findButton(nextIndex(), label)?.focus()));
+      const onclick = () => void action().then(() => this.findButton(nextIndex(), label)?.focus());
+      block.append(make('button', { type: 'button', ariaLabel: `${label} ${index + 1}`, onclick }, text));
     };
     addButton('↑', 'Move up step', () => this.moveStep(index, index - 1), () => Math.max(0, index - 1));
     addButton('↓', 'Move down step', () => this.moveStep(index, index + 1), () => Math.min(index + 1, this.stepList.children.length - 1));

@@ -24,42 +24,35 @@ interface Pulse {
 const formatPin = (pin: number) => (pin >= 14 ? `A${pin - 14}` : `D${pin}`);
 
 export class ScopeView {
-  private readonly panel = element<HTMLDetailsElement>('pulses');
-  private readonly canvas = element<HTMLCanvasElement>('scope');
-  private rows: { width: HTMLElement; angle: HTMLElement }[] = [];
+  private rows: { row: HTMLElement; width: HTMLElement; angle: HTMLElement }[] = [];
   private pins: number[] = [];
   private pulses: Pulse[] = [];
-  private readonly note = element('scope-note');
   /** Pulse widths of the latest frame, CPU cycles; 0 for no pulse. */
-  private frameWidths = [0, 0, 0, 0];
+  frameWidths: readonly number[] = [0, 0, 0, 0];
   /** True for the simulated board, whose pulses are known; a real board reports only poses. */
   private hasPulses = true;
 
   constructor(session: Session) {
     session.followRobot((description) => this.showRobot(description));
-    effect(() => this.followLink(session.isReal));
+    effect(() => {
+      const { isReal } = session;
+      this.hasPulses = !isReal;
+      element('scope-note').hidden = !isReal;
+      this.pulses = [];
+      this.frameWidths = [0, 0, 0, 0];
+    });
   }
 
   private showRobot({ servos }: Description): void {
     this.pins = servos.map(({ pin }) => pin);
     this.pulses = [];
-    const body = element('widths');
-    body.replaceChildren();
     this.rows = servos.map(({ name, pin }, servo) => {
       const swatch = make('span', { className: 'swatch' });
       swatch.style.background = `var(--a${servo + 1})`;
       const [width, angle] = [make('td', {}, '–'), make('td', {}, '–')];
-      body.append(make('tr', {}, make('td', {}, swatch, name), make('td', {}, formatPin(pin)), width, angle));
-      return { width, angle };
+      return { row: make('tr', {}, make('td', {}, swatch, name), make('td', {}, formatPin(pin)), width, angle), width, angle };
     });
-  }
-
-  /** Switches to a simulated or a real board. */
-  private followLink(isReal: boolean): void {
-    this.hasPulses = !isReal;
-    this.note.hidden = !isReal;
-    this.pulses = [];
-    this.frameWidths = [0, 0, 0, 0];
+    element('widths').replaceChildren(...this.rows.map(({ row }) => row));
   }
 
   /** Adds a pulse of the pin with this Arduino number; times are CPU cycles. */
@@ -70,26 +63,19 @@ export class ScopeView {
     if (this.pulses.length > 64) this.pulses.splice(0, 32);
   }
 
-  /** Sets the pulse widths of the latest frame, CPU cycles; 0 for no pulse. */
-  setWidths(widths: readonly number[]): void {
-    this.frameWidths = [...widths];
-  }
-
   /** Updates the table; called less often than `draw`, because each change of a text causes a layout. */
   updateNumbers(scene: Scene | null): void {
-    if (!isShown(this.panel)) return;
+    if (!isShown(element<HTMLDetailsElement>('pulses'))) return;
     this.rows.forEach(({ width, angle }, servo) => {
       const cycles = this.frameWidths[servo];
-      const text = !this.hasPulses ? '–' : cycles ? (cycles / CYCLES_PER_US).toFixed(2) : 'none';
-      setText(width, text);
-      const degrees = scene ? `${scene.angles[servo].toFixed(1)}°` : '–';
-      setText(angle, degrees);
+      setText(width, !this.hasPulses ? '–' : cycles ? (cycles / CYCLES_PER_US).toFixed(2) : 'none');
+      setText(angle, scene ? `${scene.angles[servo].toFixed(1)}°` : '–');
     });
   }
 
   /** Draws the pulses up to `currentCycle`, which is at the right edge. */
   draw(currentCycle: number): void {
-    const surface = prepareSurface(this.canvas);
+    const surface = prepareSurface(element<HTMLCanvasElement>('scope'));
     if (!surface) return;
     const { context, width, height } = surface;
     const rowHeight = height / 4;

@@ -14,23 +14,27 @@ import { makeDrawing, SERVO_POSITIONS } from './setup/drawing';
 import { firmwareStep } from './setup/firmware';
 import { hornsStep } from './setup/horns';
 import { keepStep } from './setup/keep';
-import { LimitsStep } from './setup/limits';
-import { button, element, make, paragraph, row, setText, showMessage } from './elements';
-import { ScaleStep } from './setup/scale';
-import { SignsStep } from './setup/signs';
-import type { Step, StepTools } from './setup/step';
+import { limitsStep } from './setup/limits';
+import { button, element, make, paragraph, putAttribute, row, setText, showMessage } from './elements';
+import { scaleStep } from './setup/scale';
+import { signsStep } from './setup/signs';
+import type { Step, Turn } from './setup/step';
 import { trimsStep } from './setup/trims';
 import { walkStep } from './setup/walk';
 import type { WriteContent, BoardWriter } from './writer';
 
-const STEPS: readonly Step[] = [boardStep, firmwareStep, hornsStep, new SignsStep(), trimsStep, new ScaleStep(), new LimitsStep(), walkStep, keepStep];
+const STEPS: readonly Step[] = [boardStep, firmwareStep, hornsStep, signsStep, trimsStep, scaleStep, limitsStep, walkStep, keepStep];
 const LOST_MESSAGE = 'The board is no longer connected. Unsaved settings are lost. Connect it again and continue here.';
 const NO_ROBOT_MESSAGE = 'No robot with this firmware answers: connect the board and write the firmware first.';
 
 /** The dialog. The steps call its methods as plain functions; therefore these methods are arrow functions. */
-export class SetupDialog implements StepTools {
+export class SetupDialog {
+  /** The calibrator for the connected robot; null until its calibration is read. */
   calibrator: BoardCalibrator | null = null;
+  /** The selected servo, 0 to 3. */
   servo = 0;
+  /** The last turn of a servo; null once the servos stand, and in a new step. */
+  lastTurn: Turn | null = null;
   private step: Step = boardStep;
   /** The names of the finished steps, and the keys of the finished parts of steps. */
   private readonly doneSteps = new Set<string>();
@@ -41,7 +45,6 @@ export class SetupDialog implements StepTools {
   private readonly servoButtons = element('setup-servos');
   private readonly drawingBox = element('setup-drawing');
   private readonly message = element('setup-message');
-  private readonly progress = element<HTMLProgressElement>('setup-progress');
   /** Number of started or dropped actions so far; identifies the result of an outdated action. */
   private actionCount = 0;
   private isBusy = false;
@@ -70,9 +73,7 @@ export class SetupDialog implements StepTools {
     element('setup-leave').addEventListener('click', () => void this.leave());
     element('setup-back').addEventListener('click', () => this.moveBy(-1));
     element('setup-next').addEventListener('click', () => this.moveBy(1));
-    for (const { name } of STEPS) {
-      this.stepList.append(make('li', {}, button(name, () => this.goTo(name))));
-    }
+    for (const { name } of STEPS) this.stepList.append(make('li', {}, button(name, () => this.goTo(name))));
     SERVO_POSITIONS.forEach((place, servo) => {
       const choose = () => {
         this.servo = servo;
@@ -84,6 +85,12 @@ export class SetupDialog implements StepTools {
     const { link, banner, bannerCount, description } = session.state;
     // Each restart of the robot changes the number of banners.
     follow([link, banner, bannerCount, description, writer.isBusy], () => link.value && this.followLink());
+  }
+
+  /** The last turn in this step if the selected servo has turned; null otherwise. */
+  get turn(): Turn | null {
+    const { lastTurn } = this;
+    return lastTurn?.step === this.step && lastTurn.servo === this.servo ? lastTurn : null;
   }
 
   /** True while the dialog is open; the user's hands may then be in the robot. */
@@ -147,7 +154,7 @@ export class SetupDialog implements StepTools {
     this.queuedAction = null;
     this.calibrator = null;
     if (areSettingsLost) this.doneSteps.clear();
-    for (const step of STEPS) step.reset?.();
+    this.lastTurn = null;
   }
 
   /** Closes the dialog after the current action; restores the previous calibration if settings are unsaved. */
@@ -171,21 +178,25 @@ export class SetupDialog implements StepTools {
     showMessage(element('setup-left'), message);
   }
 
+  /** Marks a step, or a part of a step, as done. */
   readonly markDone = (step: string): void => void this.doneSteps.add(step);
 
+  /** Returns true if a step, or a part of a step, is done. */
   readonly isDone = (step: string): boolean => this.doneSteps.has(step);
 
+  /** Connects a board on USB, or disconnects a board. */
   readonly connect = (): void => void this.connectBoard();
 
+  /** Writes the page's robot, alone or with the firmware. */
   readonly write = (content: WriteContent): void => {
     this.calibrator = null;
     this.runAction(async () => {
-      const { message, progress } = this;
-      if (await this.writer.write(content, { message, progress })) this.markDone('Firmware');
-      return message.textContent ?? '';
+      if (await this.writer.write(content, 'setup')) this.markDone('Firmware');
+      return this.message.textContent ?? '';
     });
   };
 
+  /** Applies the calibration in the text of the file `name`, without saving it in the board. */
   readonly setCalibration = (text: string, name: string): void => {
     this.runAction(async () => {
       const calibration = parseCalibration(text, name);
@@ -195,12 +206,22 @@ export class SetupDialog implements StepTools {
     });
   };
 
+  /** Runs an action with the robot's calibrator; shows the returned message, or the error. */
   readonly run = (action: (calibrator: Calibrator) => Promise<string>): void => this.runAction(async () => (await this.requireCalibrator()).run(action));
 
+  /** Runs an action with the robot's calibrator, marks the step `done`, if any, as done, and shows a message. */
+  readonly perform = (action: (calibrator: Calibrator) => Promise<void>, message: string, done?: string): void =>
+    this.run(async (calibrator) => {
+      await action(calibrator);
+      if (done) this.markDone(done);
+      return message;
+    });
+
+  /** Makes the robot stand, with all servos at neutral. */
   readonly stand = (): void =>
     this.run(async (calibrator) => {
       await calibrator.stand();
-      this.step.reset?.();
+      this.lastTurn = null;
       return 'The robot stands.';
     });
 
@@ -254,7 +275,7 @@ export class SetupDialog implements StepTools {
   private enterStep(step: Step): void {
     if (step !== this.step) {
       if (step.isPerServo) this.servo = 0;
-      step.reset?.();
+      this.lastTurn = null;
     }
     this.step = step;
     if (!this.isBusy) this.setMessage('');
@@ -272,11 +293,8 @@ export class SetupDialog implements StepTools {
     if (!session.link) return;
     const index = STEPS.indexOf(step);
     this.stepList.querySelectorAll('button').forEach((stepButton, n) => {
-      stepButton.toggleAttribute('aria-current', n === index);
-      if (n === index) {
-        stepButton.setAttribute('aria-current', 'step');
-        this.stepList.scrollLeft = stepButton.offsetLeft - this.stepList.offsetLeft - (this.stepList.clientWidth - stepButton.offsetWidth) / 2;
-      }
+      putAttribute(stepButton, 'aria-current', n === index ? 'step' : null);
+      if (n === index) this.stepList.scrollLeft = stepButton.offsetLeft - this.stepList.offsetLeft - (this.stepList.clientWidth - stepButton.offsetWidth) / 2;
       stepButton.classList.toggle('done', this.isDone(STEPS[n].name));
     });
     this.title.textContent = `${index + 1} of ${STEPS.length}: ${step.title}`;

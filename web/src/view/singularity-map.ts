@@ -3,7 +3,7 @@
 import type { Scene, SingularityMap } from '../robot';
 import type { Session } from '../session';
 import { beginLines, prepareSurface } from './canvas';
-import { element } from './elements';
+import { element, make } from './elements';
 import { onPaletteChange, getPalette } from './palette';
 
 /** Number of poses in the trail. */
@@ -61,10 +61,8 @@ export class SingularityMapView {
   }
 
   private drawBackground(map: SingularityMap): HTMLCanvasElement {
-    const backgroundCanvas = document.createElement('canvas');
-    const size = this.canvas.width;
-    backgroundCanvas.width = size;
-    backgroundCanvas.height = this.canvas.height;
+    const { width: size, height } = this.canvas;
+    const backgroundCanvas = make('canvas', { width: size, height });
     const context = backgroundCanvas.getContext('2d');
     if (!context) return backgroundCanvas;
     const colours = getPalette();

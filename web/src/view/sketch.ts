@@ -7,7 +7,7 @@ import type { Session } from '../session';
 import { type Joint, listBars, listJoints } from '../sketch/joints';
 import type { FitView } from './fit';
 import { LengthSlider } from './length-slider';
-import { element, makeSvg, setAttributes } from './elements';
+import { element, makeSvg, setAttributes, toPicture } from './elements';
 import { followShownRobot } from './rooms';
 import { describeRefusal, showOffers, formatLengths } from './tried-lengths';
 
@@ -22,7 +22,6 @@ const MARGIN_MM = 14;
 export class SketchView {
   private readonly picture = element<HTMLElement>('sketch') as unknown as SVGSVGElement;
   private readonly message = element('sketch-message');
-  private readonly symmetryBox = element<HTMLInputElement>('alike');
   private readonly barGroup = this.picture.appendChild(makeSvg('g', {}));
   private readonly jointGroup = this.picture.appendChild(makeSvg('g', {}));
   /** Tries other lengths in a worker. */
@@ -79,10 +78,9 @@ export class SketchView {
 
   /** Ends a drag and loads the resulting robot.toml; null keeps the robot. */
   private async endDrag(toml: string | null): Promise<void> {
-    const session = this.session;
     this.isDragEnding = false;
     this.draggedJoint = null;
-    if (toml !== null && toml !== session.toml) await session.change(toml);
+    if (toml !== null && toml !== this.session.toml) await this.session.change(toml);
     else this.showUnchanged();
   }
 
@@ -99,11 +97,11 @@ export class SketchView {
 
   /** Draws the robot; if `fitsView`, fits the view to it. A drag keeps the view and the elements of the joints. */
   private draw(scene: Scene, fitsView: boolean): void {
-    const toPicture = ([x, y]: Point): Point => [x, -y];
+    const flip = ([x, y]: Point): Point => [x, -y];
     const lengths = new Map(this.session.description.lengths.map((length) => [length.key, length]));
     this.barGroup.replaceChildren(
       ...listBars(scene).map(({ key, from, to }) => {
-        const [[x1, y1], [x2, y2]] = [toPicture(from), toPicture(to)];
+        const [[x1, y1], [x2, y2]] = [flip(from), flip(to)];
         const length = lengths.get(key);
         const title = length ? `${length.label} (${key.replace('links.', '')}): ${length.value} ${length.unit}` : key;
         const line = makeSvg('line', { x1, y1, x2, y2, 'data-key': key }, makeSvg('title', {}, title));
@@ -111,7 +109,7 @@ export class SketchView {
         return line;
       }),
     );
-    const points = [...scene.points, ...scene.legs.flatMap(({ foot, joints }) => [foot, ...joints]), ...scene.shafts].map(toPicture);
+    const points = [...scene.points, ...scene.legs.flatMap(({ foot, joints }) => [foot, ...joints]), ...scene.shafts].map(flip);
     if (fitsView && !this.draggedJoint) {
       const [xs, ys] = [points.map(([x]) => x), points.map(([, y]) => y)];
       const [left, top] = [Math.min(...xs) - MARGIN_MM, Math.min(...ys) - MARGIN_MM];
@@ -123,7 +121,7 @@ export class SketchView {
       return;
     }
     const getLength = (key: string) => lengths.get(key)?.value ?? 0;
-    this.jointGroup.replaceChildren(...listJoints(scene, getLength).map((joint) => this.makeJoint(joint, toPicture(joint.position))));
+    this.jointGroup.replaceChildren(...listJoints(scene, getLength).map((joint) => this.makeJoint(joint, flip(joint.position))));
   }
 
   private makeJoint(joint: Joint, [cx, cy]: Point): SVGCircleElement {
@@ -150,11 +148,9 @@ export class SketchView {
     return circle;
   }
 
-  private dragJoint(joint: Joint, { clientX, clientY }: PointerEvent, isLast = false): void {
-    const matrix = this.picture.getScreenCTM();
-    if (!matrix) return;
-    const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(matrix.inverse());
-    this.tryLengths(joint.makeEdits([x, -y], this.symmetryBox.checked), isLast);
+  private dragJoint(joint: Joint, event: PointerEvent, isLast = false): void {
+    const position = toPicture(this.picture, event);
+    if (position) this.tryLengths(joint.makeEdits([position.x, -position.y], element<HTMLInputElement>('alike').checked), isLast);
   }
 
   /** Selects the number input for the length of a clicked bar. */

@@ -75,7 +75,6 @@ export function chooseGait({ forward, left }: Direction, gaits: PredictedGait[])
 export class Steering {
   private readonly heldKeys = new Set<string>();
   private readonly stick = element('stick');
-  private readonly knob = element('knob');
   private stickDirection = IDLE;
   private gamepadDirection = IDLE;
   /** True once the gamepads' sticks are in the dead zone after `release`; until then, a held stick does not steer. */
@@ -177,7 +176,7 @@ export class Steering {
     const divisor = Math.max(1, Math.hypot(x, y));
     [x, y] = [x / divisor, y / divisor];
     this.stickDirection = { forward: -y, left: -x };
-    this.knob.style.translate = `${x * radius * 0.6}px ${y * radius * 0.6}px`;
+    element('knob').style.translate = `${x * radius * 0.6}px ${y * radius * 0.6}px`;
     this.applyDirection();
   }
 

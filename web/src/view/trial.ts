@@ -101,9 +101,8 @@ export class TrialView {
     const { session } = this;
     const refusal = session.isReal ? await applyGait(session, gait) : null;
     if (refusal) return this.setMessage(refusal.refused);
-    const message = this.element('message');
-    if (!(await this.writer.writeRobot({ message, progress: this.element<HTMLProgressElement>('progress') }))) return;
-    this.setMessage(`${message.textContent}. The board has restarted; ${gait.name.replaceAll('-', ' ')} has a button in Drive.`);
+    if (!(await this.writer.writeRobot(this.editor.prefix))) return;
+    this.setMessage(`${this.element('message').textContent}. The board has restarted; ${gait.name.replaceAll('-', ' ')} has a button in Drive.`);
   }
 
   private async copyTable(): Promise<void> {

@@ -1,15 +1,10 @@
-// Writes the firmware, the robot or both to a board, and shows the progress and the result in the caller's elements.
+// Writes the firmware, the robot or both to a board, and shows the progress and the result in the caller's elements,
+// whose ids are `PREFIX-progress` and `PREFIX-message`.
 import { signal } from '@preact/signals-core';
 
 import type { ReportProgress, Session } from '../session';
 import { getMessage } from '../problem';
-import { setText } from './elements';
-
-/** The elements that show the progress and the result. */
-export interface WriteDisplay {
-  progress: HTMLProgressElement;
-  message: HTMLElement;
-}
+import { element, setText } from './elements';
 
 /** The content to write: the page's robot alone, firmware and robot, or the image of a chosen file. */
 export type WriteContent = 'robot' | 'all' | Uint8Array;
@@ -31,18 +26,20 @@ export class BoardWriter {
   constructor(private readonly session: Session) {}
 
   /** Writes the page's robot alone to a real board; returns true if the board then reports this robot. */
-  async writeRobot(display: WriteDisplay): Promise<boolean> {
-    if (this.session.isReal) return this.write('robot', display);
-    display.message.textContent = NO_BOARD_MESSAGE;
+  async writeRobot(prefix: string): Promise<boolean> {
+    if (this.session.isReal) return this.write('robot', prefix);
+    element(`${prefix}-message`).textContent = NO_BOARD_MESSAGE;
     return false;
   }
 
   /** Writes and verifies, then waits for the board's banner; returns true if all steps succeed. */
-  async write(content: WriteContent, { progress, message }: WriteDisplay): Promise<boolean> {
+  async write(content: WriteContent, prefix: string): Promise<boolean> {
     if (this.isBusy.value) return false;
-    const session = this.session;
-    const { isReal } = session;
-    const { name } = session.link;
+    const progress = element<HTMLProgressElement>(`${prefix}-progress`);
+    const message = element(`${prefix}-message`);
+    const { session } = this;
+    // The name shows that the simulated board was written, not a real board.
+    const targetText = session.isReal ? '' : ` to the ${session.link.name}`;
     const start = performance.now();
     const hash = typeof content === 'string' ? session.description.hash : null;
     this.isBusy.value = true;
@@ -59,8 +56,6 @@ export class BoardWriter {
     try {
       await (content === 'robot' ? session.flash(session.robotSection, true, showProgress) : session.flash(content === 'all' ? session.image : content, false, showProgress));
       isWritten = true;
-      // The name shows that the simulated board was written, not a real board.
-      const targetText = isReal ? '' : ` to the ${name}`;
       message.textContent = `written${targetText} and verified in ${formatSeconds(performance.now() - start)}`;
     } catch (error) {
       message.textContent = `not written: ${getMessage(error)}`;

@@ -11,7 +11,6 @@ import type { Calibration } from './lizard';
 ";
 
 /// Reads a calibration from the robot's answer to `cal`, and skips other lines; null if a line is missing.
-#[must_use]
 #[wasm_bindgen(js_name = readCalibration, unchecked_return_type = "Calibration | null")]
 pub fn read_calibration(lines: Vec<String>) -> JsValue {
     to_js(Calibration::from_cal_answer(&lines))

@@ -22,14 +22,12 @@ impl Calibrator {
     }
 
     /// The robot's calibration, saved or not.
-    #[must_use]
     #[wasm_bindgen(getter, unchecked_return_type = "Calibration")]
     pub fn calibration(&self) -> JsValue {
         to_js(self.0.calibration())
     }
 
     /// True if the calibration is not saved, or if it is unknown whether it is saved.
-    #[must_use]
     #[wasm_bindgen(getter, js_name = isChanged)]
     pub fn is_changed(&self) -> bool {
         self.0.has_unsaved_changes()

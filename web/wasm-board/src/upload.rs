@@ -92,8 +92,7 @@ pub async fn upload(
 #[wasm_bindgen]
 pub async fn identify(line: SerialLine) -> Result<String, JsError> {
     let mut loader = Loader::new(JsBoard(line));
-    let kind = lizard_upload::identify(&mut loader).await?;
-    Ok(match kind {
+    Ok(match lizard_upload::identify(&mut loader).await? {
         LoaderKind::Optiboot => "UNO",
         LoaderKind::AtmegaBoot => "Nano",
     }

@@ -76,13 +76,11 @@ impl Camera {
     pub fn add_frame(&mut self, frame: &Frame, seconds: f64) -> Result<Vec<TagEntry>, VideoError> {
         self.cached_analysis = None;
         let tags = self.video.add_frame(seconds, frame)?;
-        let to_entry = |(id, corners): (usize, &Option<_>)| {
-            Some(TagEntry {
-                id,
-                corners: (*corners)?,
-            })
+        let to_entry = |(id, corners): (usize, Option<_>)| {
+            let corners = corners?;
+            Some(TagEntry { id, corners })
         };
-        Ok(tags.iter().enumerate().filter_map(to_entry).collect())
+        Ok(tags.into_iter().enumerate().filter_map(to_entry).collect())
     }
 
     /// Measures gaits in the video.
@@ -103,7 +101,7 @@ impl Camera {
             print_scale: request.ruler_length / sheet::RULER_LENGTH,
             deck_height: deck_height.unwrap_or_else(|| compute_board_height(&robot)),
         };
-        let gaits = Gaits::predict(&robot, &named_gaits, f64::from(request.speed) / 100.0);
+        let gaits = Gaits::predict(&robot, &named_gaits, request.speed);
         let video = match self.cached_analysis.take() {
             Some((cached_setup, video)) if cached_setup == setup => video,
             _ => NamedVideo {
@@ -125,8 +123,7 @@ impl Camera {
                 measured_walks.collect()
             }
         };
-        let report = Report::compute(&robot, request.speed, setup, videos, &gaits, &walks);
-        let report = report.with_ranges(&robot).with_mujoco(&request.toml);
+        let report = Report::compute(&request.toml, setup, videos, &gaits, &walks);
         Ok(Results {
             gaits: serde_json::to_value(&report.gaits)?,
             problems,

@@ -1,6 +1,7 @@
 //! The JavaScript class that makes a robot's parts. It throws a [`Refusal`] if they cannot be made.
 
 use js_sys::{Function, JSON};
+use lizard_parts::OutputFile;
 use serde::Serialize;
 use wasm_bindgen::prelude::{JsValue, wasm_bindgen};
 
@@ -106,11 +107,7 @@ impl Parts {
     /// Fails if the layers of a part do not form a closed body, or if a screw cannot be reached.
     pub fn files(&self, group: usize) -> Result<Vec<PartFile>, Refusal> {
         let files = self.0.make_files(group)?.into_iter();
-        Ok(files
-            .map(|file| PartFile {
-                path: file.path,
-                bytes: file.bytes,
-            })
-            .collect())
+        let to_part_file = |OutputFile { path, bytes }| PartFile { path, bytes };
+        Ok(files.map(to_part_file).collect())
     }
 }

@@ -103,7 +103,7 @@ pub struct ModelEntry {
 
 /// A robot's parts.
 pub struct Model {
-    assembly: Assembly,
+    pub(crate) assembly: Assembly,
     parts: Vec<Part>,
     mounts: Vec<Mount>,
     steps: Vec<Step>,
@@ -178,12 +178,6 @@ impl Model {
         }
     }
 
-    /// Returns the robot's assembly.
-    #[must_use]
-    pub fn assembly(&self) -> &Assembly {
-        &self.assembly
-    }
-
     /// Returns the parts of which the robot is built, without their alternatives.
     pub(crate) fn needed_parts(&self) -> impl Iterator<Item = &Part> {
         self.parts.iter().filter(|part| part.replaces.is_none())
@@ -219,10 +213,7 @@ impl Model {
                 Mount::Strut(servo) => {
                     let [from, to] = angle_and_points(servo).1.strut_anchors;
                     let direction = to - from;
-                    Placement {
-                        origin: from,
-                        x_axis: direction * (1.0 / direction.length()),
-                    }
+                    Placement::new(from, direction * (1.0 / direction.length()))
                 }
                 _ => driven_placement,
             };
@@ -245,11 +236,10 @@ impl Model {
     /// Fails if the layers of a part do not form a closed body, or if a screw cannot be reached.
     pub fn make_files(&self, group: usize) -> Result<Vec<OutputFile>, Refusal> {
         let robot = self.assembly.robot();
-        let count = self.ordered_parts().count();
         if let Some(part) = self.ordered_parts().nth(group) {
             return Ok(make_part_files(&part, robot.parts().kerf)?);
         }
-        if group > count {
+        if group > self.ordered_parts().count() {
             return Ok(Vec::new());
         }
         let pose = robot.lizard().solve(&robot.neutral_pose());
@@ -273,12 +263,11 @@ impl Model {
 /// Returns the homogeneous matrix, column by column, of a solid's placement in its mount's frame; `None` gives the
 /// identity.
 fn to_matrix(transform: Option<PrintTransform>) -> [f64; 16] {
-    let identity = PrintTransform {
+    let transform = transform.unwrap_or(PrintTransform {
         is_flipped: false,
         lift: 0.0,
         frame: Placement::CHASSIS,
-    };
-    let transform = transform.unwrap_or(identity);
+    });
     let (Placement { origin, x_axis }, lift) = (transform.frame, transform.lift);
     let z_sign = if transform.is_flipped { -1.0 } else { 1.0 };
     let y_axis = x_axis.rotated_left() * z_sign;

@@ -1,6 +1,6 @@
 //! The triangles of all solids, as arrays for the graphics processor.
 
-use lizard_parts::{Body, Mesh, Prism, Solid};
+use lizard_parts::{Body, Mesh, Prism};
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use crate::model::{Model, Refusal};
@@ -25,17 +25,14 @@ impl Model {
         let parts = self.needed_parts();
         let printed = parts.map(|part| make_triangles(&part.name, &part.build_printed_layers().0));
         let is_bought = |body: &&Body| !self.needed_parts().any(|part| part.has_body(body));
-        let bodies = self.assembly().bodies().iter().filter(is_bought);
+        let bodies = self.assembly.bodies().iter().filter(is_bought);
         let bought = bodies.map(|body| make_triangles(&body.name, &body.prisms));
         printed.chain(bought).collect()
     }
 }
 
 fn make_triangles(name: &str, prisms: &[Prism]) -> Result<Triangles, Refusal> {
-    let mesh = Mesh::from_solid(&Solid::from_prisms(prisms));
-    if !mesh.is_closed() {
-        return Err(lizard_parts::BuildError::OpenSurface(name.to_owned()).into());
-    }
+    let mesh = Mesh::from_prisms(name, prisms)?;
     let corners = mesh.corners.as_flattened().iter();
     let triangles = mesh.triangles.as_flattened().iter();
     Ok(Triangles {

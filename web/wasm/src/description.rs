@@ -174,7 +174,7 @@ pub struct Description {
     pub lengths: Vec<LengthEntry>,
     /// Chassis plate seen from above.
     pub plate: PlateEntry,
-    /// Limits of the margins, in the order of [`crate::Scene::margins`].
+    /// Limits of the margins, in the order of [`crate::scene::Scene::margins`].
     pub margins: Vec<MarginEntry>,
     /// Thresholds of the board's supply below which the robot slows down, stops, and rests, V.
     pub supply: [f64; 3],
@@ -189,13 +189,12 @@ pub struct Description {
     pub floor: Floor,
     /// Servo models that the page offers.
     pub models: Vec<ServoModelEntry>,
-    /// Reserved words of the console, the same for every robot.
+    /// Reserved words of the console, which may not be gait names; the same for every robot.
     pub words: Vec<&'static str>,
 }
 
 impl Description {
     /// Describes a robot.
-    #[must_use]
     pub fn for_robot(robot: &Robot) -> Self {
         let servos = SERVO_NAMES.into_iter().zip(robot.servos());
         let servos = servos.map(|(name, servo)| ServoEntry {
@@ -224,10 +223,13 @@ impl Description {
         ];
         let core = robot.core();
         let board = core.supplies().board;
+        let mut version = String::new();
+        Text::Version.print(&mut version);
+        let words = Word::ALL.iter().filter(|word| word.is_reserved());
         Self {
             hash: format!("{:08x}", core.hash()),
             name: robot.name().to_string(),
-            version: format_version(),
+            version,
             start: START_ADDRESS,
             servos: servos.collect(),
             gaits: gaits.collect(),
@@ -243,22 +245,9 @@ impl Description {
             supply: [board.slow_mv, board.stop_mv, board.rest_mv].map(|mv| f64::from(mv) / 1000.0),
             floor: Floor::for_robot(robot),
             models: ServoModelEntry::list_all(robot),
-            words: list_reserved_words(),
+            words: words.map(|word| word.text()).collect(),
         }
     }
-}
-
-/// Returns the core's version as text.
-fn format_version() -> String {
-    let mut version = String::new();
-    Text::Version.print(&mut version);
-    version
-}
-
-/// Returns the console's reserved words, which may not be gait names.
-fn list_reserved_words() -> Vec<&'static str> {
-    let words = Word::ALL.iter().filter(|word| word.is_reserved());
-    words.map(|word| word.text()).collect()
 }
 
 /// The label of each link, l0 to l19, and the number of its twin, its mirror image; a base is its own twin.

@@ -42,13 +42,10 @@ pub struct DrawnGait {
 }
 
 impl DrawnGait {
-    fn end(&self) -> Option<End> {
-        End::ALL.into_iter().find(|end| end.name() == self.end)
-    }
-
     /// Returns the path that the end point follows; `None` for an unknown `end`, or if the line has no length.
     fn smoothed_path(&self, robot: &Robot) -> Option<Path> {
-        let neutral = compute_neutral_point(robot, self.end()?);
+        let end = End::ALL.into_iter().find(|end| end.name() == self.end)?;
+        let neutral = compute_neutral_point(robot, end);
         let scale_point = |point: &[f64; 2]| {
             [0, 1].map(|axis| neutral[axis] + self.size * (point[axis] - neutral[axis]))
         };
@@ -64,7 +61,6 @@ impl DrawnGait {
     }
 
     /// Formats the gait as tables of robot.toml; `None` for an unknown `end`, or if the line has no length.
-    #[must_use]
     pub fn format_table(&self, robot: &Robot) -> Option<String> {
         let path = self.smoothed_path(robot)?;
         let format_series = |harmonics: &[Harmonic]| {
@@ -88,7 +84,6 @@ impl DrawnGait {
 
     /// Returns points of the end point's path at equal time steps, mm in the frame of head or tail. `None` for an
     /// unknown `end`, or if the line has no length.
-    #[must_use]
     pub fn shown_points(&self, robot: &Robot) -> Option<Vec<[f64; 2]>> {
         let path = self.smoothed_path(robot)?;
         let point_at = |i: usize| {
@@ -178,8 +173,7 @@ mod tests {
     fn the_end_point_follows_the_drawn_circle() {
         let (robot, twin) = load_paper_robot_and_twin();
         for end in End::ALL {
-            let drawn_gait = make_circular_gait(&robot, end, 6.0);
-            let edited_gait = EditedGait::DrawnGait(drawn_gait);
+            let edited_gait = EditedGait::DrawnGait(make_circular_gait(&robot, end, 6.0));
             let trial = edited_gait.try_on(&twin).expect("the line has a length");
             let table = trial.expect("the gait is valid").table;
             assert!(table.contains(&format!("[gait.mine.{end}]")), "{table}");

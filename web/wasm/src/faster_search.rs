@@ -5,9 +5,7 @@
 //! searches do not depend on each other; the final gait equals the result of `lizard tune` with the same parameters.
 
 use lizard_robot::Bars;
-use lizard_tune::{
-    Comparison, GaitKind, ScoredParameters, Search, Tuning, TuningError, trial_count,
-};
+use lizard_tune::{Comparison, GaitKind, Search, Tuning, TuningError, trial_count};
 use lizard_twin::Twin;
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
@@ -37,7 +35,7 @@ pub struct SearchExtent {
 }
 
 /// The progress of a search.
-#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Tsify)]
 pub struct Progress {
     /// Number of gaits tried so far.
     pub done: usize,
@@ -93,10 +91,7 @@ impl FasterSearch {
             tuning,
             kind_index: 0,
             scores: Vec::new(),
-            progress: Progress {
-                done: 0,
-                best_score: None,
-            },
+            progress: Progress::default(),
             trial_count: GaitKind::ALL.len() * trial_count(task.rounds),
         })
     }
@@ -136,16 +131,8 @@ impl FasterSearch {
         if !self.scores.is_empty() {
             searches[self.kind_index].accept_scores(self.scores.iter().copied());
         }
-        let kinds = GaitKind::ALL.into_iter().zip(&searches);
-        let scored_parameters = kinds.flat_map(|(kind, search)| {
-            let found = search.ranked_results().into_iter();
-            found.map(move |(score, parameters)| ScoredParameters {
-                kind,
-                score,
-                parameters,
-            })
-        });
-        let best = self.tuning.build_best(scored_parameters.collect())?;
+        let results = searches.iter().map(Search::ranked_results);
+        let best = self.tuning.build_best(results)?;
         let comparison = self.tuning.compare(&best, robot_count);
         Some(FoundGait {
             bars: best.gait().bars()?,
@@ -197,18 +184,15 @@ mod tests {
         let kind = GaitKind::Wave;
         let round_parameters = tuning.start_search(kind).trials().to_vec();
         let tried_parameters = round_parameters.into_iter().take(3);
-        let tried_parameters = tried_parameters.filter_map(|parameters| {
+        let results = tried_parameters.filter_map(|parameters| {
             let score = tuning.score(kind, &parameters)?;
-            Some(ScoredParameters {
-                kind,
-                score,
-                parameters,
-            })
+            Some((score, parameters))
         });
-        let tried_parameters: Vec<_> = tried_parameters.collect();
-        let scores = tried_parameters.iter().map(|entry| entry.score);
+        let results: Vec<_> = results.collect();
+        let scores = results.iter().map(|(score, _)| *score);
         assert_eq!(best_score, Some(scores.fold(f64::NEG_INFINITY, f64::max)));
-        let best_tuned = tuning.build_best(tried_parameters);
+        // Only gaits of the first kind have been tried.
+        let best_tuned = tuning.build_best([results]);
         let best_tuned = best_tuned.expect("a gait was valid");
         assert_eq!(found.comparison, tuning.compare(&best_tuned, 20));
         // The page uses exactly the found gait.

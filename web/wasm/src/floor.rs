@@ -14,24 +14,6 @@ pub enum LegDrive {
     Strut,
 }
 
-impl LegDrive {
-    /// Returns the kind's name in robot.toml.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Rigid => "rigid",
-            Self::Strut => "strut",
-        }
-    }
-
-    fn from_kind(kind: &DriveKind) -> Self {
-        match kind {
-            DriveKind::Rigid => Self::Rigid,
-            DriveKind::Strut(_) => Self::Strut,
-        }
-    }
-}
-
 /// The values of the sliders. The ground's other values are the robot's own.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Tsify)]
 pub struct Floor {
@@ -57,7 +39,6 @@ pub struct Floor {
 
 impl Floor {
     /// Returns a robot's own values.
-    #[must_use]
     pub fn for_robot(robot: &Robot) -> Self {
         let ground = robot.ground();
         let own_strut = robot.strut_with_coil(&robot.parts().spring);
@@ -66,7 +47,10 @@ impl Floor {
             friction: ground.friction_coefficient,
             ratio: ground.friction_ratio,
             mass: ground.body.mass,
-            kind: LegDrive::from_kind(&ground.drive.kind),
+            kind: match ground.drive.kind {
+                DriveKind::Rigid => LegDrive::Rigid,
+                DriveKind::Strut(_) => LegDrive::Strut,
+            },
             force: strut.preload,
             rate: strut.spring_rate,
             play: ground.drive.play,
@@ -99,7 +83,6 @@ impl Floor {
     }
 
     /// Returns the robot's ground with these values.
-    #[must_use]
     pub fn to_ground(self, robot: &Robot) -> GroundContact {
         let (floor, ground) = (self.with_valid_values(robot), robot.ground());
         GroundContact {
@@ -167,7 +150,9 @@ mod tests {
             let robot = parse_robot_with(extra_toml);
             let floor = Floor::for_robot(&robot);
             assert_eq!(floor.to_ground(&robot), *robot.ground(), "{extra_toml}");
-            assert_eq!(floor.kind.name(), robot.drive().kind_name());
+            // The page gets the kind by its name in robot.toml.
+            let kind = serde_json::json!(floor.kind);
+            assert_eq!(kind, robot.drive().kind_name(), "{extra_toml}");
         }
     }
 }

@@ -68,7 +68,6 @@ pub struct Robot(PageState);
 #[wasm_bindgen]
 impl Robot {
     /// Creates an instance without a robot.
-    #[must_use]
     #[wasm_bindgen(constructor)]
     pub fn new() -> Self {
         Self::default()
@@ -93,7 +92,6 @@ impl Robot {
 
     /// Returns the smallest and the largest value that all these lengths may have together; null for an unknown key or
     /// an invalid robot.toml.
-    #[must_use]
     #[wasm_bindgen(js_name = lengthRange, unchecked_return_type = "[number, number] | null")]
     pub fn length_range(toml: &str, keys: Vec<String>) -> JsValue {
         to_js(lengths::find_accepted_range(toml, &keys))
@@ -110,7 +108,6 @@ impl Robot {
 
     /// Makes the robot's section of flash, with the certified cells of its guard; empty if no robot is loaded. Takes
     /// some hundredths of a second.
-    #[must_use]
     pub fn section(&self) -> Vec<u8> {
         let section = self.0.robot().map(|robot| robot.section());
         section.unwrap_or_default()
@@ -149,8 +146,7 @@ impl Robot {
         #[wasm_bindgen(unchecked_param_type = "Place")] from: &JsValue,
         #[wasm_bindgen(unchecked_param_type = "Place")] to: &JsValue,
     ) -> Result<JsValue, JsError> {
-        let from: Place = from_js(from)?;
-        let travel = from.displacement_to(from_js(to)?);
+        let travel = from_js::<Place>(from)?.displacement_to(from_js(to)?);
         Ok(to_js(Displacement::from(travel)))
     }
 
@@ -172,14 +168,12 @@ impl Robot {
 
     /// Predicts the gait with this index; null if there is no such gait. Takes tenths of a second; the page therefore
     /// calls it in a worker.
-    #[must_use]
     #[wasm_bindgen(unchecked_return_type = "GaitPrediction | null")]
     pub fn predict(&self, gait: usize) -> JsValue {
         to_js(self.0.predict(gait))
     }
 
     /// Makes the map of singularities of the head (0) or the tail (1); null if no robot is loaded.
-    #[must_use]
     #[wasm_bindgen(js_name = singularityMap, unchecked_return_type = "SingularityMap | null")]
     pub fn singularity_map(&self, end: usize) -> JsValue {
         to_js(self.0.singularity_map(end))
@@ -195,7 +189,6 @@ impl Robot {
     }
 
     /// Returns the gait with this index as bars; null for a gait along a path and for a gait without motion.
-    #[must_use]
     #[wasm_bindgen(unchecked_return_type = "Bars | null")]
     pub fn bars(&self, gait: usize) -> JsValue {
         let gaits = self.0.robot().map(|robot| robot.gaits());
@@ -230,21 +223,18 @@ impl Robot {
     }
 
     /// Returns the routines of a robot.toml, even of an invalid one.
-    #[must_use]
     #[wasm_bindgen(unchecked_return_type = "Routine[]")]
     pub fn routines(toml: &str) -> JsValue {
         to_js(edit::read_routines(toml))
     }
 
     /// Returns the robot.toml with a routine of these steps, and its refusal, if any.
-    #[must_use]
     #[wasm_bindgen(js_name = putSteps, unchecked_return_type = "EditedToml")]
     pub fn put_steps(toml: &str, name: &str, steps: Vec<String>) -> JsValue {
         to_js(EditedToml::check(edit::with_steps(toml, name, &steps)))
     }
 
     /// Simulates one round of a routine; takes tenths of a second. Returns null if there is no such routine.
-    #[must_use]
     #[wasm_bindgen(js_name = simulateRound, unchecked_return_type = "RoundPath | null")]
     pub fn simulate_round(&self, routine: &str) -> JsValue {
         let twin = self.0.twin();
@@ -264,7 +254,6 @@ impl Robot {
     }
 
     /// Returns the workspace of the end point of the head (0) or the tail (1); null if no robot is loaded.
-    #[must_use]
     #[wasm_bindgen(unchecked_return_type = "Workspace | null")]
     pub fn workspace(&self, end: usize) -> JsValue {
         to_js(self.0.workspace(end))

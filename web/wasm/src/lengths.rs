@@ -52,7 +52,6 @@ pub struct WithoutGait {
 
 impl TriedLengths {
     /// Sets lengths in the text of a robot.toml; if `searches`, also searches for valid alternatives.
-    #[must_use]
     pub fn try_edits(text: &str, requested: &RequestedLengths, searches: bool) -> Self {
         let changed_text = match with_lengths(text, requested) {
             Ok(text) => text,
@@ -89,7 +88,6 @@ impl TriedLengths {
 /// Returns the smallest and the largest value, mm or deg, that the lengths of all `keys` may have together. The search
 /// covers half to twice the current value; for an angle, 45 deg to either side. `None` if the text is not a valid robot
 /// or has no such length.
-#[must_use]
 pub fn find_accepted_range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
     let lengths = Description::for_robot(&Robot::parse(text).ok()?).lengths;
     let mut candidates = lengths.iter();

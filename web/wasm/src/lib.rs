@@ -3,7 +3,7 @@
 //!
 //! The page passes the text of a robot.toml and then, fifty times per second, the four pulse widths at a UNO's pins. It
 //! receives the position of every joint, the margin to every singularity, the limit that the pose violates, if any, and
-//! the body's place on the floor. [`PageState`] holds this state; [`Robot`] is its JavaScript class.
+//! the body's place on the floor. `PageState` holds this state; [`Robot`] is its JavaScript class.
 //!
 //! # When not to use it
 //! The interface is made for this page and changes with it. A Rust program uses `lizard-robot` and `lizard-twin`
@@ -31,22 +31,4 @@ mod singularity_map;
 mod trial;
 mod workspace;
 
-pub use description::{
-    Description, GaitEntry, LengthEntry, MarginEntry, ServoEntry, ServoModelEntry,
-};
-pub use drawn_gait::DrawnGait;
-#[cfg(feature = "tune")]
-pub use faster_search::{FasterSearch, FoundGait, Progress, SearchExtent, SearchTask};
-pub use floor::{Floor, LegDrive};
 pub use javascript::Robot;
-pub use lengths::{NearestLengths, TriedLengths, WithoutGait};
-pub use page::{EditedToml, Frame, PageState};
-pub use place::Place;
-pub use prediction::{Displacement, GaitPrediction};
-pub use refusal::Refusal;
-pub use round_path::RoundPath;
-pub use running_core::{CoreFrame, RunningCore};
-pub use scene::{LegScene, Margin, Point, Scene, SliderScene};
-pub use singularity_map::{Curve, MapPoint, SingularityMap};
-pub use trial::{Alternative, EditedGait, RefusedTrial, Trial};
-pub use workspace::Workspace;

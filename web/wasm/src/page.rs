@@ -113,8 +113,9 @@ impl PageState {
         // The robot's own values replace values out of range.
         let new_floor = floor.with_valid_values(&robot);
         let mut text = text.to_string();
-        let kind = new_floor.kind.name();
-        if new_floor.kind != own_floor.kind {
+        let has_new_kind = new_floor.kind != own_floor.kind;
+        if has_new_kind {
+            let kind = new_floor.to_ground(&robot).drive.kind_name();
             text = with_string(&text, "leg.drive.kind", kind)?;
         }
         for (key, own_value, new_value) in [
@@ -123,7 +124,7 @@ impl PageState {
         ] {
             text = match floor.kind {
                 LegDrive::Rigid => without_key(&text, key)?,
-                LegDrive::Strut if kind != robot.drive().kind_name() || own_value != new_value => {
+                LegDrive::Strut if has_new_kind || own_value != new_value => {
                     with_number(&text, key, new_value)?
                 }
                 LegDrive::Strut => text,

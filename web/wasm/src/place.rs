@@ -17,7 +17,6 @@ pub struct Place {
 
 impl Place {
     /// Returns the displacement from this place to another, in this place's frame.
-    #[must_use]
     pub fn displacement_to(self, other: Self) -> Travel {
         BodyPose::from(other).travel_from(self.into())
     }

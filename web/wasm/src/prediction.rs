@@ -1,7 +1,7 @@
 //! The prediction of a gait for the page: the displacement per cycle on the current floor, and the servos' load at each
 //! pace, as a fraction of their torque-speed line.
 
-use lizard_robot::{CheckedGait, DriveEffect, Effort, GroundContact, Prediction, Travel};
+use lizard_robot::{CheckedGait, DriveEffect, Effort, Prediction, Travel};
 use lizard_twin::{ServoModel, Twin};
 use serde::Serialize;
 use tsify::Tsify;
@@ -59,37 +59,23 @@ pub struct GaitPrediction {
 
 impl GaitPrediction {
     /// Predicts a gait with a twin's current floor and servos.
-    #[must_use]
     pub fn predict(twin: &Twin, gait: &CheckedGait) -> Self {
-        let prediction = Self::with_ideal_servos(gait, twin.ground());
-        let ServoModel::Motors(motors) = twin.servo_model() else {
-            return prediction;
-        };
-        let displacement = prediction.displacement;
-        let travel = twin.simulate_cycle(gait).travel();
-        let effort = Effort::simulate(gait, twin.ground(), &motors);
-        let utilisation =
-            |step: usize| effort.utilisation((step + 1) as f64 / PACE_COUNT as f64, 1.0);
-        Self {
-            displacement: Displacement {
-                forward: displacement.forward.and(Some(travel.forward)),
-                left: displacement.left.and(Some(travel.left)),
-                turn: displacement.turn.and(Some(travel.turn)),
-            },
-            utilisations: Some(std::array::from_fn(utilisation)),
-            ..prediction
-        }
-    }
-
-    /// Predicts a gait with ideal servos.
-    fn with_ideal_servos(gait: &CheckedGait, ground: &GroundContact) -> Self {
+        let ground = twin.ground();
         let effect = DriveEffect::compute(gait, ground);
-        let prediction = effect.map_or_else(|| gait.predict(ground), |effect| effect.movement);
+        let mut prediction = effect.map_or_else(|| gait.predict(ground), |effect| effect.movement);
+        let mut utilisations = None;
+        if let ServoModel::Motors(motors) = twin.servo_model() {
+            prediction = prediction.keep_determined(twin.simulate_cycle(gait).travel());
+            let effort = Effort::simulate(gait, ground, &motors);
+            let utilisation =
+                |step: usize| effort.utilisation((step + 1) as f64 / PACE_COUNT as f64, 1.0);
+            utilisations = Some(std::array::from_fn(utilisation));
+        }
         Self {
             displacement: prediction.into(),
             lag: effect.map(|effect| effect.max_lag),
             fraction: effect.and_then(|effect| effect.fraction_of_rigid),
-            utilisations: None,
+            utilisations,
         }
     }
 }

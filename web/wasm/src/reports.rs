@@ -41,21 +41,18 @@ export interface Status {
 ";
 
 /// Parses a banner; returns null for any other line.
-#[must_use]
 #[wasm_bindgen(js_name = parseBanner, unchecked_return_type = "Banner | null")]
 pub fn parse_banner(line: &str) -> JsValue {
     to_js(Banner::parse(line))
 }
 
 /// Parses an answer `ok gait=...`; returns null for any other line.
-#[must_use]
 #[wasm_bindgen(js_name = parseStatus, unchecked_return_type = "Status | null")]
 pub fn parse_status(line: &str) -> JsValue {
     to_js(Status::parse(line))
 }
 
 /// Parses the pose in a line `# t=<frame> pose=...`, deg; returns null for any other line.
-#[must_use]
 #[wasm_bindgen(js_name = parsePoseReport, unchecked_return_type = "Four<number> | null")]
 pub fn parse_pose_report(line: &str) -> JsValue {
     to_js(lizard_robot::parse_pose_report(line).map(|(_, angles)| angles))

@@ -28,7 +28,6 @@ pub struct RoundPath {
 impl RoundPath {
     /// Simulates one round of a routine with a twin's floor and servos; the twin's own place and pose do not change.
     /// `None` if there is no such routine.
-    #[must_use]
     pub fn simulate(twin: &Twin, name: &str) -> Option<Self> {
         let robot = twin.robot();
         let mut simulated_twin = Twin::new(robot, twin.servo_model());

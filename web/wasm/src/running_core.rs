@@ -33,7 +33,6 @@ pub struct RunningCore {
 
 impl RunningCore {
     /// Starts a robot's core as at power-on, with these EEPROM contents.
-    #[must_use]
     pub fn power_on(robot: CoreRobot, memory: Eeprom) -> Self {
         Self {
             rail_pin_mv: healthy_rail_mv(&robot.supplies()).unwrap_or(0.0),
@@ -42,7 +41,6 @@ impl RunningCore {
     }
 
     /// Ends the run and returns the EEPROM's contents.
-    #[must_use]
     pub fn into_memory(self) -> Eeprom {
         self.running_robot.board.memory
     }

@@ -99,6 +99,13 @@ impl Scene {
         let has_spring = twin.ground().drive.kind != lizard_robot::DriveKind::Rigid;
         let refusal = robot.limits().violations(&solution).next();
         let compute_slider = |side| compute_slider_scene(robot, &shape, &solution, side);
+        let to_leg = |leg: LegPoints| LegScene {
+            pivots: leg.pivots.map(Point::from),
+            joints: leg.joints.map(Point::from),
+            foot: leg.foot.into(),
+            strut: leg.strut_anchors.map(Point::from),
+            has_spring,
+        };
         let to_margin = |(check, value): (Check, f64)| Margin {
             name: check.name(),
             value,
@@ -109,23 +116,11 @@ impl Scene {
             tips: shape.crank_tips.map(Point::from),
             points: shape.ends.map(Point::from),
             sliders: Side::ALL.map(compute_slider).into(),
-            legs: shape.legs.map(|leg| LegScene::new(leg, has_spring)).into(),
+            legs: shape.legs.map(to_leg).into(),
             margins: solution.margins.iter().map(to_margin).collect(),
             refusal: refusal.map(|violation| violation.to_string()),
             map_points: End::ALL.map(|end| singularity_map::to_map_point(end, &pose)),
         })
-    }
-}
-
-impl LegScene {
-    fn new(leg: LegPoints, has_spring: bool) -> Self {
-        Self {
-            pivots: leg.pivots.map(Point::from),
-            joints: leg.joints.map(Point::from),
-            foot: leg.foot.into(),
-            strut: leg.strut_anchors.map(Point::from),
-            has_spring,
-        }
     }
 }
 

@@ -53,7 +53,6 @@ pub struct SingularityMap {
 
 impl SingularityMap {
     /// Computes the map of an end.
-    #[must_use]
     pub fn compute(robot: &Robot, end: End) -> Self {
         let size = ((MAX_ANGLE_DEG - MIN_ANGLE_DEG) / GRID_STEP_DEG) as usize + 1;
         let angle_at = |i: usize| MIN_ANGLE_DEG + GRID_STEP_DEG * i as f64;
@@ -115,7 +114,6 @@ fn find_curves(robot: &Robot, end: End) -> Vec<Curve> {
 }
 
 /// Returns a pose's point on the map of an end: the angles of left and right crank, deg, 0 to 360.
-#[must_use]
 pub fn to_map_point(end: End, pose: &Pose) -> MapPoint {
     let angles: [f64; 4] = (*pose).into();
     let angles = end.pick(angles);

@@ -80,7 +80,6 @@ impl EditedGait {
 
     /// Returns the text of a robot.toml with this gait. The gait replaces the gait of the same name, or else is added
     /// at the end. `None` if the drawn line has no length.
-    #[must_use]
     pub fn put_into(&self, text: &str, robot: &Robot) -> Option<String> {
         let (Self::DrawnGait(DrawnGait { name, .. }) | Self::Bars(Bars { name, .. })) = self;
         Some(edit::with_gait(text, name, &self.format_table(robot)?))
@@ -90,7 +89,6 @@ impl EditedGait {
     ///
     /// # Errors
     /// Returns the first limit that the gait violates, with valid alternatives.
-    #[must_use]
     pub fn try_on(&self, twin: &Twin) -> Option<Result<Trial, RefusedTrial>> {
         let table = self.format_table(twin.robot())?;
         Some(try_table(table, twin).map_err(|refusal| RefusedTrial {
@@ -101,29 +99,27 @@ impl EditedGait {
 
     /// Finds the nearest smaller gait and the nearest longer period that are valid.
     fn find_alternatives(&self, robot: &Robot) -> Vec<Alternative> {
-        let is_valid_after = |change: &dyn Fn(&mut Self)| {
-            let mut changed_gait = self.clone();
-            change(&mut changed_gait);
-            let table = changed_gait.format_table(robot);
-            table.is_some_and(|table| robot.with_gait(&table).is_ok())
-        };
         let (size_parameter, size, steps_per_unit, period) = match self {
             Self::DrawnGait(drawn_gait) => ("size", drawn_gait.size, 100.0, drawn_gait.period),
             Self::Bars(bars) => ("amplitude", bars.amplitude, 10.0, bars.period),
         };
-        let is_size_valid = |step: i64| {
-            is_valid_after(&|gait| match gait {
-                Self::DrawnGait(drawn_gait) => drawn_gait.size = step as f64 / steps_per_unit,
-                Self::Bars(bars) => bars.amplitude = step as f64 / steps_per_unit,
-            })
-        };
-        let is_period_valid = |hundredths: i64| {
-            is_valid_after(&|gait| match gait {
-                Self::DrawnGait(DrawnGait { period, .. }) | Self::Bars(Bars { period, .. }) => {
-                    *period = hundredths as f64 / 100.0;
+        let is_valid_with = |size: f64, period: f64| {
+            let mut changed_gait = self.clone();
+            match &mut changed_gait {
+                Self::DrawnGait(drawn_gait) => {
+                    drawn_gait.size = size;
+                    drawn_gait.period = period;
                 }
-            })
+                Self::Bars(bars) => {
+                    bars.amplitude = size;
+                    bars.period = period;
+                }
+            }
+            let table = changed_gait.format_table(robot);
+            table.is_some_and(|table| robot.with_gait(&table).is_ok())
         };
+        let is_size_valid = |steps: i64| is_valid_with(steps as f64 / steps_per_unit, period);
+        let is_period_valid = |hundredths: i64| is_valid_with(size, hundredths as f64 / 100.0);
         let largest_steps = (size * steps_per_unit).ceil() as i64 - 1;
         let size_steps = find_nearest_valid(largest_steps, MIN_SIZE_STEPS, is_size_valid);
         let shortest = (period * 100.0).floor() as i64 + 1;

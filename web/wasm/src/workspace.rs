@@ -37,7 +37,6 @@ pub struct Workspace {
 
 impl Workspace {
     /// Computes the workspace of the end point of head or tail.
-    #[must_use]
     pub fn compute(robot: &Robot, end: End) -> Self {
         let five_bar = robot.lizard().end(end);
         let half_base = five_bar.base / 2.0;

@@ -76,7 +76,7 @@ fn compute_dual_certificate(pads: &Pads, displacement: &Displacement) -> ([f64; 
 }
 
 fn assert_minimal(pads: &Pads) {
-    let (net_force, duality_gap) = compute_dual_certificate(pads, &pads.minimise_cost());
+    let (net_force, duality_gap) = compute_dual_certificate(pads, &pads.minimise_cost(None));
     let is_balanced = net_force.iter().all(|component| component.abs() < 1e-5);
     assert!(is_balanced, "the forces do not balance: {net_force:?}");
     let is_closed = duality_gap.abs() < 1e-5 * max_abs_component(&pads.swings);
@@ -119,7 +119,9 @@ fn three_pads_that_swing_alike_hold_while_the_fourth_slides() {
     for sliding_pad in 0..4 {
         let mut swings = [[-1.0, 0.0]; 4];
         swings[sliding_pad] = [3.0, 0.0];
-        let twist = rigid_leg_pads(PAD_POSITIONS, swings).minimise_cost().twist;
+        let twist = rigid_leg_pads(PAD_POSITIONS, swings)
+            .minimise_cost(None)
+            .twist;
         assert_twist_near(twist, [1.0, 0.0, 0.0]);
     }
 }
@@ -127,7 +129,9 @@ fn three_pads_that_swing_alike_hold_while_the_fourth_slides() {
 #[test]
 fn a_single_swinging_pad_does_not_move_the_body() {
     let swings = [[5.0, 1.0], [0.0; 2], [0.0; 2], [0.0; 2]];
-    let twist = rigid_leg_pads(PAD_POSITIONS, swings).minimise_cost().twist;
+    let twist = rigid_leg_pads(PAD_POSITIONS, swings)
+        .minimise_cost(None)
+        .twist;
     assert_twist_near(twist, [0.0; 3]);
 }
 
@@ -135,7 +139,9 @@ fn a_single_swinging_pad_does_not_move_the_body() {
 fn legs_that_swing_against_each_other_turn_the_body() {
     // The pads turn by -0.01 rad about the body's centre, so the body turns by 0.01 rad, and no pad slides.
     let swings = PAD_POSITIONS.map(|[x, y]| [0.01 * y, -0.01 * x]);
-    let twist = rigid_leg_pads(PAD_POSITIONS, swings).minimise_cost().twist;
+    let twist = rigid_leg_pads(PAD_POSITIONS, swings)
+        .minimise_cost(None)
+        .twist;
     assert_twist_near(twist, [0.0, 0.0, 0.01]);
 }
 
@@ -165,7 +171,7 @@ proptest! {
         loads in prop::array::uniform4(0.8f64..1.2),
     ) {
         let pads = Pads { positions: PAD_POSITIONS, swings, friction_ratio: 1.3, loads, compliance: None, inertia: None };
-        let minimum = pads.minimise_cost();
+        let minimum = pads.minimise_cost(None);
         let (twist, scale) = (minimum.twist, 10f64.powi(exponent));
         let nudged = [twist[0] + scale * nudge[0], twist[1] + scale * nudge[1], twist[2] + scale * nudge[2] / 80.0];
         let nudged = Displacement { twist: nudged, ..minimum };
@@ -190,7 +196,8 @@ proptest! {
         // A spring for a robot of the paper's size. The spring rate makes the torque rise as the strut lengthens,
         // although the lever arm shrinks, so the energy is convex.
         let upper_resistance = preload.map_or(Resistance::Stop, |preload| Resistance::strut(triangle, preload, 1.5, 5.0));
-        let lag_energy = LagEnergy { play, stop_torque: STOP_TORQUE, lower_resistance: Resistance::Stop, upper_resistance, motor: None };
+        let resistances = [Resistance::Stop, upper_resistance];
+        let lag_energy = LagEnergy { play, stop_torque: STOP_TORQUE, resistances, motor: None };
         let compliance = Some(Compliance {
             sweep_derivatives: [[45.0, 0.0]; 4],
             previous_lags: lag_fractions.map(|fraction| fraction * play),

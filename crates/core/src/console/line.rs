@@ -128,10 +128,8 @@ mod tests {
                     _ => typed_text.push(char::from(*byte)),
                 }
             }
-            let text = typed_text
-                .trim_matches([' ', '\t', '\x0c'])
-                .to_ascii_lowercase();
-            lines.push((!is_too_long_or_garbled).then_some(text));
+            let text = typed_text.trim_matches([' ', '\t', '\x0c']);
+            lines.push((!is_too_long_or_garbled).then(|| text.to_ascii_lowercase()));
         }
         // The last line has not ended yet.
         lines.pop();
@@ -190,10 +188,8 @@ mod tests {
             for correction in ["", "\x08", "\x08\x08\x08\x08\x08\x08\x08\x08\x08speed 90"] {
                 let mut line = Line::new();
                 let sent_bytes = [&bytes, correction.as_bytes(), b"\rstop\r"].concat();
-                let line_kinds: Vec<LineKind> = sent_bytes
-                    .iter()
-                    .filter_map(|byte| line.push(*byte))
-                    .collect();
+                let line_kinds = sent_bytes.iter().filter_map(|byte| line.push(*byte));
+                let line_kinds: Vec<LineKind> = line_kinds.collect();
                 assert_eq!(line_kinds, [LineKind::Garbled, LineKind::Valid]);
                 assert_eq!(line.text(), b"stop");
             }

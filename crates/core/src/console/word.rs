@@ -202,13 +202,8 @@ mod tests {
     }
 
     /// Checks that all words except these are printed.
-    fn assert_lists_all_but<const FIRST_YIELDING_INDEX: usize>(
-        robot: &Robot,
-        omitted_words: &[Word],
-    ) {
-        let words = Word::ALL
-            .iter()
-            .filter(|word| !omitted_words.contains(word));
+    fn assert_lists_all_but<const FIRST_YIELDING_INDEX: usize>(robot: &Robot, omitted: &[Word]) {
+        let words = Word::ALL.iter().filter(|word| !omitted.contains(word));
         let words: Vec<&str> = words.map(|word| word.text()).collect();
         let mut list = String::new();
         Word::print_all::<FIRST_YIELDING_INDEX>(&mut list, robot);

@@ -45,24 +45,18 @@ mod tests {
 
     use super::*;
     use crate::numbers::units::Angle;
-    use crate::sample::{bounds, slider_in_steps, steps_per_mm, to_degrees};
+    use crate::sample::{Sample, bounds, slider_in_steps, steps_per_mm, to_degrees};
 
     /// Yields random sliders, in mm, of robots that hobby servos can move.
     fn any_slider() -> impl Strategy<Value = kinematics::Slider> {
-        (
-            1.0..300.0f64,
-            1.0..100.0f64,
-            1.0..100.0f64,
-            -40.0..40.0f64,
-            50.0..200.0f64,
-        )
-            .prop_map(|(base, front, rear, offset, nominal)| kinematics::Slider {
-                front_offset: offset,
-                base,
-                front_arm: front,
-                rear_arm: rear,
-                nominal_length: nominal,
-            })
+        let lengths = [1.0..300.0, 1.0..100.0, 1.0..100.0, -40.0..40.0, 50.0..200.0];
+        lengths.prop_map(|[base, front, rear, offset, nominal]| kinematics::Slider {
+            front_offset: offset,
+            base,
+            front_arm: front,
+            rear_arm: rear,
+            nominal_length: nominal,
+        })
     }
 
     proptest! {
@@ -112,26 +106,17 @@ mod tests {
             stroke_length in 1u16..5_000,
         ) {
             let max = min + stroke_length;
-            let slider = Slider { stroke_min: min, stroke_max: max, ..slider_in_steps(&sample_slider(), -10.0, 10.0) };
+            let slider = Slider { stroke_min: min, stroke_max: max, ..Slider::NONE };
             let square = |length: u16| u32::from(length) * u32::from(length);
             prop_assert!(slider.allows(square(min)) && slider.allows(square(max)));
             prop_assert!(!slider.allows(square(min) - 1) && !slider.allows(square(max) + 1));
         }
     }
 
-    fn sample_slider() -> kinematics::Slider {
-        kinematics::Slider {
-            front_offset: 3.0,
-            base: 141.0,
-            front_arm: 28.0,
-            rear_arm: 33.0,
-            nominal_length: 91.0,
-        }
-    }
-
     #[test]
     fn mirroring_negates_the_offset_and_mirroring_twice_changes_nothing() {
-        let slider = slider_in_steps(&sample_slider(), -10.0, 10.0);
+        let slider = Sample::asymmetric().content.sliders[0];
+        assert_ne!(slider.offset, 0);
         assert_eq!(slider.mirrored().offset, -slider.offset);
         assert_eq!(slider.mirrored().mirrored(), slider);
     }

@@ -125,25 +125,20 @@ mod tests {
 
     /// Yields any adjustment that the console accepts.
     fn any_adjustment() -> impl Strategy<Value = Adjustment> {
-        let sweep = -3641i16..=3641;
-        (
-            sweep,
-            500u16..=2000,
-            any::<bool>(),
-            -30_000i16..0,
-            0i16..30_000,
-        )
-            .prop_map(|(trim, scale, is_direct, min, max)| {
-                let mut adjustment = Adjustment {
-                    trim: Sweep(trim),
-                    gain: 1,
-                    travel_min: Sweep(min),
-                    travel_max: Sweep(max),
-                };
-                adjustment.set_scale(scale);
-                adjustment.set_direct(is_direct);
-                adjustment
-            })
+        let trim = -3641i16..=3641;
+        let travel = (-30_000i16..0, 0i16..30_000);
+        let numbers = (trim, 500u16..=2000, any::<bool>(), travel);
+        numbers.prop_map(|(trim, scale, is_direct, (min, max))| {
+            let mut adjustment = Adjustment {
+                trim: Sweep(trim),
+                gain: 1,
+                travel_min: Sweep(min),
+                travel_max: Sweep(max),
+            };
+            adjustment.set_scale(scale);
+            adjustment.set_direct(is_direct);
+            adjustment
+        })
     }
 
     proptest! {

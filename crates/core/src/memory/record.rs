@@ -179,6 +179,7 @@ impl RecordWrite {
 mod tests {
     use std::vec::Vec;
 
+    use crc::{CRC_16_IBM_3740, Crc};
     use proptest::prelude::*;
 
     use super::*;
@@ -187,15 +188,8 @@ mod tests {
     const ADDRESS: RecordAddress = RecordAddress(64);
 
     fn any_content() -> impl Strategy<Value = RecordContent> {
-        any::<u64>().prop_map(|seed| {
-            let mut state = seed;
-            core::array::from_fn(|_| {
-                state = state
-                    .wrapping_mul(6364136223846793005)
-                    .wrapping_add(1442695040888963407);
-                (state >> 56) as u8
-            })
-        })
+        prop::collection::vec(any::<u8>(), CONTENT_BYTES)
+            .prop_map(|bytes| RecordContent::try_from(bytes).expect("the length is fixed"))
     }
 
     impl RecordWrite {
@@ -249,14 +243,7 @@ mod tests {
         fn the_crc_is_crc_16_ibm_3740(content in any_content()) {
             let mut eeprom = Eeprom::blank();
             write_record(&mut eeprom, &content);
-            // CRC-16/IBM-3740, bit by bit.
-            let mut crc = 0xffffu16;
-            for byte in content {
-                crc ^= u16::from(byte) << 8;
-                for _ in 0..8 {
-                    crc = if crc & 0x8000 == 0 { crc << 1 } else { (crc << 1) ^ 0x1021 };
-                }
-            }
+            let crc = Crc::<u16>::new(&CRC_16_IBM_3740).checksum(&content);
             prop_assert_eq!(&eeprom.bytes()[64 + 43..][..2], &crc.to_le_bytes());
         }
     }
@@ -276,10 +263,8 @@ mod tests {
         let addresses: Vec<u16> = eeprom.log.iter().map(|(address, ..)| *address).collect();
         assert_eq!(addresses[..2], [64, 64 + 6]);
         assert_eq!(addresses.last(), Some(&64));
-        assert!(
-            (4..=5).contains(&addresses.len()),
-            "only byte 5, the CRC and twice the mark are written"
-        );
+        let claim = "only byte 5, the CRC and twice the mark are written";
+        assert!((4..=5).contains(&addresses.len()), "{claim}");
     }
 
     #[test]

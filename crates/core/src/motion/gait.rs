@@ -58,10 +58,6 @@ mod tests {
 
     const FULL_PACE: u16 = 1024;
 
-    fn make_wave(samples: impl Fn(usize) -> i16) -> Wave {
-        core::array::from_fn(samples)
-    }
-
     /// Returns a channel of the first waveform.
     const fn channel_with(offset: u16, gain: i16) -> Channel {
         Channel {
@@ -78,12 +74,12 @@ mod tests {
         #[test]
         fn a_sweep_between_two_samples_is_on_the_straight_line(
             samples in prop::collection::vec(-16_000i16..16_000, SAMPLES_PER_WAVE),
-            channel in (any::<u16>(), any::<i16>()),
+            offset: u16,
+            gain: i16,
             phase: u16,
         ) {
-            let (offset, gain) = channel;
             let channel = channel_with(offset, gain);
-            let wave = make_wave(|n| samples[n]);
+            let wave: Wave = core::array::from_fn(|n| samples[n]);
             let actual = f64::from(channel.sweep(Flash::from(&wave), phase).0);
             let position = f64::from(phase.wrapping_add(offset)) / 1024.0;
             let (sample, next_sample) = (samples[position as usize], samples[(position as usize + 1) % SAMPLES_PER_WAVE]);
@@ -115,7 +111,7 @@ mod tests {
 
     #[test]
     fn every_sample_is_read_at_its_phase_and_the_first_sample_follows_the_last() {
-        let wave = make_wave(|n| 100 * n as i16 - 3000);
+        let wave: Wave = core::array::from_fn(|n| 100 * n as i16 - 3000);
         for n in 0..SAMPLES_PER_WAVE {
             let sweep = PLAIN_CHANNEL.sweep(Flash::from(&wave), (n << 10) as u16);
             assert_eq!(sweep, Sweep(wave[n]));
@@ -126,7 +122,7 @@ mod tests {
 
     #[test]
     fn halves_round_up_after_interpolation_and_after_the_gain() {
-        let wave = make_wave(|n| [0, 1, 0, -1][n % 4]);
+        let wave: Wave = core::array::from_fn(|n| [0, 1, 0, -1][n % 4]);
         let sweep_at = |phase, gain| channel_with(0, gain).sweep(Flash::from(&wave), phase).0;
         let gain = PLAIN_CHANNEL.gain;
         assert_eq!([sweep_at(0x01fc, gain), sweep_at(0x0200, gain)], [0, 1]);

@@ -82,6 +82,7 @@ fn smoothstep(u: u16) -> u16 {
 
 #[cfg(test)]
 mod tests {
+    use std::format;
     use std::vec::Vec;
 
     use proptest::prelude::*;
@@ -95,23 +96,23 @@ mod tests {
         Pose(sweeps.map(Sweep))
     }
 
-    /// Computes all poses of a move at full pace, from its start on.
-    fn compute_poses(from: &Pose, to: &Pose, slew: Slew) -> Vec<Pose> {
-        let mut path = PointToPointMove::new(from, to, slew);
-        let mut poses = Vec::from([*from]);
+    /// Computes the sweeps of one servo in each frame of a move at full pace, from its start on.
+    fn compute_sweeps(from: i16, to: i16, slew: Slew) -> Vec<i16> {
+        let [start, end] = [from, to].map(|sweep| to_pose([0, 0, sweep, 0]));
+        let mut path = PointToPointMove::new(&start, &end, slew);
+        let mut sweeps = Vec::from([from]);
         while !path.has_arrived() {
             path.advance(FULL_PACE);
-            poses.push(path.pose());
-            assert!(poses.len() < 4000, "{from:?} to {to:?} never ends");
+            sweeps.push(path.pose().0[2].0);
+            assert!(sweeps.len() < 4000, "{from} to {to} never ends");
         }
-        poses
+        sweeps
     }
 
-    /// Computes the sweeps of one servo in each frame of a move.
-    fn compute_sweeps(from: i16, to: i16, slew: Slew) -> Vec<i16> {
-        let [from, to] = [from, to].map(|sweep| to_pose([0, 0, sweep, 0]));
-        let poses = compute_poses(&from, &to, slew);
-        poses.iter().map(|pose| pose.0[2].0).collect()
+    /// Computes the largest change from one frame to the next.
+    fn compute_max_change(sweeps: &[i16]) -> Option<u16> {
+        let changes = sweeps.windows(2).map(|pair| pair[1].abs_diff(pair[0]));
+        changes.max()
     }
 
     /// Yields random slew limits from 10 to 1000 deg/s.
@@ -130,7 +131,7 @@ mod tests {
         ) {
             let sweeps = compute_sweeps(from, to, slew);
             prop_assert_eq!(sweeps.last(), Some(&to));
-            let max_change = sweeps.windows(2).map(|pair| pair[1].abs_diff(pair[0])).max();
+            let max_change = compute_max_change(&sweeps);
             prop_assert!(max_change <= Some(slew.per_frame), "{max_change:?} of {slew:?}");
             // A smoothstep takes one and a half times as long as a move at constant speed, and each frame covers a
             // multiple of 1/32768 of its duration.
@@ -142,27 +143,7 @@ mod tests {
         }
 
         #[test]
-        fn a_move_follows_a_smoothstep_straight_to_its_target(from: i16, to: i16, slew in any_slew()) {
-            let mut path = PointToPointMove::new(&to_pose([from; 4]), &to_pose([to; 4]), slew);
-            let mut elapsed_fraction = 0.0;
-            let distance = f64::from(to) - f64::from(from);
-            let mut previous_sweep = f64::from(from);
-            while !path.has_arrived() {
-                path.advance(FULL_PACE);
-                elapsed_fraction += f64::from(path.fraction_per_frame) / 32_768.0;
-                let u = f64::min(elapsed_fraction, 1.0);
-                let exact = f64::from(from) + distance * u * u * (3.0 - 2.0 * u);
-                let sweep = f64::from(path.pose().0[0].0);
-                // Two roundings of the distance in Q15, and the halving of odd sweeps.
-                let rounding = 2.0 + distance.abs() / 8000.0;
-                prop_assert!((sweep - exact).abs() <= rounding, "{sweep}, exactly {exact}");
-                prop_assert!((sweep - previous_sweep) * distance.signum() >= -rounding, "{sweep} after {previous_sweep}");
-                previous_sweep = sweep;
-            }
-        }
-
-        #[test]
-        fn all_servos_cover_the_same_fraction_of_their_turns(
+        fn all_servos_follow_the_same_smoothstep_straight_to_their_targets(
             from: [i16; 4],
             to: [i16; 4],
             slew in any_slew(),
@@ -170,15 +151,22 @@ mod tests {
             let distances: [f64; 4] = core::array::from_fn(|n| f64::from(to[n]) - f64::from(from[n]));
             let [from, to] = [from, to].map(to_pose);
             let mut path = PointToPointMove::new(&from, &to, slew);
+            let mut elapsed_fraction = 0.0;
+            let mut turns = [0.0; 4];
             while !path.has_arrived() {
                 path.advance(FULL_PACE);
-                let current_pose = path.pose();
-                let fraction = f64::from(path.elapsed_fraction) / 32_768.0;
+                elapsed_fraction += f64::from(path.fraction_per_frame) / 32_768.0;
+                let fraction = f64::min(elapsed_fraction, 1.0);
                 let smooth_fraction = fraction * fraction * (3.0 - 2.0 * fraction);
                 for (n, distance) in distances.iter().enumerate() {
-                    let turn = f64::from(current_pose.0[n].0) - f64::from(from.0[n].0);
+                    let turn = f64::from(path.pose().0[n].0) - f64::from(from.0[n].0);
                     let error = turn - smooth_fraction * distance;
-                    prop_assert!(error.abs() <= 2.0 + distance.abs() / 8000.0, "A{}: {error}", n + 1);
+                    // Two roundings of the distance in Q15, and the halving of odd sweeps.
+                    let rounding = 2.0 + distance.abs() / 8000.0;
+                    prop_assert!(error.abs() <= rounding, "A{}: {error}", n + 1);
+                    let progress = (turn - turns[n]) * distance.signum();
+                    prop_assert!(progress >= -rounding, "A{}: {turn} after {}", n + 1, turns[n]);
+                    turns[n] = turn;
                 }
             }
             prop_assert_eq!(path.pose(), to);
@@ -213,15 +201,9 @@ mod tests {
         for slew in [Slew::MIN_PER_FRAME, 100, 1092, 3640].map(Slew::new) {
             for length in (0..=u16::MAX).step_by(251).chain([u16::MAX]) {
                 let to = i16::MIN.wrapping_add(length as i16);
-                let sweeps = compute_sweeps(i16::MIN, to, slew);
-                let max_change = sweeps
-                    .windows(2)
-                    .map(|pair| pair[1].abs_diff(pair[0]))
-                    .max();
-                assert!(
-                    max_change <= Some(slew.per_frame),
-                    "{length}: {max_change:?} of {slew:?}"
-                );
+                let max_change = compute_max_change(&compute_sweeps(i16::MIN, to, slew));
+                let case = format!("{length}: {max_change:?} of {slew:?}");
+                assert!(max_change <= Some(slew.per_frame), "{case}");
             }
         }
     }

@@ -111,23 +111,8 @@ mod tests {
     /// Sweeps at and next to every border of the columns in these tests, and a quarter of a turn from neutral, where
     /// the column numbers end.
     const COLUMNS: [i16; 17] = [
-        i16::MIN,
-        -16_385,
-        -16_384,
-        -16_257,
-        -16_256,
-        -1281,
-        -1280,
-        -129,
-        -1,
-        0,
-        127,
-        128,
-        1407,
-        1408,
-        16_383,
-        16_384,
-        i16::MAX,
+        -32_768, -16_385, -16_384, -16_257, -16_256, -1281, -1280, -129, -1, 0, 127, 128, 1407,
+        1408, 16_383, 16_384, 32_767,
     ];
 
     /// Checks that [`CellMap::contains`] matches its reference at every sweep of the row servo and at all [`COLUMNS`].

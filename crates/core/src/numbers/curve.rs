@@ -164,10 +164,8 @@ mod tests {
                 let exact = f64::from(slope) * 16.0 * (f64::from(OCTAVE_COUNT) + octaves);
                 let actual = curve.at(argument).map(f64::from);
                 let actual = actual.expect("the argument is within the octaves");
-                assert!(
-                    (actual - exact).abs() <= 0.501,
-                    "{argument}: {actual}, exactly {exact}"
-                );
+                let error = (actual - exact).abs();
+                assert!(error <= 0.501, "{argument}: {actual}, exactly {exact}");
             }
         }
     }

@@ -73,16 +73,9 @@ mod tests {
     use super::*;
     use crate::sample::Sample;
 
-    fn any_robot_and_pose() -> impl Strategy<Value = (Sample, Pose)> {
-        Sample::random().prop_flat_map(|robot| {
-            let pose = robot.any_pose();
-            (Just(robot), pose)
-        })
-    }
-
     proptest! {
         #[test]
-        fn a_pose_within_the_travel_is_recovered_from_its_angles((robot, pose) in any_robot_and_pose()) {
+        fn a_pose_within_the_travel_is_recovered_from_its_angles((robot, pose) in Sample::random_with_pose()) {
             let angles = pose.angles(&robot.neutral_angles());
             prop_assert_eq!(Pose::from_angles(&angles, &robot.neutral_angles()), pose);
             prop_assert_eq!(pose.first_servo_beyond_travel(&robot.calibration()), None);
@@ -90,7 +83,7 @@ mod tests {
 
         #[test]
         fn the_first_servo_beyond_its_travel_is_returned(
-            (robot, mut pose) in any_robot_and_pose(),
+            (robot, mut pose) in Sample::random_with_pose(),
             are_beyond: [bool; 4],
         ) {
             for (index, is_beyond) in are_beyond.into_iter().enumerate() {
@@ -103,7 +96,7 @@ mod tests {
         }
 
         #[test]
-        fn every_servo_gets_the_pulse_of_its_own_calibration((robot, pose) in any_robot_and_pose()) {
+        fn every_servo_gets_the_pulse_of_its_own_calibration((robot, pose) in Sample::random_with_pose()) {
             let pulses = pose.pulses(&robot.calibration());
             for index in 0..4 {
                 let width = robot.calibration()[index].width(pose.0[index]);

@@ -224,10 +224,8 @@ mod tests {
     fn every_length_converts_to_the_nearest_hundredth_of_a_millimetre() {
         for bits in 0..=14 {
             let scale = Scale { bits };
-            for length in (-65_535..=65_535)
-                .step_by(7)
-                .chain([-65_535, -1, 0, 1, 65_535])
-            {
+            let lengths = (-65_535..=65_535).step_by(7);
+            for length in lengths.chain([-65_535, -1, 0, 1, 65_535]) {
                 let exact = f64::from(length) * 100.0 / f64::from(1 << bits);
                 let hundredths = f64::from(scale.hundredths(length));
                 let error = hundredths - exact;

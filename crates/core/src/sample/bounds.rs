@@ -1,14 +1,14 @@
-//! The bounds of [`crate::guard::bounds`], applied to a sample's five-bars.
+//! The bounds of [`crate::guard::bounds`], applied to the five-bars of a section.
 
 pub use crate::guard::bounds::*;
 
-use super::SampleFiveBar;
+use crate::numbers::section::FiveBarLengths;
 
-impl From<&SampleFiveBar> for RoundedLengths {
-    fn from(five_bar: &SampleFiveBar) -> Self {
+impl From<&FiveBarLengths> for RoundedLengths {
+    fn from(lengths: &FiveBarLengths) -> Self {
         Self {
-            scale: five_bar.scale,
-            couplers: [five_bar.couplers.left, five_bar.couplers.right],
+            scale: lengths.scale,
+            couplers: lengths.couplers,
         }
     }
 }

@@ -6,26 +6,24 @@ use lizard_kinematics as kinematics;
 use crate::guard::five_bar::FiveBar;
 use crate::numbers::couplers::{self, CouplerLengths, Couplers};
 use crate::numbers::curve::Table;
-use crate::numbers::link_lengths::{self, LinkLengths};
-use crate::numbers::section;
+use crate::numbers::link_lengths;
+use crate::numbers::section::FiveBarLengths;
 use crate::numbers::units::Scale;
 use crate::sample::steps_per_mm;
 
-/// The five-bar linkage of an end, with lengths in steps and the tables of its couplers.
+/// The five-bar linkage of an end, with the tables of its couplers.
 #[derive(Clone, Debug)]
 pub struct SampleFiveBar {
-    /// The base, the left crank and the right crank, whose sum is the largest distance between the crank tips.
-    pub base_and_cranks: [i16; 3],
-    /// The scale of all lengths.
-    pub scale: Scale,
-    pub couplers: SampleCouplers,
+    /// The lengths that a section stores.
+    pub lengths: FiveBarLengths,
+    couplers: SampleCouplers,
 }
 
 /// The lengths of both couplers, in steps, and their tables.
 #[derive(Clone, Debug)]
 pub struct SampleCouplers {
-    pub left: i16,
-    pub right: i16,
+    left: i16,
+    right: i16,
     rise: Table,
     stretched_rise: Table,
     folded_rise: Option<Table>,
@@ -77,34 +75,24 @@ impl SampleFiveBar {
             .rev()
             .map(|bits| Scale { bits })
             .find(|scale| longest_mm * steps_per_mm(*scale) < link_lengths::MAX_LENGTH_STEPS)?;
-        let [left_steps, right_steps] = couplers.map(|mm| to_steps(mm, scale) as i16);
-        if left_steps.min(right_steps) < link_lengths::MIN_COUPLER_STEPS {
-            return None;
-        }
-        Some(Self {
-            base_and_cranks: [base, left, right].map(|mm| to_steps(mm, scale) as i16),
+        let to_length = |mm: f64| to_steps(mm, scale) as i16;
+        let lengths = FiveBarLengths {
             scale,
-            couplers: SampleCouplers::new(left_steps, right_steps),
-        })
-    }
-
-    /// Converts the five-bar to the lengths that a section stores.
-    pub(super) fn content(&self) -> section::FiveBarLengths {
-        let [base, left, right] = self.base_and_cranks;
-        section::FiveBarLengths {
-            scale: self.scale,
-            base,
-            cranks: [left, right],
-            couplers: [self.couplers.left, self.couplers.right],
+            base: to_length(base),
+            cranks: [left, right].map(to_length),
+            couplers: couplers.map(to_length),
             can_nearly_stretch: true,
-        }
+        };
+        let [left, right] = lengths.couplers;
+        (left.min(right) >= link_lengths::MIN_COUPLER_STEPS).then(|| Self {
+            lengths,
+            couplers: SampleCouplers::new(left, right),
+        })
     }
 
     /// Converts the five-bar to the type that the guard uses.
     pub fn five_bar(&self) -> FiveBar<'_> {
-        let SampleCouplers { left, right, .. } = self.couplers;
-        let links = LinkLengths::new(self.base_and_cranks, [left, right], self.scale);
-        FiveBar::new(links, self.couplers.tables())
+        FiveBar::new(self.lengths.link_lengths(), self.couplers.tables())
     }
 }
 

@@ -96,8 +96,8 @@ impl Measurements {
 
     /// Yields random robots without symmetry.
     pub fn random() -> impl Strategy<Value = Self> {
-        let any_end = || (15.0..40.0, 22.0..45.0, 45.0..75.0, 45.0..75.0, 22.0..45.0);
-        let any_side = || (20.0..42.0, 35.0..55.0, 35.0..55.0, 20.0..42.0);
+        let any_end = || [15.0..40.0, 22.0..45.0, 45.0..75.0, 45.0..75.0, 22.0..45.0];
+        let any_side = || [20.0..42.0, 35.0..55.0, 35.0..55.0, 20.0..42.0];
         let limits = (
             0.12..0.4,
             0.0..0.35,
@@ -106,17 +106,26 @@ impl Measurements {
             5.0..60.0,
             20.0..600.0,
         );
-        let any_servo = || {
-            (
+        let any_servo = |neutral_deg: f64| {
+            let numbers = (
                 -15.0..15.0f64,
                 1300.0..1700.0f64,
                 6.0..22.0f64,
                 any::<bool>(),
                 40.0..110.0f64,
                 40.0..110.0f64,
-            )
+            );
+            numbers.prop_map(move |numbers| {
+                let (offset_deg, neutral_us, gain, is_reversed, lower_deg, upper_deg) = numbers;
+                Servo {
+                    neutral_deg: neutral_deg + offset_deg,
+                    neutral_us,
+                    us_per_degree: if is_reversed { -gain } else { gain },
+                    min_us: (neutral_us - gain * lower_deg).max(500.0),
+                    max_us: (neutral_us + gain * upper_deg).min(2500.0),
+                }
+            })
         };
-        let servos = [any_servo(), any_servo(), any_servo(), any_servo()];
         let strategies = (
             any_end(),
             any_end(),
@@ -124,30 +133,13 @@ impl Measurements {
             any_side(),
             any_side(),
             limits,
-            servos,
+            [130.0, 50.0, 310.0, 230.0].map(any_servo),
         );
         strategies.prop_map(|(head, tail, base, left, right, limits, servos)| {
-            let neutrals_deg = [130.0, 50.0, 310.0, 230.0];
-            let servos = core::array::from_fn(|n| {
-                let (offset_deg, neutral_us, gain, is_reversed, lower_deg, upper_deg) = servos[n];
-                Servo {
-                    neutral_deg: neutrals_deg[n] + offset_deg,
-                    neutral_us,
-                    us_per_degree: if is_reversed { -gain } else { gain },
-                    min_us: (neutral_us - gain * lower_deg).max(500.0),
-                    max_us: (neutral_us + gain * upper_deg).min(2500.0),
-                }
-            });
-            let end_links = |(l0, l1, l2, l3, l4)| [l0, l1, l2, l3, l4];
-            let side_links = |(l11, l12, l13, l14)| [base, l11, l12, l13, l14];
+            let side_links = |[l11, l12, l13, l14]: [f64; 4]| [base, l11, l12, l13, l14];
             let (type2, type1, leg, stroke_min, stroke_max, slew_deg_per_s) = limits;
             Self {
-                lizard: build_lizard(
-                    end_links(head),
-                    end_links(tail),
-                    side_links(left),
-                    side_links(right),
-                ),
+                lizard: build_lizard(head, tail, side_links(left), side_links(right)),
                 limits: kinematics::Limits {
                     type2,
                     type1,
@@ -179,10 +171,8 @@ impl Servo {
 /// Builds a robot from the links, in mm, of its head and tail (base, left crank, left coupler, right coupler, right
 /// crank) and of its sides (chassis, rear arm, rear half of the slider, front half, front arm).
 fn build_lizard(head: [f64; 5], tail: [f64; 5], left: [f64; 5], right: [f64; 5]) -> Lizard {
-    let mut links = [0.0; 20];
-    for (index, part_links) in [head, tail, left, right].iter().enumerate() {
-        links[5 * index..][..5].copy_from_slice(part_links);
-    }
+    let parts = [head, tail, left, right];
+    let links: [f64; 20] = core::array::from_fn(|index| parts[index / 5][index % 5]);
     Lizard {
         links: Links::from(links),
         leg: Leg {

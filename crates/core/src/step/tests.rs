@@ -25,9 +25,8 @@ fn run_step(robot: &mut RunningRobot) -> bool {
 fn run_robot_with_garbled_line() -> RunningRobot {
     let mut robot = RunningRobot::power_on(*Sample::asymmetric());
     robot.run_frames(10);
-    robot
-        .board
-        .send(&[GARBLED_BYTE, 0x80, GARBLED_BYTE, GARBLED_BYTE, b'\n']);
+    let bytes = [GARBLED_BYTE, 0x80, GARBLED_BYTE, GARBLED_BYTE, b'\n'];
+    robot.board.send(&bytes);
     robot
 }
 
@@ -112,10 +111,8 @@ fn a_frame_that_waits_to_be_played_is_replaced_only_at_rest() {
         robot.board.pass_time(15);
         robot.settle();
         assert_eq!(robot.motion().frame_count(), 101 + u32::from(is_resting));
-        assert!(
-            robot.board.ms_since_fed() >= 15,
-            "the watchdog is not fed either"
-        );
+        let ms_since_fed = robot.board.ms_since_fed();
+        assert!(ms_since_fed >= 15, "the watchdog is not fed either");
         robot.board.pass_time(19);
         let expected_pulses = match is_resting {
             true => Pulses::default(),
@@ -177,22 +174,21 @@ fn the_led_shows_the_heartbeat_and_flashes_while_the_guard_holds_the_robot() {
 #[test]
 fn the_servo_state_is_stored_in_every_frame_even_at_rest() {
     let mut robot = start_robot(0, "sway\r");
-    for _ in 0..100 {
-        let pulses = robot.run_frame();
-        let stored_servo_state = robot.board.stored_servo_state();
-        let stored_servo_state = stored_servo_state.expect("the board has stored a servo state");
-        assert!(!stored_servo_state.is_resting);
-        assert_eq!(stored_servo_state.pose, *robot.motion().pose());
-        for (sent, pulse) in stored_servo_state.sent_pulses.0.iter().zip(pulses.0) {
-            assert!(pulse.0 == 0 || pulse == *sent);
+    for is_resting in [false, true] {
+        if is_resting {
+            robot.expect_accepted("rest");
+        }
+        for _ in 0..100 {
+            let pulses = robot.run_frame();
+            let servo_state = robot.board.stored_servo_state();
+            let servo_state = servo_state.expect("the board has stored a servo state");
+            assert_eq!(servo_state.is_resting, is_resting);
+            assert_eq!(servo_state.pose, *robot.motion().pose());
+            for (sent, pulse) in servo_state.sent_pulses.0.iter().zip(pulses.0) {
+                assert!(pulse.0 == 0 || pulse == *sent);
+            }
         }
     }
-    robot.send_line("rest");
-    robot.run_frame();
-    let stored_servo_state = robot.board.stored_servo_state();
-    let stored_servo_state = stored_servo_state.expect("the board has stored a servo state");
-    assert!(stored_servo_state.is_resting);
-    assert_eq!(stored_servo_state.pose, *robot.motion().pose());
 }
 
 #[test]

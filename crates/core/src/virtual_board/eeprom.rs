@@ -85,12 +85,9 @@ impl Eeprom {
 
     /// Lets a millisecond pass.
     pub(super) fn pass_time(&mut self) {
-        let new_delay = self
-            .remaining_delay
-            .get()
-            .saturating_sub(u16::from(self.is_timed));
-        self.remaining_delay.set(new_delay);
-        if new_delay == 0 {
+        let delay = self.remaining_delay.get_mut();
+        *delay = delay.saturating_sub(u16::from(self.is_timed));
+        if *delay == 0 {
             self.address_in_write.set(None);
         }
     }
@@ -125,20 +122,14 @@ impl Memory for Eeprom {
     }
 
     fn read(&self, address: u16) -> u8 {
-        assert_eq!(
-            self.remaining_delay.get(),
-            0,
-            "a byte must not be read during a write"
-        );
+        let delay = self.remaining_delay.get();
+        assert_eq!(delay, 0, "a byte must not be read during a write");
         self.bytes[usize::from(address)]
     }
 
     fn write(&mut self, address: u16, byte: u8) {
-        assert_eq!(
-            self.remaining_delay.get(),
-            0,
-            "a byte must not be written during another write"
-        );
+        let delay = self.remaining_delay.get();
+        assert_eq!(delay, 0, "a byte must not be written during another write");
         let old_byte = self.bytes[usize::from(address)];
         assert_ne!(old_byte, byte, "a write must change its byte");
         self.log.push((address, old_byte, byte));

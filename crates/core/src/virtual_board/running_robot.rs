@@ -125,9 +125,8 @@ impl RunningRobot {
         let mut lines = Vec::new();
         for line in text.split_inclusive("\r\n") {
             assert!(line.len() <= usize::from(MAX_OUTPUT_LINE_BYTES), "{line}");
-            let line = line
-                .strip_suffix("\r\n")
-                .expect("every line ends with CR and LF");
+            let line = line.strip_suffix("\r\n");
+            let line = line.expect("every line ends with CR and LF");
             let is_plain = |byte: u8| byte == b' ' || byte.is_ascii_graphic();
             assert!(line.bytes().all(is_plain), "{line:?}");
             assert!(line.starts_with("# ") || is_answer(line), "{line:?}");
@@ -155,18 +154,13 @@ impl RunningRobot {
         let mut printed_lines = self.send(line.as_bytes());
         printed_lines.extend(self.send(b"\r"));
         let answer_index = printed_lines.iter().position(|line| is_answer(line));
-        let later_lines =
-            printed_lines.split_off(answer_index.expect("the line has an answer") + 1);
-        self.board.transmitter.text = later_lines
-            .iter()
-            .map(|line| std::format!("{line}\r\n"))
-            .collect();
-        let answer = printed_lines.pop().expect("the line has an answer");
-        let mut other_lines = printed_lines.iter().chain(&later_lines);
-        assert!(
-            other_lines.all(|line| line.starts_with("# ")),
-            "{printed_lines:?} {later_lines:?}"
-        );
+        let answer_index = answer_index.expect("the line has an answer");
+        let answer = printed_lines.remove(answer_index);
+        let (earlier_lines, later_lines) = printed_lines.split_at(answer_index);
+        let format_line = |line: &String| std::format!("{line}\r\n");
+        self.board.transmitter.text = later_lines.iter().map(format_line).collect();
+        let are_notes = printed_lines.iter().all(|line| line.starts_with("# "));
+        assert!(are_notes, "{earlier_lines:?} {later_lines:?}");
         answer
     }
 
@@ -234,16 +228,15 @@ impl RunningRobot {
     }
 }
 
+/// The codes of the answers that begin with `err`.
+const ERROR_CODES: [&str; 10] = ["1", "2", "3", "4", "5", "6", "7", "8", "9", "10"];
+
 /// True if a line is the answer to a command: `ok` and the command, or `err`, a code and a reason.
 pub fn is_answer(line: &str) -> bool {
     let code_and_reason = line
         .strip_prefix("err ")
         .and_then(|rest| rest.split_once(' '));
-    line.starts_with("ok ")
-        || code_and_reason.is_some_and(|(code, reason)| {
-            matches!(
-                code,
-                "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8" | "9" | "10"
-            ) && !reason.is_empty()
-        })
+    let is_error = code_and_reason
+        .is_some_and(|(code, reason)| ERROR_CODES.contains(&code) && !reason.is_empty());
+    line.starts_with("ok ") || is_error
 }

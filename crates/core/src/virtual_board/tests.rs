@@ -4,7 +4,7 @@ use super::*;
 use std::format;
 
 use crate::memory::record::{ERASED, Memory};
-use crate::sample::Sample;
+use crate::sample::{HEALTHY_BOARD, Sample};
 use crate::step::{Main, StepResult};
 
 /// Runs a robot until it stands.
@@ -110,12 +110,8 @@ fn a_slow_transmitter_has_less_room_until_time_passes() {
 
 #[test]
 fn the_reading_is_empty_until_every_voltage_has_been_measured() {
-    let true_reading = Reading {
-        reference: 221,
-        rail: 393,
-    };
     for (measures_rail, first_frame) in [(false, 2), (true, 4)] {
-        let mut adc = Adc::new(true_reading, measures_rail);
+        let mut adc = Adc::new(HEALTHY_BOARD.supply, measures_rail);
         for frame in 1..40 {
             let reading = adc.advance_frame();
             let is_given = frame >= first_frame;

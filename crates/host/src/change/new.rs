@@ -1,7 +1,6 @@
 //! `lizard new`: writes a robot.toml as a starting point.
 
-use std::fs::File;
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, Write};
 use std::path::PathBuf;
 
 use crate::Failure;
@@ -25,15 +24,9 @@ pub struct Args {
 /// Fails if the file already exists or cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let name = args.file.display();
-    let file = File::create_new(&args.file);
-    let result =
-        file.and_then(|mut file| file.write_all(robot_args::DEFAULT_ROBOT_TOML.as_bytes()));
-    result.map_err(|error| match error.kind() {
-        ErrorKind::AlreadyExists => {
-            Failure::Input(format!("{name} already exists; choose another name"))
-        }
-        _ => files::write_failure(&args.file, &error),
-    })?;
+    let mut file = files::create_new(&args.file, "choose another name")?;
+    file.write_all(robot_args::DEFAULT_ROBOT_TOML.as_bytes())
+        .map_err(|error| files::write_failure(&args.file, &error))?;
     writeln!(
         io::stdout(),
         "wrote the paper's robot to {name}; edit it, then check it: lizard gaits --robot {name}"

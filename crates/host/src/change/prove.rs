@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::number::group_digits;
+use crate::shared::number::{format_or_dash, group_digits};
 use crate::shared::progress::create_progress_bar;
 use crate::shared::spread::{SpreadArgs, Spreadable};
 
@@ -84,27 +84,23 @@ pub fn run(args: Args) -> Result<(), Failure> {
 }
 
 fn format_table(proof: &Proof, sample: PairSample) -> String {
-    let mut text = String::new();
-    text +=
-        "                                      largest error          decisions differ within\n";
-    text +=
-        "part        servos          pairs   type-2   type-1      mm    margin      mm   wrong\n";
+    let mut text =
+        "                                      largest error          decisions differ within\n\
+         part        servos          pairs   type-2   type-1      mm    margin      mm   wrong\n"
+            .to_owned();
     for finding in &proof.findings {
         let tally = &finding.tally;
-        let format_value = |value: Option<f64>, digits: usize| {
-            value.map_or("-".to_string(), |value| format!("{value:.digits$}"))
-        };
         _ = writeln!(
             text,
             "{:<11} {:<7} {:>13} {:>8} {:>8} {:>7} {:>9} {:>7} {:>7}",
             finding.part,
             finding.servos.join(" "),
             group_digits(tally.pair_count as f64, 0),
-            format_value(tally.max_type2_error.or(tally.max_leg_error), 5),
-            format_value(tally.max_type1_error, 5),
-            format_value(tally.max_slider_error, 4),
-            format_value(tally.max_margin_difference, 6),
-            format_value(tally.max_length_difference, 4),
+            format_or_dash(tally.max_type2_error.or(tally.max_leg_error), 5),
+            format_or_dash(tally.max_type1_error, 5),
+            format_or_dash(tally.max_slider_error, 4),
+            format_or_dash(tally.max_margin_difference, 6),
+            format_or_dash(tally.max_length_difference, 4),
             tally.wrong_count
         );
     }

@@ -30,19 +30,15 @@ pub(super) fn describe_features(is_accepted: impl Fn(&str) -> bool) -> String {
 }
 
 /// True if this build has `feature`.
-fn is_in_build(feature: &str) -> bool {
+pub(super) fn is_in_build(feature: &str) -> bool {
     FEATURES
         .iter()
         .any(|(name, _, is_built)| *name == feature && *is_built)
 }
 
-/// Lists the commands that are missing from this build, for the help; empty for a complete build.
-pub(super) fn list_absent(commands: &[CommandEntry]) -> String {
-    list_absent_in_build(commands, is_in_build)
-}
-
-/// Lists the commands that are missing from a build with only the features that `has_feature` accepts.
-fn list_absent_in_build(commands: &[CommandEntry], has_feature: impl Fn(&str) -> bool) -> String {
+/// Lists the commands that are missing from a build with only the features that `has_feature` accepts, for the help;
+/// empty for a complete build.
+pub(super) fn list_absent(commands: &[CommandEntry], has_feature: impl Fn(&str) -> bool) -> String {
     let is_absent = |command: &&CommandEntry| {
         let mut features = command.needed_features.iter();
         features.any(|feature| !has_feature(feature))
@@ -63,20 +59,6 @@ fn list_absent_in_build(commands: &[CommandEntry], has_feature: impl Fn(&str) ->
     )
 }
 
-/// Returns the failure for a command that is unknown or missing from this build.
-#[cfg_attr(
-    all(
-        feature = "simulator",
-        feature = "paper",
-        feature = "console",
-        feature = "parts"
-    ),
-    allow(dead_code, reason = "a complete build has every command")
-)]
-pub(super) fn explain_absence(words: &[OsString], commands: &[CommandEntry]) -> Failure {
-    explain_absence_in_build(words, commands, is_in_build)
-}
-
 /// The arguments of a command that is missing from this build; they are never read.
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
 #[derive(clap::Args)]
@@ -85,15 +67,8 @@ pub struct AbsentCommand {
     _arguments: Vec<OsString>,
 }
 
-#[cfg(not(all(feature = "paper", feature = "simulator")))]
-impl AbsentCommand {
-    /// Returns the failure of a missing command; it names the missing features.
-    pub fn failure(name: &str, needed_features: &[&str]) -> Failure {
-        absent_command_failure(name, needed_features, is_in_build)
-    }
-}
-
-fn absent_command_failure(
+/// Returns the failure of a command that is missing from a build; it names the missing features.
+pub(super) fn absent_command_failure(
     name: &str,
     needed_features: &[&str],
     has_feature: impl Fn(&str) -> bool,
@@ -109,7 +84,9 @@ fn absent_command_failure(
     ))
 }
 
-fn explain_absence_in_build(
+/// Returns the failure for a command that is unknown or missing from a build.
+#[allow(dead_code, reason = "a complete build has every command")]
+pub(super) fn explain_absence(
     words: &[OsString],
     commands: &[CommandEntry],
     has_feature: impl Fn(&str) -> bool,
@@ -136,7 +113,7 @@ mod tests {
     fn absence_message(word: &str, features: &[&str]) -> String {
         let words = [word.into(), "--json".into()];
         let has_feature = |feature: &str| features.contains(&feature);
-        explain_absence_in_build(&words, KNOWN_COMMANDS, has_feature).to_string()
+        explain_absence(&words, KNOWN_COMMANDS, has_feature).to_string()
     }
 
     #[test]
@@ -152,14 +129,14 @@ mod tests {
 
     #[test]
     fn the_help_lists_exactly_the_missing_commands() {
-        assert_eq!(list_absent_in_build(KNOWN_COMMANDS, |_| true), "");
+        assert_eq!(list_absent(KNOWN_COMMANDS, |_| true), "");
         assert_eq!(
-            list_absent_in_build(KNOWN_COMMANDS, |feature| feature != "simulator"),
+            list_absent(KNOWN_COMMANDS, |feature| feature != "simulator"),
             "Not in this program: sim, twin, tune. It was built without the simulator. The \
              simulator runs on Linux.\n\n"
         );
         assert_eq!(
-            list_absent_in_build(KNOWN_COMMANDS, |feature| feature != "parts"),
+            list_absent(KNOWN_COMMANDS, |feature| feature != "parts"),
             "Not in this program: measure, model, parts, fit. It was built without the parts to print.\n\n"
         );
     }

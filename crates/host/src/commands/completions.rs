@@ -31,14 +31,14 @@ pub struct ManArgs {
     folder: PathBuf,
 }
 
-/// Runs `lizard completions`: prints a shell's completion script for `command`.
+/// Runs `lizard completions`: prints a shell's completion script for `program`.
 ///
 /// # Errors
 /// Fails if standard output cannot be written.
-pub fn print_completions(args: CompletionsArgs, mut command: Command) -> Result<(), Failure> {
+pub fn print_completions(args: CompletionsArgs, mut program: Command) -> Result<(), Failure> {
     let shell = args.shell.expect("clap requires a shell");
     let mut script = Vec::new();
-    clap_complete::generate(shell, &mut command, "lizard", &mut script);
+    clap_complete::generate(shell, &mut program, "lizard", &mut script);
     let script = String::from_utf8_lossy(&script);
     let mut out = io::stdout().lock();
     out.write_all(narrow_robot_suggestions(&script).as_bytes())?;
@@ -76,35 +76,27 @@ fn narrow_robot_suggestions(script: &str) -> String {
     lines.collect()
 }
 
-/// Runs `lizard completions man`: writes the manual pages of `command` and its subcommands.
+/// Runs `lizard completions man`: writes the manual pages of `program` and its commands.
 ///
 /// # Errors
 /// Fails if a file cannot be written.
-pub fn write_manual_pages(args: ManArgs, command: Command) -> Result<(), Failure> {
-    let mut command = command.disable_help_subcommand(true);
-    command.build();
-    let mut page_count = 1;
-    write_manual_page(&args, "lizard", command.clone())?;
-    for subcommand in command.get_subcommands() {
-        let name = format!("lizard-{}", subcommand.get_name());
-        write_manual_page(&args, &name, subcommand.clone())?;
-        page_count += 1;
-        for nested in subcommand.get_subcommands() {
-            write_manual_page(
-                &args,
-                &format!("{name}-{}", nested.get_name()),
-                nested.clone(),
-            )?;
-            page_count += 1;
+pub fn write_manual_pages(args: ManArgs, program: Command) -> Result<(), Failure> {
+    let mut program = program.disable_help_subcommand(true);
+    program.build();
+    let mut pages = vec![("lizard".to_owned(), &program)];
+    for command in program.get_subcommands() {
+        let name = format!("lizard-{}", command.get_name());
+        for nested in command.get_subcommands() {
+            pages.push((format!("{name}-{}", nested.get_name()), nested));
         }
+        pages.push((name, command));
     }
-    let folder = args.folder.display();
+    for (name, command) in &pages {
+        let mut text = Vec::new();
+        clap_mangen::Man::new((*command).clone()).render(&mut text)?;
+        files::write(&args.folder.join(format!("{name}.1")), &text)?;
+    }
+    let (page_count, folder) = (pages.len(), args.folder.display());
     writeln!(io::stdout(), "wrote {page_count} manual pages to {folder}")?;
     Ok(())
-}
-
-fn write_manual_page(args: &ManArgs, name: &str, command: Command) -> Result<(), Failure> {
-    let mut text = Vec::new();
-    clap_mangen::Man::new(command).render(&mut text)?;
-    files::write(&args.folder.join(format!("{name}.1")), &text)
 }

@@ -8,12 +8,12 @@ use std::fmt::Write as _;
 use clap::Command;
 
 use super::absent;
-use super::command_entry::{CommandEntry, CommandGroup};
+use super::command_entry::{CommandEntry, DEVELOPMENT};
 
 /// Returns `command` with a help text that lists its subcommands in groups according to `known_commands`.
 pub(super) fn group_in_help(command: Command, known_commands: &[CommandEntry]) -> Command {
     let list = list_commands(&command, known_commands);
-    let absent_note = absent::list_absent(known_commands);
+    let absent_note = absent::list_absent(known_commands, absent::is_in_build);
     command.help_template(format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{list}{absent_note}`lizard help COMMAND` explains one of them.\n\n{}\n{{options}}{{after-help}}",
         format_heading("Options")
@@ -27,54 +27,45 @@ fn format_heading(text: &str) -> String {
 
 /// Lists every subcommand once, under the heading of its group.
 fn list_commands(command: &Command, known_commands: &[CommandEntry]) -> String {
-    let subcommands: Vec<&Command> = command.get_subcommands().collect();
-    let max_name_length = subcommands.iter().map(|sub| sub.get_name().len()).max();
-    let width = max_name_length.unwrap_or(0);
+    let name_lengths = command.get_subcommands().map(|sub| sub.get_name().len());
+    let width = name_lengths.max().unwrap_or(0);
     let mut text = String::new();
-    let write_section = |text: &mut String, title: &str, listed_subcommands: &[&Command]| {
-        if listed_subcommands.is_empty() {
-            return;
+    for entries in known_commands.chunk_by(|entry, next| entry.group == next.group) {
+        let built_commands = entries
+            .iter()
+            .filter_map(|entry| command.find_subcommand(entry.name()));
+        let built_commands: Vec<&Command> = built_commands.collect();
+        if built_commands.is_empty() {
+            continue;
         }
-        _ = writeln!(text, "{}", format_heading(title));
-        for sub in listed_subcommands {
-            let about = sub.get_about().map(ToString::to_string).unwrap_or_default();
-            let aliases: Vec<&str> = sub.get_visible_aliases().collect();
-            let format_note = |word: &str, names: &[&str]| match names.join(", ") {
-                names if names.is_empty() => names,
-                names => format!(" [{word}: {names}]"),
-            };
-            let nested_names: Vec<&str> = sub.get_subcommands().map(Command::get_name).collect();
-            let notes = format_note("also", &aliases) + &format_note("with", &nested_names);
-            // clap would read braces as placeholders of the template.
-            let about = about.replace(['{', '}'], "");
-            _ = writeln!(text, "  {:<width$}  {about}{notes}", sub.get_name());
+        let group = entries[0].group;
+        _ = writeln!(text, "{}", format_heading(group));
+        if group == DEVELOPMENT {
+            let names: Vec<&str> = built_commands.iter().map(|sub| sub.get_name()).collect();
+            _ = writeln!(text, "  {}", names.join(", "));
+        } else {
+            for sub in built_commands {
+                text += &format_command(sub, width);
+            }
         }
         text.push('\n');
-    };
-    for group in CommandGroup::ALL {
-        let entries = known_commands.iter().filter(|entry| entry.group == group);
-        let group_subcommands: Vec<&Command> = entries
-            .filter_map(|entry| {
-                let name = entry.name();
-                subcommands
-                    .iter()
-                    .find(|sub| sub.get_name() == name)
-                    .copied()
-            })
-            .collect();
-        if group == CommandGroup::Development && !group_subcommands.is_empty() {
-            let names: Vec<&str> = group_subcommands.iter().map(|sub| sub.get_name()).collect();
-            _ = writeln!(
-                text,
-                "{}\n  {}\n",
-                format_heading(group.title()),
-                names.join(", ")
-            );
-        } else {
-            write_section(&mut text, group.title(), &group_subcommands);
-        }
     }
     text
+}
+
+/// Formats a subcommand's name, `width` columns wide, its description, and its other names and subcommands.
+fn format_command(command: &Command, width: usize) -> String {
+    let about = command.get_about().map(ToString::to_string);
+    // clap would read braces as placeholders of the template.
+    let about = about.unwrap_or_default().replace(['{', '}'], "");
+    let aliases: Vec<&str> = command.get_visible_aliases().collect();
+    let nested_names: Vec<&str> = command.get_subcommands().map(Command::get_name).collect();
+    let format_note = |word: &str, names: &[&str]| match names.join(", ") {
+        names if names.is_empty() => names,
+        names => format!(" [{word}: {names}]"),
+    };
+    let notes = format_note("also", &aliases) + &format_note("with", &nested_names);
+    format!("  {:<width$}  {about}{notes}\n", command.get_name())
 }
 
 #[cfg(test)]
@@ -96,9 +87,9 @@ mod tests {
             needed_features: &[],
         };
         let known = [
-            new_entry(CommandGroup::Drive, "Console"),
-            new_entry(CommandGroup::Paper, "Pose"),
-            new_entry(CommandGroup::Development, "Completions"),
+            new_entry("Drive the robot", "Console"),
+            new_entry("The paper, computed", "Pose"),
+            new_entry(DEVELOPMENT, "Completions"),
         ];
         assert_eq!(
             strip_colours(&list_commands(&command, &known)),

@@ -1,10 +1,7 @@
 //! `lizard merge`: joins the parts of a long computation.
 
-use std::collections::BTreeMap;
-use std::io::{self, Read};
+use std::io;
 use std::path::PathBuf;
-
-use serde_json::Value;
 
 use crate::Failure;
 use crate::shared::files;
@@ -31,16 +28,16 @@ pub struct MergeArgs {
 /// # Errors
 /// Fails if a part is missing, is given twice or belongs to another computation, or if the command itself fails.
 pub fn merge(args: MergeArgs) -> Result<(), Failure> {
-    let merged = MergedParts::join(read_all_parts(&args.paths)?)?;
-    match merged.command.as_str() {
+    let joined = join_parts(read_all_parts(&args.paths)?)?;
+    match joined.command.as_str() {
         #[cfg(feature = "paper")]
-        "prove" => merged.run(crate::change::prove::run),
+        "prove" => run_joined(joined, crate::change::prove::run),
         #[cfg(feature = "paper")]
-        "design" => merged.run(crate::paper::design::run),
+        "design" => run_joined(joined, crate::paper::design::run),
         #[cfg(all(feature = "simulator", feature = "paper"))]
-        "tune" => merged.run(crate::change::tune::run),
+        "tune" => run_joined(joined, crate::change::tune::run),
         #[cfg(feature = "parts")]
-        "fit" => merged.run(crate::make::parts::fit::run),
+        "fit" => run_joined(joined, crate::make::parts::fit::run),
         command => Err(Failure::Input(format!(
             "the parts are from `lizard {command}`, which is missing from this program"
         ))),
@@ -50,113 +47,104 @@ pub fn merge(args: MergeArgs) -> Result<(), Failure> {
 /// Reads the parts from files, or from standard input.
 fn read_all_parts(paths: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
     let mut parts = Vec::new();
-    let mut read_parts = |name: &str, text: &str| {
-        for (number, line) in (1..).zip(text.lines()) {
-            if line.trim().is_empty() {
-                continue;
-            }
-            let part = serde_json::from_str(line).map_err(|error| {
-                Failure::Input(format!("{name}: line {number} is not a part: {error}"))
-            })?;
-            parts.push(part);
-        }
-        Ok::<(), Failure>(())
-    };
     if paths.is_empty() {
-        let mut text = String::new();
-        io::stdin().lock().read_to_string(&mut text)?;
-        read_parts("standard input", &text)?;
+        let text = io::read_to_string(io::stdin())?;
+        parse_parts("standard input", &text, &mut parts)?;
     }
     for path in paths {
-        let name = path.display().to_string();
         let text = files::read_text(path)?;
-        read_parts(&name, &text)?;
+        parse_parts(&path.display().to_string(), &text, &mut parts)?;
     }
     Ok(parts)
 }
 
-/// The joined parts of one computation.
-struct MergedParts {
-    command: String,
-    options: Value,
-    /// The text of robot.toml.
-    robot: String,
-    /// The results of all pieces, by piece index.
-    results: BTreeMap<usize, Value>,
+/// Parses the text of one source, with a part in each line that is not blank, and appends the parts to `parts`.
+fn parse_parts(name: &str, text: &str, parts: &mut Vec<PartOutput>) -> Result<(), Failure> {
+    for (number, line) in (1..).zip(text.lines()) {
+        if line.trim().is_empty() {
+            continue;
+        }
+        let part = serde_json::from_str(line).map_err(|error| {
+            Failure::Input(format!("{name}: line {number} is not a part: {error}"))
+        })?;
+        parts.push(part);
+    }
+    Ok(())
 }
 
-impl MergedParts {
-    /// Joins the parts; fails unless they are all the parts of one computation.
-    fn join(parts: Vec<PartOutput>) -> Result<Self, Failure> {
-        let refuse = |reason: String| Err(Failure::Input(reason));
-        let Some(first) = parts.first() else {
-            let reason = "no parts given; `lizard merge --help` shows how to compute them";
-            return refuse(reason.to_owned());
-        };
-        let (part_count, piece_count) = (first.part.part_count, first.piece_count);
-        let mut merged = Self {
-            command: first.command.clone(),
-            options: first.options.clone(),
-            robot: first.robot.clone(),
-            results: BTreeMap::new(),
-        };
-        let mut is_given = vec![false; part_count as usize];
-        for part in parts {
-            let name = String::from(part.part);
-            let version = env!("CARGO_PKG_VERSION");
-            if part.version != version {
-                return refuse(format!(
-                    "part {name} is from version {}, but this is version {version}",
-                    part.version
-                ));
-            }
-            if part.command != merged.command {
-                return refuse(format!(
-                    "part {name} is from `lizard {}`, but another part is from `lizard {}`",
-                    part.command, merged.command
-                ));
-            }
-            if part.options != merged.options
-                || part.part.part_count != part_count
-                || part.piece_count != piece_count
-            {
-                let reason = format!("part {name} has different options from another part");
-                return refuse(reason);
-            }
-            if part.robot != merged.robot {
-                let reason = format!("part {name} has a different robot from another part");
-                return refuse(reason);
-            }
-            let index = part.part.number as usize - 1;
-            if std::mem::replace(&mut is_given[index], true) {
-                return refuse(format!("part {name} is given twice"));
-            }
-            merged.results.extend(part.results);
+/// Joins the parts to one that has all results; fails unless they are all the parts of one computation.
+fn join_parts(mut parts: Vec<PartOutput>) -> Result<PartOutput, Failure> {
+    let refuse = |reason: String| Err(Failure::Input(reason));
+    let Some(first) = parts.first() else {
+        let reason = "no parts given; `lizard merge --help` shows how to compute them";
+        return refuse(reason.to_owned());
+    };
+    let part_count = first.part.part_count;
+    let mut is_given = vec![false; part_count as usize];
+    for part in &parts {
+        let name = String::from(part.part);
+        let version = env!("CARGO_PKG_VERSION");
+        if part.version != version {
+            return refuse(format!(
+                "part {name} is from version {}, but this is version {version}",
+                part.version
+            ));
         }
-        if let Some(missing) = is_given.iter().position(|is_given| !is_given) {
-            return refuse(format!("part {}/{part_count} is missing", missing + 1));
+        if part.command != first.command {
+            return refuse(format!(
+                "part {name} is from `lizard {}`, but another part is from `lizard {}`",
+                part.command, first.command
+            ));
         }
-        Ok(merged)
+        if part.options != first.options
+            || part.part.part_count != part_count
+            || part.piece_count != first.piece_count
+        {
+            let reason = format!("part {name} has different options from another part");
+            return refuse(reason);
+        }
+        if part.robot != first.robot {
+            let reason = format!("part {name} has a different robot from another part");
+            return refuse(reason);
+        }
+        let index = part.part.number as usize - 1;
+        if std::mem::replace(&mut is_given[index], true) {
+            return refuse(format!("part {name} is given twice"));
+        }
     }
+    if let Some(missing) = is_given.iter().position(|is_given| !is_given) {
+        return refuse(format!("part {}/{part_count} is missing", missing + 1));
+    }
+    let mut joined = parts.remove(0);
+    joined
+        .results
+        .extend(parts.into_iter().flat_map(|part| part.results));
+    Ok(joined)
+}
 
-    /// Runs the command as on one machine, but takes the results from the parts instead of computing them.
-    #[cfg_attr(
-        not(any(feature = "paper", feature = "parts")),
-        allow(dead_code, reason = "this build has no command with parts")
-    )]
-    fn run<C: Spreadable>(
-        self,
-        run_command: impl FnOnce(C) -> Result<(), Failure>,
-    ) -> Result<(), Failure> {
-        let mut command: C =
-            serde_json::from_value(self.options).map_err(|_| mismatched_parts_failure())?;
-        command.spread_args().set_merged(self.robot, self.results);
-        run_command(command)
-    }
+/// Runs the command as on one machine, but takes the results from the parts instead of computing them.
+#[cfg_attr(
+    not(any(feature = "paper", feature = "parts")),
+    allow(dead_code, reason = "this build has no command with parts")
+)]
+fn run_joined<C: Spreadable>(
+    joined: PartOutput,
+    run_command: impl FnOnce(C) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let mut command: C =
+        serde_json::from_value(joined.options).map_err(|_| mismatched_parts_failure())?;
+    command
+        .spread_args()
+        .set_merged(joined.robot, joined.results);
+    run_command(command)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
+    use serde_json::Value;
+
     use super::*;
 
     fn part_output(part: &str) -> PartOutput {
@@ -172,7 +160,7 @@ mod tests {
     }
 
     fn refusal_message(parts: Vec<PartOutput>) -> String {
-        let failure = MergedParts::join(parts).err();
+        let failure = join_parts(parts).err();
         failure.expect("the parts must be refused").to_string()
     }
 
@@ -199,6 +187,6 @@ mod tests {
         assert!(message.contains("is from version 0.0.1"), "{message}");
         assert!(refusal_message(Vec::new()).starts_with("no parts given"));
         // Parts are accepted in any order.
-        assert!(MergedParts::join(["2/2", "1/2"].map(part_output).into()).is_ok());
+        assert!(join_parts(["2/2", "1/2"].map(part_output).into()).is_ok());
     }
 }

@@ -1,5 +1,5 @@
 //! The table of the program's commands. A row has a command's name, arguments, function, cargo features and alias. The
-//! rows are grouped as in the help.
+//! rows are grouped as in the help; the groups for owners of a robot come first.
 //!
 //! A build without a cargo feature reports its missing commands by name. The table therefore defines both the enum of
 //! this build's commands and the list of all commands.
@@ -18,13 +18,13 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::Failure;
 use crate::shared::escape::readable_lines;
-use command_entry::{CommandEntry, CommandGroup};
+use command_entry::{CommandEntry, DEVELOPMENT};
 use nested::WithSubcommand;
 
 /// Defines [`Command`] and [`KNOWN_COMMANDS`] from the table below.
 macro_rules! commands {
     ($(
-        $group:ident {
+        $group:expr => {
             $(
                 $name:ident($arguments:ty) => $run:path
                 $(, needs $($feature:literal)and+)?
@@ -65,7 +65,7 @@ macro_rules! commands {
                         feature = "console",
                         feature = "parts"
                     )))]
-                    Self::Other(words) => Err(absent::explain_absence(&words, KNOWN_COMMANDS)),
+                    Self::Other(words) => Err(absent::explain_absence(&words, KNOWN_COMMANDS, absent::is_in_build)),
                 }
             }
         }
@@ -73,7 +73,7 @@ macro_rules! commands {
         /// All commands in the order of the help, including those missing from this build.
         const KNOWN_COMMANDS: &[CommandEntry] = &[$($(
             CommandEntry {
-                group: CommandGroup::$group,
+                group: $group,
                 variant: stringify!($name),
                 aliases: &[$($alias)?],
                 needed_features: &[$($($feature),+)?],
@@ -83,35 +83,35 @@ macro_rules! commands {
 }
 
 commands! {
-    Drive {
+    "Drive the robot" => {
         Flash(WithSubcommand<crate::drive::flash::Args, nested::FlashSubcommand>) => nested::run_flash, needs "console";
         Info(WithSubcommand<crate::drive::console::info::Args, nested::InfoSubcommand>) => nested::run_info, needs "console";
         Console(WithSubcommand<crate::drive::console::interactive::ConsoleArgs, nested::ConsoleSubcommand>) => nested::run_console, needs "console", also "monitor";
         Calibrate(WithSubcommand<crate::drive::console::calibrate::Args, nested::CalibrateSubcommand>) => nested::run_calibrate, needs "console";
         Measure(WithSubcommand<crate::measure::Args, nested::MeasureSubcommand>) => nested::run_measure, needs "parts";
     }
-    Simulate {
+    "Simulate it" => {
         Sim(WithSubcommand<crate::simulate::sim::Args, nested::SimSubcommand>) => nested::run_sim, needs "simulator";
         Twin(crate::simulate::twin::Args) => crate::simulate::twin::run, needs "simulator";
         Model(crate::make::model::Args) => crate::make::model::run, needs "parts", also "mjcf";
     }
-    Build {
+    "Build it" => {
         Draw(WithSubcommand<crate::make::draw::Args, nested::DrawSubcommand>) => nested::run_draw;
         Parts(crate::make::parts::Args) => crate::make::parts::run, needs "parts";
         Fit(crate::make::parts::fit::Args) => crate::make::parts::fit::run, needs "parts";
     }
-    Change {
+    "Change its gaits and dimensions" => {
         New(crate::change::new::Args) => crate::change::new::run;
         Gaits(crate::change::gaits::Args) => crate::change::gaits::run;
         Tune(crate::change::tune::Args) => crate::change::tune::run, needs "simulator" and "paper";
         Prove(crate::change::prove::Args) => crate::change::prove::run, needs "paper";
     }
-    Paper {
+    "The paper, computed" => {
         Pose(crate::paper::pose::Args) => crate::paper::pose::run, needs "paper";
         Design(crate::paper::design::Args) => crate::paper::design::run, needs "paper";
         Errata(crate::paper::errata::Args) => crate::paper::errata::run, needs "paper";
     }
-    Development {
+    DEVELOPMENT => {
         Merge(merge::MergeArgs) => merge::merge;
         Completions(WithSubcommand<completions::CompletionsArgs, nested::CompletionsSubcommand>) => run_completions;
     }

@@ -14,7 +14,7 @@ use crate::simulate;
 use crate::{Failure, commands::completions};
 
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
-use super::absent::AbsentCommand;
+use super::absent::{AbsentCommand, absent_command_failure, is_in_build};
 
 // The types in this file have no doc comments because clap would show them instead of the arguments' comments. A
 // `WithSubcommand` is a command that runs either with its own arguments or with a subcommand.
@@ -78,9 +78,11 @@ pub fn run_console(
         #[cfg(feature = "simulator")]
         Some(ConsoleSubcommand::Replay(args)) => drive::console::replay::run(args),
         #[cfg(not(feature = "simulator"))]
-        Some(ConsoleSubcommand::Replay(_)) => {
-            Err(AbsentCommand::failure("console replay", &["simulator"]))
-        }
+        Some(ConsoleSubcommand::Replay(_)) => Err(absent_command_failure(
+            "console replay",
+            &["simulator"],
+            is_in_build,
+        )),
         None => drive::console::interactive::run(args.arguments),
     }
 }
@@ -160,7 +162,11 @@ pub fn run_draw(args: WithSubcommand<draw::Args, DrawSubcommand>) -> Result<(), 
         #[cfg(feature = "paper")]
         Some(DrawSubcommand::Charts(args)) => crate::paper::charts::run(args),
         #[cfg(not(feature = "paper"))]
-        Some(DrawSubcommand::Charts(_)) => Err(AbsentCommand::failure("draw charts", &["paper"])),
+        Some(DrawSubcommand::Charts(_)) => Err(absent_command_failure(
+            "draw charts",
+            &["paper"],
+            is_in_build,
+        )),
         None => draw::run(args.arguments),
     }
 }

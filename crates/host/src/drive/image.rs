@@ -57,11 +57,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         ));
     }
     let robot = args.robot.load()?;
-    let image = match args.only_robot {
-        true => image_source::build_robot_image(&robot)?,
-        false => image_source::build_image(&robot)?,
-    };
-    let hex = image.to_hex();
+    let hex = image_source::build_image(&robot, args.only_robot)?.to_hex();
     let Some(path) = args.output else {
         return Ok(io::stdout().lock().write_all(hex.as_bytes())?);
     };

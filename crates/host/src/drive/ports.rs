@@ -132,16 +132,14 @@ mod tests {
         let clone = port_report(0x1a86, 0x7523, None);
         let output = format_ports(&[uno, clone]);
         let output: Vec<&str> = output.lines().collect();
-        assert!(output[0].contains("Arduino Uno"), "{output:?}");
-        assert!(
-            output[0].contains("(2341:0043), an Arduino UNO"),
-            "{output:?}"
-        );
+        for (line, part) in [
+            (output[0], "Arduino Uno"),
+            (output[0], "(2341:0043), an Arduino UNO"),
+            (output[1], "no name (1a86:7523), a CH340"),
+        ] {
+            assert!(line.contains(part), "{part}: {output:?}");
+        }
         assert!(!output[0].contains('\u{1b}'), "{output:?}");
-        assert!(
-            output[1].contains("no name (1a86:7523), a CH340"),
-            "{output:?}"
-        );
         assert!(
             describe_chip([0x0483, 0x5740]).is_none(),
             "a chip of another maker"

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use lizard_measure::{Gaits, Report, compute_board_height};
 
 use super::picture;
-use super::recording::{RecordingArgs, parse_height};
+use super::recording::{RecordingArgs, height_parser};
 use crate::shared::progress::create_spinner;
 use crate::shared::robot_args::find_moving_gait;
 use crate::shared::{files, json};
@@ -38,7 +38,7 @@ pub struct Args {
     #[arg(long, value_name = "PERCENT", default_value_t = 100, value_parser = clap::value_parser!(u8).range(1..=100))]
     speed: u8,
     /// Height of the deck's tag above the floor, mm [default: the top of the board, computed from the robot's parts]
-    #[arg(long, value_name = "MM", value_parser = parse_height)]
+    #[arg(long, value_name = "MM", value_parser = height_parser())]
     height: Option<f64>,
     #[command(flatten)]
     recording: RecordingArgs,
@@ -62,9 +62,9 @@ pub struct Args {
 /// measurable gait, if several videos are given with `--csv`, or if a file cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let pace = f64::from(args.speed) / 100.0;
     let named_gaits = args.gait.iter().map(|name| find_moving_gait(&robot, name));
-    let gaits = Gaits::predict(&robot, &named_gaits.collect::<Result<Vec<_>, _>>()?, pace);
+    let named_gaits = named_gaits.collect::<Result<Vec<_>, _>>()?;
+    let gaits = Gaits::predict(&robot, &named_gaits, args.speed);
     let height = args.height.unwrap_or_else(|| compute_board_height(&robot));
     let setup = args.recording.setup(height);
     let spinner = create_spinner("reading the frames");
@@ -73,17 +73,14 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let videos = videos.collect::<Result<Vec<_>, Failure>>()?;
     if args.csv {
         drop(spinner);
-        return match &videos[..] {
-            [video] => Ok(io::stdout()
-                .lock()
-                .write_all(video.format_path_csv().as_bytes())?),
-            _ => Err(Failure::Input("--csv requires a single video".to_owned())),
+        let [video] = &videos[..] else {
+            return Err(Failure::Input("--csv requires a single video".to_owned()));
         };
+        let csv = video.format_path_csv();
+        return Ok(io::stdout().lock().write_all(csv.as_bytes())?);
     }
     let walks = gaits.measure_walks(&videos).map_err(Failure::Input)?;
-    let report = Report::compute(&robot, args.speed, setup, &videos, &gaits, &walks)
-        .with_ranges(&robot)
-        .with_mujoco(&args.robot.text()?);
+    let report = Report::compute(&args.robot.text()?, setup, &videos, &gaits, &walks);
     drop(spinner);
     if let Some(path) = args.picture {
         files::write(&path, picture::draw(&report).as_bytes())?;

@@ -4,7 +4,7 @@
 //! of each frame, because the frames of a phone's video are not evenly spaced in time. ffmpeg sends the frames as
 //! YUV4MPEG2: a header line with the size, then, for each frame, a header line and its grey pixels.
 
-use std::io::{BufRead, BufReader, ErrorKind, Read};
+use std::io::{BufRead, BufReader, ErrorKind};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -28,7 +28,7 @@ const MAX_SIZE_PX: usize = 10_000;
 pub(super) fn for_each_frame(
     video: &Path,
     frame_rate: Option<f64>,
-    mut handle_frame: impl FnMut(f64, &Frame) -> Result<(), Failure>,
+    handle_frame: impl FnMut(f64, &Frame) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let times = match frame_rate {
         Some(_) => Vec::new(),
@@ -48,42 +48,45 @@ pub(super) fn for_each_frame(
         .stderr(Stdio::null())
         .spawn()
         .map_err(|error| spawn_failure("ffmpeg", &error))?;
-    let mut stream = BufReader::new(ffmpeg.stdout.take().expect("standard output is piped"));
-    let mut line = String::new();
-    let frame_size = stream
-        .read_line(&mut line)
-        .ok()
-        .and_then(|_| parse_size(&line));
-    let result = match frame_size {
-        None => Err(unreadable("it has no frames")),
-        Some([width, height]) => (0..)
-            .try_fold((), |(), i: usize| {
-                line.clear();
-                match stream.read_line(&mut line) {
-                    Ok(0) => return Err(None),
-                    Ok(_) => {}
-                    Err(error) => return Err(Some(unreadable(&error.to_string()))),
-                }
-                let mut pixels = vec![0; width * height];
-                let read_result = stream.read_exact(&mut pixels);
-                read_result.map_err(|_| Some(unreadable("its last frame is incomplete")))?;
-                let seconds = match frame_rate {
-                    Some(frame_rate) => Some(i as f64 / frame_rate),
-                    None => times.get(i).copied(),
-                };
-                let seconds = seconds
-                    .ok_or_else(|| Some(unreadable("it has more frames than times; give --fps")))?;
-                let frame = Frame::new(width, height, pixels)
-                    .ok_or_else(|| Some(unreadable("it has no pixels")))?;
-                handle_frame(seconds, &frame).map_err(Some)
-            })
-            .or_else(|failure: Option<Failure>| failure.map_or(Ok(()), Err)),
+    let stream = BufReader::new(ffmpeg.stdout.take().expect("standard output is piped"));
+    let time_at = |index: usize| match frame_rate {
+        Some(frame_rate) => Some(index as f64 / frame_rate),
+        None => times.get(index).copied(),
     };
+    let result = read_frames(stream, time_at, unreadable, handle_frame);
     // ffmpeg may still be sending frames that are no longer read.
-    drop(stream);
     let _ = ffmpeg.kill();
     let _ = ffmpeg.wait();
     result
+}
+
+/// Calls `handle_frame` with each frame in a YUV4MPEG2 stream and the frame's time, s.
+fn read_frames(
+    mut stream: impl BufRead,
+    time_at: impl Fn(usize) -> Option<f64>,
+    unreadable: impl Fn(&str) -> Failure,
+    mut handle_frame: impl FnMut(f64, &Frame) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let mut line = String::new();
+    let header = stream.read_line(&mut line).ok();
+    let frame_size = header.and_then(|_| parse_size(&line));
+    let [width, height] = frame_size.ok_or_else(|| unreadable("it has no frames"))?;
+    for index in 0.. {
+        line.clear();
+        let header = stream.read_line(&mut line);
+        if header.map_err(|error| unreadable(&error.to_string()))? == 0 {
+            break;
+        }
+        let mut pixels = vec![0; width * height];
+        let read_result = stream.read_exact(&mut pixels);
+        read_result.map_err(|_| unreadable("its last frame is incomplete"))?;
+        let seconds = time_at(index)
+            .ok_or_else(|| unreadable("it has more frames than times; give --fps"))?;
+        let frame = Frame::new(width, height, pixels);
+        let frame = frame.ok_or_else(|| unreadable("it has no pixels"))?;
+        handle_frame(seconds, &frame)?;
+    }
+    Ok(())
 }
 
 /// Reads the times of a video's frames with ffprobe, s.
@@ -111,14 +114,10 @@ fn read_frame_times(video: &Path) -> Result<Vec<f64>, Failure> {
 fn parse_size(header: &str) -> Option<[usize; 2]> {
     let fields = header.trim().strip_prefix("YUV4MPEG2 ")?;
     let parse_field = |name: char| {
-        let mut values = fields
-            .split(' ')
-            .filter_map(|field| field.strip_prefix(name));
-        values
-            .next()?
-            .parse()
-            .ok()
-            .filter(|size| (1..=MAX_SIZE_PX).contains(size))
+        let mut fields = fields.split(' ');
+        let value = fields.find_map(|field| field.strip_prefix(name))?;
+        let size = value.parse().ok();
+        size.filter(|size| (1..=MAX_SIZE_PX).contains(size))
     };
     Some([parse_field('W')?, parse_field('H')?])
 }

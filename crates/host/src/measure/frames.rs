@@ -1,5 +1,6 @@
 //! Lists the frames in a folder, with their times.
 
+use std::borrow::Cow;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -22,16 +23,10 @@ pub(super) fn list_frames(
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).map_err(read_failure)? {
         let path = entry.map_err(read_failure)?.path();
-        let extension = path
-            .extension()
-            .map(|extension| extension.to_string_lossy().to_lowercase());
-        if extension.is_some_and(|extension| FRAME_EXTENSIONS.contains(&&*extension)) {
-            let stem = path
-                .file_stem()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned();
-            files.push((stem, path));
+        let extension = path.extension().unwrap_or_default();
+        let extension = extension.to_string_lossy().to_lowercase();
+        if FRAME_EXTENSIONS.contains(&extension.as_str()) {
+            files.push(path);
         }
     }
     if files.is_empty() {
@@ -40,19 +35,28 @@ pub(super) fn list_frames(
             folder.display()
         )));
     }
-    files.sort_by_key(|(stem, _)| split_for_sorting(stem));
-    let to_timed_frame = |(index, (stem, path)): (usize, (String, PathBuf))| match frame_rate {
-        Some(frame_rate) => Ok((index as f64 / frame_rate, path)),
-        None => match parse_seconds(&stem) {
-            Some(seconds) => Ok((seconds, path)),
-            None => Err(Failure::Input(format!(
+    files.sort_by_key(|path| split_for_sorting(&stem(path)));
+    let to_timed_frame = |(index, path): (usize, PathBuf)| {
+        let seconds = match frame_rate {
+            Some(frame_rate) => Some(index as f64 / frame_rate),
+            None => parse_seconds(&stem(&path)),
+        };
+        let unknown_time = || {
+            Failure::Input(format!(
                 "the time of {} is unknown: give the frames per second, for example --fps 30, or name the files by \
                  their times, such as 1.033s.png or 1033ms.png",
                 path.display()
-            ))),
-        },
+            ))
+        };
+        let seconds = seconds.ok_or_else(unknown_time)?;
+        Ok((seconds, path))
     };
     files.into_iter().enumerate().map(to_timed_frame).collect()
+}
+
+/// Returns a file's name without its extension.
+fn stem(path: &Path) -> Cow<'_, str> {
+    path.file_stem().unwrap_or_default().to_string_lossy()
 }
 
 /// Splits a name into numbers and words, so that 10 is sorted after 9.

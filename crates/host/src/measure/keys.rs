@@ -93,9 +93,8 @@ pub fn identify_keys(args: KeysArgs) -> Result<(), Failure> {
     drop(spinner);
     let has_changes = identified.changed_keys().next().is_some();
     if has_changes {
-        let new_text = identified
-            .updated_robot_toml(&old_text)
-            .map_err(to_failure)?;
+        let new_text = identified.updated_robot_toml(&old_text);
+        let new_text = new_text.map_err(to_failure)?;
         files::write(&args.output, new_text.as_bytes())?;
     }
     let output_path = has_changes.then_some(args.output.as_path());
@@ -114,10 +113,8 @@ fn read_movements(path: &Path, robot: &Robot) -> Result<Vec<MeasuredMovement>, F
                 "expected the output of `lizard measure --json`: {error}"
             ))
         })?;
-    let movements = output
-        .gaits
-        .iter()
-        .map(|measured| to_movement(measured, robot));
+    let gaits = output.gaits.iter();
+    let movements = gaits.map(|measured| to_movement(measured, robot));
     movements.collect::<Result<_, _>>().map_err(to_failure)
 }
 

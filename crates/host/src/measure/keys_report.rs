@@ -87,43 +87,12 @@ impl KeysReport {
         let value_and_error = |component: fn(&CardPose) -> f64| {
             [&identified.card, &identified.card_error].map(component)
         };
-        let GoodnessOfFit {
-            value_count,
-            chi_squares: [chi_square_before, chi_square, chi_square_all_free],
-            degrees_of_freedom,
-            is_explained,
-            error_factor,
-            ..
-        } = identified.goodness;
+        let goodness = &identified.goodness;
+        let [chi_square_before, chi_square, chi_square_all_free] = goodness.chi_squares;
         let name_pair = |(first, second, correlation): &(&Key, &Key, f64)| {
             (first.full_name(), second.full_name(), *correlation)
         };
-        Self {
-            keys: identified.keys.iter().map(KeyReport::new).collect(),
-            card: CardReport {
-                turn: value_and_error(|card| card.turn),
-                forward: value_and_error(|card| card.forward),
-                left: value_and_error(|card| card.left),
-            },
-            correlated_pairs: identified.correlated_pairs.iter().map(name_pair).collect(),
-            fit: FitReport {
-                value_count,
-                chi_square_before,
-                chi_square,
-                chi_square_all_free,
-                degrees_of_freedom,
-                is_explained,
-                error_factor,
-            },
-            gaits: identified.movements.iter().map(GaitReport::new).collect(),
-            output_path: output_path.map(Path::to_owned),
-        }
-    }
-}
-
-impl KeyReport {
-    fn new(result: &KeyResult) -> Self {
-        Self {
+        let keys = identified.keys.iter().map(|result| KeyReport {
             key: result.key.full_name(),
             unit: result.key.unit,
             file_value: result.file_value,
@@ -135,20 +104,37 @@ impl KeyReport {
                 Verdict::Undetermined => "untold",
                 Verdict::Impossible(_) => "impossible",
             },
-        }
-    }
-}
-
-impl GaitReport {
-    fn new(result: &MovementResult) -> Self {
-        let errors = result.measured.error;
-        Self {
+        });
+        let gaits = identified.movements.iter().map(|result| GaitReport {
             gait: result.measured.gait.clone(),
             pace_percent: 100.0 * result.measured.pace,
             measured: result.measured.mean,
-            error: errors.map(|error| Some(error).filter(|error| error.is_finite())),
+            error: result
+                .measured
+                .error
+                .map(|error| error.is_finite().then_some(error)),
             predicted_before: result.predicted_before,
             predicted_after: result.predicted_after,
+        });
+        Self {
+            keys: keys.collect(),
+            card: CardReport {
+                turn: value_and_error(|card| card.turn),
+                forward: value_and_error(|card| card.forward),
+                left: value_and_error(|card| card.left),
+            },
+            correlated_pairs: identified.correlated_pairs.iter().map(name_pair).collect(),
+            fit: FitReport {
+                value_count: goodness.value_count,
+                chi_square_before,
+                chi_square,
+                chi_square_all_free,
+                degrees_of_freedom: goodness.degrees_of_freedom,
+                is_explained: goodness.is_explained,
+                error_factor: goodness.error_factor,
+            },
+            gaits: gaits.collect(),
+            output_path: output_path.map(Path::to_owned),
         }
     }
 }
@@ -162,9 +148,7 @@ pub(super) fn format_report(identified: &Identification, output_path: Option<&Pa
     for result in &identified.keys {
         text += &format_key(result);
     }
-    let Identification {
-        card, card_error, ..
-    } = identified;
+    let (card, card_error) = (&identified.card, &identified.card_error);
     let _ = writeln!(
         text,
         "\nThe card on the deck lies {:+.1} +- {:.1} mm ahead of the centre and {:+.1} +- {:.1} mm to the left, and is \

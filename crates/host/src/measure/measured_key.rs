@@ -14,7 +14,7 @@ pub(super) struct MeasuredKey {
     table: String,
     /// The key's name in its table.
     #[serde(rename = "key")]
-    name: &'static str,
+    pub(super) name: &'static str,
     #[serde(rename = "measured")]
     value: f64,
     /// The standard error of `value`.
@@ -37,38 +37,29 @@ pub(super) struct MeasuredKey {
 }
 
 impl MeasuredKey {
+    /// Creates a key from its measured value and its value in robot.toml. `scale` converts the latter to the supply
+    /// voltage of the measurement.
     pub(super) fn new(
         table: &str,
         name: &'static str,
         decimals: usize,
         estimate: Estimate,
-        robot_value: f64,
+        file_value: f64,
+        scale: f64,
     ) -> Self {
-        let Estimate {
-            value,
-            standard_error,
-        } = estimate;
-        let difference = (value - robot_value) / standard_error.max(1e-9);
+        let robot_value = file_value * scale;
+        let difference = (estimate.value - robot_value) / estimate.standard_error.max(1e-9);
         Self {
             table: table.to_owned(),
             name,
-            value,
-            standard_error,
+            value: estimate.value,
+            standard_error: estimate.standard_error,
             robot_value,
             difference,
             agrees: difference.abs() <= AGREEMENT_LIMIT,
             decimals,
-            scale: 1.0,
+            scale: 1.0 / scale,
         }
-    }
-
-    /// Sets the ratio between the key's values in robot.toml and at the supply voltage of the measurement.
-    pub(super) fn with_scale(self, scale: f64) -> Self {
-        Self { scale, ..self }
-    }
-
-    pub(super) fn name(&self) -> &str {
-        self.name
     }
 }
 

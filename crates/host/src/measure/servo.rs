@@ -10,9 +10,10 @@ use lizard_video::{AnalysedVideo, Estimate, Jig, MeasuredServo};
 use serde::Serialize;
 
 use super::measured_key::{self, MeasuredKey};
-use super::recording::{RecordingArgs, parse_height, parse_number};
+use super::recording::{RecordingArgs, height_parser};
 use super::steps::{self, parse_servo};
 use super::video::video_failure;
+use crate::shared::number::range_parser;
 use crate::shared::progress::create_spinner;
 use crate::shared::{files, json};
 use crate::{Failure, RobotArgs};
@@ -39,19 +40,20 @@ pub struct ServoArgs {
     #[arg(long, value_name = "NAME", value_parser = parse_servo)]
     servo: usize,
     /// Height of the card above the strips, mm
-    #[arg(long, value_name = "MM", value_parser = parse_height)]
+    #[arg(long, value_name = "MM", value_parser = height_parser())]
     height: f64,
     /// A video of the same steps while the servo lifts a weight
     #[arg(long = "load", value_name = "VIDEO", requires_all = ["grams", "arm"])]
     loaded_video: Option<PathBuf>,
     /// The weight, g
-    #[arg(long, requires = "loaded_video", value_parser = parse_grams)]
+    #[arg(long, requires = "loaded_video", value_parser = range_parser(1.0, 10_000.0, " g"))]
     grams: Option<f64>,
     /// Distance from the servo's axis to the centre of the thread, mm
-    #[arg(long, value_name = "MM", requires = "loaded_video", value_parser = parse_arm)]
+    #[arg(long, value_name = "MM", requires = "loaded_video",
+          value_parser = range_parser(1.0, 200.0, " mm"))]
     arm: Option<f64>,
     /// Supply voltage at the servo while it moves, V [default: volts in robot.toml]
-    #[arg(long, value_parser = parse_volts)]
+    #[arg(long, value_parser = range_parser(2.0, 9.0, " V"))]
     volts: Option<f64>,
     #[command(flatten)]
     recording: RecordingArgs,
@@ -63,18 +65,6 @@ pub struct ServoArgs {
     json: bool,
     #[command(flatten)]
     robot: RobotArgs,
-}
-
-fn parse_grams(text: &str) -> Result<f64, String> {
-    parse_number(text, [1.0, 10_000.0], "g")
-}
-
-fn parse_arm(text: &str) -> Result<f64, String> {
-    parse_number(text, [1.0, 200.0], "mm")
-}
-
-fn parse_volts(text: &str) -> Result<f64, String> {
-    parse_number(text, [2.0, 9.0], "V")
 }
 
 /// The result, as `--json` prints it.
@@ -171,31 +161,31 @@ impl Report {
         let servo_type = robot.servo_type();
         let volts = args.volts.unwrap_or(servo_type.supply_volts);
         let supply_ratio = volts / servo_type.rated_volts;
-        let scale_estimate = |estimate: Estimate, scale: f64| Estimate {
-            value: estimate.value * scale,
-            standard_error: estimate.standard_error * scale.abs(),
+        let scale_estimate = |estimate: Estimate, scale: f64| {
+            Estimate::new(
+                estimate.value * scale,
+                estimate.standard_error * scale.abs(),
+            )
         };
         let divide_by_estimate = |numerator: f64, estimate: Estimate| {
             let value = numerator / estimate.value;
-            Estimate {
-                value,
-                standard_error: (value / estimate.value * estimate.standard_error).abs(),
-            }
+            let error = value / estimate.value * estimate.standard_error;
+            Estimate::new(value, error.abs())
         };
         let us_per_degree = servo.us_per_degree;
         let mut keys = Vec::new();
-        let mut push_key = |name, decimals, estimate: Estimate, robot_value: f64, scale: f64| {
-            let key = MeasuredKey::new("servo", name, decimals, estimate, robot_value * scale);
-            keys.push(key.with_scale(1.0 / scale));
+        let mut push_key = |name, decimals, estimate, file_value, scale| {
+            let key = MeasuredKey::new("servo", name, decimals, estimate, file_value, scale);
+            keys.push(key);
         };
         let seconds_per_60_deg = divide_by_estimate(60.0, measured_servo.rate);
-        let robot_value = servo_type.s_per_60_deg;
+        let file_value = servo_type.s_per_60_deg;
         let scale = 1.0 / supply_ratio;
-        push_key("s_per_60_deg", 4, seconds_per_60_deg, robot_value, scale);
+        push_key("s_per_60_deg", 4, seconds_per_60_deg, file_value, scale);
         if let Some(stall_torque) = stall_torque_n_mm {
             let stall_kg_cm = scale_estimate(stall_torque, 1.0 / N_MM_PER_KG_CM);
-            let robot_value = servo_type.stall_torque_kg_cm;
-            push_key("stall_kg_cm", 2, stall_kg_cm, robot_value, supply_ratio);
+            let file_value = servo_type.stall_torque_kg_cm;
+            push_key("stall_kg_cm", 2, stall_kg_cm, file_value, supply_ratio);
         }
         if let Some(width) = measured_servo.dead_band.width {
             let width_us = scale_estimate(width, us_per_degree.abs());
@@ -203,12 +193,12 @@ impl Report {
         }
         if let Some(rotor_time_constant) = measured_servo.rotor_time_constant {
             let spin_up_ms = scale_estimate(rotor_time_constant, 1000.0);
-            let robot_value = servo_type.rotor_time_constant_ms;
-            push_key("spin_up_ms", 1, spin_up_ms, robot_value, 1.0);
+            let file_value = servo_type.rotor_time_constant_ms;
+            push_key("spin_up_ms", 1, spin_up_ms, file_value, 1.0);
         }
         let table = format!("servo.{name}");
         let gain = divide_by_estimate(us_per_degree, measured_servo.gain);
-        let gain_key = MeasuredKey::new(&table, "us_per_degree", 2, gain, us_per_degree);
+        let gain_key = MeasuredKey::new(&table, "us_per_degree", 2, gain, us_per_degree, 1.0);
         keys.push(gain_key);
         let value_and_error = |estimate: Estimate| [estimate.value, estimate.standard_error];
         let dead_band = &measured_servo.dead_band;
@@ -284,7 +274,7 @@ impl Report {
         if !self.is_dead_band_known {
             text += "Not measured: dead_band_us (wider than the largest small step).\n";
         }
-        if self.keys.iter().all(|key| key.name() != "stall_kg_cm") {
+        if self.keys.iter().all(|key| key.name != "stall_kg_cm") {
             text += "Not measured: stall_kg_cm (needs a second video with a weight, --load).\n";
         }
         if let Some(path) = &self.output_path {

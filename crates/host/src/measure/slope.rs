@@ -9,7 +9,7 @@ use lizard_video::{Estimate, MeasuredSlide};
 use serde::Serialize;
 
 use super::measured_key::{self, MeasuredKey};
-use super::recording::{RecordingArgs, parse_height};
+use super::recording::{RecordingArgs, height_parser};
 use super::video::video_failure;
 use crate::shared::json;
 use crate::shared::progress::create_spinner;
@@ -30,7 +30,7 @@ pub struct SlopeArgs {
     videos: Vec<PathBuf>,
     /// Height of the deck's tag above the strips, mm [default: the top of the UNO board, computed from the robot's
     /// parts]
-    #[arg(long, value_name = "MM", value_parser = parse_height)]
+    #[arg(long, value_name = "MM", value_parser = height_parser())]
     height: Option<f64>,
     #[command(flatten)]
     recording: RecordingArgs,
@@ -92,10 +92,8 @@ fn average(estimates: &[Estimate]) -> Option<Estimate> {
     let mean = |value: &dyn Fn(&Estimate) -> f64| estimates.iter().map(value).sum::<f64>() / count;
     let value = mean(&|estimate| estimate.value);
     let variance = mean(&|estimate| (estimate.value - value).powi(2)) / (count - 1.0).max(1.0);
-    (!estimates.is_empty()).then(|| Estimate {
-        value,
-        standard_error: mean(&|estimate| estimate.standard_error).hypot(variance.sqrt()),
-    })
+    let standard_error = mean(&|estimate| estimate.standard_error).hypot(variance.sqrt());
+    (!estimates.is_empty()).then(|| Estimate::new(value, standard_error))
 }
 
 impl Report {
@@ -103,26 +101,21 @@ impl Report {
         let average_friction = |is_head_first: bool| {
             let slides = slides.iter().map(|(_, slide)| slide);
             let slides = slides.filter(|slide| slide.is_head_first == is_head_first);
-            average(
-                &slides
-                    .map(|slide| slide.sliding_friction)
-                    .collect::<Vec<_>>(),
-            )
+            let frictions: Vec<_> = slides.map(|slide| slide.sliding_friction).collect();
+            average(&frictions)
         };
         let (forward, backward) = (average_friction(true), average_friction(false));
         let mut keys = Vec::new();
         let ground = robot.ground();
-        let new_key = |name, estimate, value| MeasuredKey::new("ground", name, 3, estimate, value);
+        let new_key =
+            |name, estimate, value| MeasuredKey::new("ground", name, 3, estimate, value, 1.0);
         if let Some(forward) = forward {
             keys.push(new_key("friction", forward, ground.friction_coefficient));
             if let Some(backward) = backward {
                 let value = backward.value / forward.value;
                 let [backward_error, forward_error] =
                     [backward, forward].map(|friction| friction.standard_error / friction.value);
-                let ratio = Estimate {
-                    value,
-                    standard_error: value * backward_error.hypot(forward_error),
-                };
+                let ratio = Estimate::new(value, value * backward_error.hypot(forward_error));
                 let name = "friction_back_over_forward";
                 keys.push(new_key(name, ratio, ground.friction_ratio));
             }

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::shared::json;
+use crate::shared::number::range_parser;
 use crate::shared::progress::create_progress_bar;
 use crate::shared::quantity::Quantity;
 use crate::shared::spread::{SpreadArgs, Spreadable};
@@ -81,18 +82,6 @@ impl Spreadable for Args {
 
     fn spread_args(&mut self) -> &mut SpreadArgs {
         &mut self.spread
-    }
-}
-
-/// Returns a parser for numbers between `min` and `max`; `unit` is for the error message.
-fn range_parser(
-    min: f64,
-    max: f64,
-    unit: &'static str,
-) -> impl Fn(&str) -> Result<f64, String> + Clone {
-    move |text| match text.parse::<f64>() {
-        Ok(value) if (min..=max).contains(&value) => Ok(value),
-        _ => Err(format!("must be between {min} and {max}{unit}")),
     }
 }
 

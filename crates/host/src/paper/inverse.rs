@@ -76,7 +76,7 @@ pub fn print(robot: &Robot, end_points: [Option<Vector>; 2], is_json: bool) -> R
 /// Solves the five-bar of the head or tail for a point, in all working modes.
 fn solve_end(robot: &Robot, end: End, point: Vector) -> FiveBarSolutions {
     let local_point = robot.lizard().to_end(end, point);
-    let (working_modes, reason) = match robot.lizard().end(end).inverse(local_point) {
+    let (working_modes, why) = match robot.lizard().end(end).inverse(local_point) {
         Ok(inverse_solutions) => {
             let check = |solution| check_solution(robot, end, local_point, solution);
             (inverse_solutions.into_iter().map(check).collect(), None)
@@ -86,7 +86,7 @@ fn solve_end(robot: &Robot, end: End, point: Vector) -> FiveBarSolutions {
     FiveBarSolutions {
         point: [point.x, point.y],
         working_modes,
-        why: reason,
+        why,
     }
 }
 
@@ -100,10 +100,6 @@ fn check_solution(
     let five_bar = robot.lizard().end(end);
     let [left, right] = [solution.theta_left, solution.theta_right];
     let pose = five_bar.forward_in_mode(solution.assembly_mode, left, right);
-    let (error_mm, margin) = match &pose {
-        Ok(pose) => ((pose.end_point - local_point).length(), pose.margin()),
-        Err(_) => (0.0, 0.0),
-    };
     let angles = [left, right].map(|theta| end.mirror_angle(theta));
     let mut reasons = Vec::new();
     for (servo, angle) in end.servos().into_iter().zip(angles) {
@@ -114,16 +110,20 @@ fn check_solution(
         let reason = "another assembly mode: the end point would be behind the crank tips";
         reasons.push(reason.to_string());
     }
-    match &pose {
-        Err(infeasible) => reasons.push(infeasible.to_string()),
+    let (error_mm, margin) = match &pose {
+        Err(infeasible) => {
+            reasons.push(infeasible.to_string());
+            (0.0, 0.0)
+        }
         Ok(pose) => {
             // Behind the crank tips, the type-2 margin is negative, which the reason above already states.
             let is_already_stated = |check| is_behind && Check::TYPE2.contains(&check);
             let violations = robot.limits().end_violations(end, pose);
             let violations = violations.filter(|violation| !is_already_stated(violation.check));
             reasons.extend(violations.map(|violation| violation.to_string()));
+            ((pose.end_point - local_point).length(), pose.margin())
         }
-    }
+    };
     ModeSolution {
         left_elbow: name_elbow(solution.working_mode.left),
         right_elbow: name_elbow(solution.working_mode.right),
@@ -186,9 +186,12 @@ fn combine_ends(robot: &Robot, [head, tail]: [Option<Vector>; 2]) -> Report {
 
 fn format_text(report: &Report) -> String {
     let mut text = String::new();
-    for (name, five_bar, servos) in [
-        ("head", &report.head, ["A1 theta1", "A2 theta4"]),
-        ("tail", &report.tail, ["A3 theta8", "A4 theta5"]),
+    // The columns are in servo order, A3 before A4. The tail's left servo is A4, so its left and right are swapped.
+    let head_columns = "A1 arm   A2 arm    A1 theta1  A2 theta4";
+    let tail_columns = "A3 arm   A4 arm    A3 theta8  A4 theta5";
+    for (name, five_bar, columns, [first, second]) in [
+        ("head", &report.head, head_columns, [0, 1]),
+        ("tail", &report.tail, tail_columns, [1, 0]),
     ] {
         let Some(five_bar) = five_bar else { continue };
         let [x, y] = five_bar.point;
@@ -198,15 +201,7 @@ fn format_text(report: &Report) -> String {
             text += &format!("  {reason}\n\n");
             continue;
         }
-        // The columns are in servo order, A3 before A4. The tail's left servo is A4, so its left and right are swapped.
-        let is_swapped = name == "tail";
-        text += &format!(
-            "  {} arm   {} arm   {:>10} {:>10}  assembly  margin   error mm   this robot\n",
-            &servos[0][..2],
-            &servos[1][..2],
-            servos[0],
-            servos[1]
-        );
+        text += &format!("  {columns}  assembly  margin   error mm   this robot\n");
         for solution in &five_bar.working_modes {
             let verdict = match solution.why.as_slice() {
                 [] => "yes".to_string(),
@@ -215,18 +210,14 @@ fn format_text(report: &Report) -> String {
                     format!("no: {first_reason}; and {} more", other_reasons.len())
                 }
             };
-            let mut elbows = [solution.left_elbow, solution.right_elbow];
-            let mut angles = [solution.theta_left, solution.theta_right];
-            if is_swapped {
-                elbows.reverse();
-                angles.reverse();
-            }
+            let elbows = [solution.left_elbow, solution.right_elbow];
+            let angles = [solution.theta_left, solution.theta_right];
             text += &format!(
                 "  {:8} {:8} {:10.3} {:10.3}  {:8} {:+7.3}    {:>7}   {verdict}\n",
-                elbows[0],
-                elbows[1],
-                round_to_decimals(angles[0], 3),
-                round_to_decimals(angles[1], 3),
+                elbows[first],
+                elbows[second],
+                round_to_decimals(angles[first], 3),
+                round_to_decimals(angles[second], 3),
                 solution.assembly_mode,
                 round_to_decimals(solution.margin, 3),
                 format_mm_error(solution.error_mm)

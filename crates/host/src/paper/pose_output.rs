@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use lizard_kinematics::{InfeasiblePose, Margins, Pose, Solution};
 use lizard_robot::{Robot, violations};
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde::ser::{Serialize, Serializer};
 
 use crate::paper::poses::TimedPose;
 use crate::shared::number::round_to_decimals;
@@ -57,12 +57,9 @@ struct MarginMap(Margins);
 
 impl Serialize for MarginMap {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        for (check, value) in self.0.iter() {
-            // Adding 0.0 turns -0.0 into 0.0.
-            map.serialize_entry(check.name(), &(value + 0.0))?;
-        }
-        map.end()
+        let margins = self.0.iter();
+        // Adding 0.0 turns -0.0 into 0.0.
+        serializer.collect_map(margins.map(|(check, value)| (check.name(), value + 0.0)))
     }
 }
 
@@ -86,6 +83,7 @@ impl PoseLine {
         let reasons = violations::find_pose_violations(robot, solution);
         let (head, tail) = (solution.head_point(), solution.tail_point());
         let passive = solution.passive_joints();
+        let slider_state = |phi: f64, s: f64| Some(SliderState { phi, s });
         let [lf, rf, rh, lh] = solution.legs.map(|leg| LegAngles {
             follower: leg.follower_angle(),
             coupler: leg.coupler_angle(),
@@ -98,14 +96,8 @@ impl PoseLine {
             theta7: Some(passive.theta7),
             head: Some([head.x, head.y]),
             tail: Some([tail.x, tail.y]),
-            left: Some(SliderState {
-                phi: passive.phi_left,
-                s: solution.left.s,
-            }),
-            right: Some(SliderState {
-                phi: passive.phi_right,
-                s: solution.right.s,
-            }),
+            left: slider_state(passive.phi_left, passive.s_left),
+            right: slider_state(passive.phi_right, passive.s_right),
             legs: Some(Legs { lf, rf, rh, lh }),
             margins: Some(MarginMap(solution.margins)),
             safe: reasons.is_empty(),
@@ -118,20 +110,8 @@ impl PoseLine {
 pub fn format_heading(has_time: bool) -> String {
     let seconds = if has_time { " seconds |" } else { "" };
     format!(
-        "{seconds} {:>8} {:>8} {:>8} {:>8} | {:>8} {:>8} {:>8} {:>8} | {:>17} {:>17} | {:>7} {:>7} | {:17} | safe, or reason",
-        "theta1",
-        "theta4",
-        "theta8",
-        "theta5",
-        "theta2",
-        "theta3",
-        "theta6",
-        "theta7",
-        "head x, y mm",
-        "tail x, y mm",
-        "s left",
-        "s right",
-        "least margin",
+        "{seconds}   theta1   theta4   theta8   theta5 |   theta2   theta3   theta6   theta7 \
+         |      head x, y mm      tail x, y mm |  s left s right | least margin      | safe, or reason"
     )
 }
 

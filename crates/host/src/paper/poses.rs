@@ -1,48 +1,23 @@
 //! A stream of poses as comma-separated values. Only one line is in memory at a time, so the stream may have any
 //! length.
 
+use std::fmt::Display;
 use std::io::{BufRead, Read};
 
 use lizard_kinematics::Pose;
 
 use crate::Failure;
 use crate::shared::pose_args::ANGLE_NAMES;
-use crate::shared::quantity::{NumberError, Quantity};
+use crate::shared::quantity::Quantity;
 
-/// Name of the optional time column, as in `lizard gaits --trace`.
-const SECONDS: &str = "seconds";
+/// Names of the columns: the angles in servo order, and the optional time, as in `lizard gaits --trace`.
+const COLUMN_NAMES: [&str; 5] = {
+    let [a1, a2, a3, a4] = ANGLE_NAMES;
+    [a1, a2, a3, a4, "seconds"]
+};
 
-/// A column of the stream: an angle or the time.
-#[derive(Clone, Copy, PartialEq)]
-enum Column {
-    Angle(usize),
-    Seconds,
-}
-
-impl Column {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Angle(servo) => ANGLE_NAMES[servo],
-            Self::Seconds => SECONDS,
-        }
-    }
-
-    fn from_name(name: &str) -> Option<Self> {
-        if name == SECONDS {
-            return Some(Self::Seconds);
-        }
-        let servo = ANGLE_NAMES.iter().position(|angle| *angle == name)?;
-        Some(Self::Angle(servo))
-    }
-}
-
-/// The columns of a stream without a header.
-const DEFAULT_COLUMNS: [Column; 4] = [
-    Column::Angle(0),
-    Column::Angle(1),
-    Column::Angle(2),
-    Column::Angle(3),
-];
+/// Index of the time column in [`COLUMN_NAMES`].
+const SECONDS: usize = 4;
 
 /// Largest length of a line, bytes. A longer line is refused before it is read completely.
 const MAX_LINE_BYTES: u64 = 1024;
@@ -63,8 +38,8 @@ pub struct PoseReader<R> {
     input: R,
     line_bytes: Vec<u8>,
     line_number: usize,
-    /// The column of each field of a line.
-    columns: Vec<Column>,
+    /// The column of each field of a line, as an index in [`COLUMN_NAMES`].
+    columns: Vec<usize>,
     /// True while the first line is a pose instead of a header and has not been returned.
     has_pending_line: bool,
 }
@@ -79,7 +54,7 @@ impl<R: BufRead> PoseReader<R> {
             input,
             line_bytes: Vec::new(),
             line_number: 0,
-            columns: DEFAULT_COLUMNS.to_vec(),
+            columns: (0..SECONDS).collect(),
             has_pending_line: false,
         };
         let expected = ANGLE_NAMES.join(",");
@@ -95,35 +70,24 @@ impl<R: BufRead> PoseReader<R> {
             poses.has_pending_line = true;
             return Ok(poses);
         }
-        let line_number = poses.line_number;
         let header_failure = |column: usize, problem: String| {
-            Failure::Input(format!(
-                "line {line_number}, column {column}: {problem}; expected the header {expected} in any order, \
-                 optionally with {SECONDS}"
-            ))
+            let expected = format!("the header {expected} in any order, optionally with seconds");
+            poses.failure(column, format!("{problem}; expected {expected}"))
         };
         let mut columns = Vec::with_capacity(names.len());
         for (i, name) in names.iter().enumerate() {
-            let Some(column) = Column::from_name(name) else {
+            let Some(column) = COLUMN_NAMES.iter().position(|known| known == name) else {
                 return Err(header_failure(i + 1, format!("\"{name}\" is not a column")));
             };
             if columns.contains(&column) {
-                return Err(header_failure(
-                    i + 1,
-                    format!("duplicate column \"{name}\""),
-                ));
+                let problem = format!("duplicate column \"{name}\"");
+                return Err(header_failure(i + 1, problem));
             }
             columns.push(column);
         }
-        if let Some(missing_column) = DEFAULT_COLUMNS
-            .iter()
-            .find(|angle| !columns.contains(angle))
-        {
-            let missing_column = missing_column.name();
-            return Err(header_failure(
-                names.len() + 1,
-                format!("{missing_column} is missing"),
-            ));
+        if let Some(missing) = (0..SECONDS).find(|angle| !columns.contains(angle)) {
+            let problem = format!("{} is missing", ANGLE_NAMES[missing]);
+            return Err(header_failure(names.len() + 1, problem));
         }
         poses.columns = columns;
         Ok(poses)
@@ -131,7 +95,7 @@ impl<R: BufRead> PoseReader<R> {
 
     /// True if the lines have a time column.
     pub fn has_time(&self) -> bool {
-        self.columns.contains(&Column::Seconds)
+        self.columns.contains(&SECONDS)
     }
 
     /// Reads the next line that is not blank. Returns false at the end of the input.
@@ -146,10 +110,7 @@ impl<R: BufRead> PoseReader<R> {
             }
             self.line_number += 1;
             if byte_count as u64 > MAX_LINE_BYTES && !self.line_bytes.ends_with(b"\n") {
-                return Err(Failure::Input(format!(
-                    "line {}, column 1: longer than {MAX_LINE_BYTES} bytes",
-                    self.line_number
-                )));
+                return Err(self.failure(1, format!("longer than {MAX_LINE_BYTES} bytes")));
             }
             if !self.line_bytes.iter().all(u8::is_ascii_whitespace) {
                 return Ok(true);
@@ -159,40 +120,34 @@ impl<R: BufRead> PoseReader<R> {
 
     /// Returns the text of the current line, without its line ending and a byte order mark.
     fn line_text(&self) -> Result<&str, Failure> {
-        std::str::from_utf8(&self.line_bytes)
-            .map(|text| {
-                let is_first = self.line_number == 1;
-                let text = text
-                    .strip_prefix('\u{feff}')
-                    .filter(|_| is_first)
-                    .unwrap_or(text);
-                text.trim_end_matches(['\n', '\r'])
-            })
-            .map_err(|error| {
-                let valid_bytes = &self.line_bytes[..error.valid_up_to()];
-                let column = valid_bytes.iter().filter(|&&byte| byte == b',').count() + 1;
-                Failure::Input(format!(
-                    "line {}, column {column}: not UTF-8 text",
-                    self.line_number
-                ))
-            })
+        let text = std::str::from_utf8(&self.line_bytes).map_err(|error| {
+            let valid_bytes = &self.line_bytes[..error.valid_up_to()];
+            let column = valid_bytes.iter().filter(|&&byte| byte == b',').count() + 1;
+            self.failure(column, "not UTF-8 text")
+        })?;
+        let text = match self.line_number {
+            1 => text.strip_prefix('\u{feff}').unwrap_or(text),
+            _ => text,
+        };
+        Ok(text.trim_end_matches(['\n', '\r']))
+    }
+
+    /// Returns the failure for a problem in a column of the current line.
+    fn failure(&self, column: impl Display, problem: impl Display) -> Failure {
+        let line = self.line_number;
+        Failure::Input(format!("line {line}, column {column}: {problem}"))
     }
 
     /// Parses the current line as a pose.
     fn parse_line(&self) -> Result<TimedPose, Failure> {
-        let mut angles = [0.0; 4];
-        let mut seconds = None;
+        let mut values = [0.0; COLUMN_NAMES.len()];
         let mut value_count = 0;
         let field_failure = |field: usize, problem: String| {
             let name = match self.columns.get(field) {
-                Some(column) => format!(" ({})", column.name()),
+                Some(&column) => format!(" ({})", COLUMN_NAMES[column]),
                 None => String::new(),
             };
-            Failure::Input(format!(
-                "line {}, column {}{name}: {problem}",
-                self.line_number,
-                field + 1
-            ))
+            self.failure(format!("{}{name}", field + 1), problem)
         };
         for (field, text) in self.line_text()?.split(',').enumerate() {
             let text = trim_quotes(text);
@@ -202,23 +157,21 @@ impl<R: BufRead> PoseReader<R> {
             if text.is_empty() {
                 return Err(field_failure(field, "no value".to_string()));
             }
-            let number_failure =
-                |error: NumberError| field_failure(field, format!("\"{text}\" {error}"));
-            match column {
-                Column::Angle(servo) => {
-                    angles[servo] = Quantity::ANGLE.parse(text).map_err(number_failure)?;
-                }
-                Column::Seconds => {
-                    seconds = Some(Quantity::TIME.parse(text).map_err(number_failure)?);
-                }
-            }
+            let quantity = match column {
+                SECONDS => Quantity::TIME,
+                _ => Quantity::ANGLE,
+            };
+            values[column] = quantity
+                .parse(text)
+                .map_err(|error| field_failure(field, format!("\"{text}\" {error}")))?;
             value_count = field + 1;
         }
         if value_count < self.columns.len() {
             return Err(field_failure(value_count, "no value".to_string()));
         }
+        let [angles @ .., seconds] = values;
         Ok(TimedPose {
-            seconds,
+            seconds: self.has_time().then_some(seconds),
             pose: Pose::from(angles),
         })
     }

@@ -220,26 +220,23 @@ pub fn find_nearest_singularity(
 fn format_text(report: &Report) -> String {
     let blocks = &report.block_determinants;
     let format_determinant = |det: f64| format!("{:+.1}", round_to_decimals(det, 1));
-    let leg_determinants = report.leg_determinants.map(format_determinant);
+    let legs = report.leg_determinants.map(format_determinant).join(" ");
+    let [head, tail, left, right] =
+        [blocks.head, blocks.tail, blocks.left, blocks.right].map(|det| round_to_decimals(det, 2));
     let mut text = format!(
         "K: rows are the loop equations, columns the servos' angles (mm per radian)\n{}\n\
          K*: the same rows, columns are the passive joints (mm per radian; for s, mm per mm)\n{}\n\
          det K* by elimination        {:+.9e}\n\
          det K* as a product          {:+.9e}\n\
-         \x20 head   l2 l3 sin(theta2 - theta3)  {:+10.2} mm^2\n\
-         \x20 tail   l7 l8 sin(theta6 - theta7)  {:+10.2} mm^2\n\
-         \x20 left   -d                          {:+10.2} mm\n\
-         \x20 right  -d                          {:+10.2} mm\n\
-         legs, lg12 lg13 sin(theta_lg12 - theta_lg13), A1 to A4: {}\n\n",
+         \x20 head   l2 l3 sin(theta2 - theta3)  {head:+10.2} mm^2\n\
+         \x20 tail   l7 l8 sin(theta6 - theta7)  {tail:+10.2} mm^2\n\
+         \x20 left   -d                          {left:+10.2} mm\n\
+         \x20 right  -d                          {right:+10.2} mm\n\
+         legs, lg12 lg13 sin(theta_lg12 - theta_lg13), A1 to A4: {legs}\n\n",
         report.k.to_text(),
         report.k_star.to_text(),
         report.determinant,
         report.factored_determinant,
-        round_to_decimals(blocks.head, 2),
-        round_to_decimals(blocks.tail, 2),
-        round_to_decimals(blocks.left, 2),
-        round_to_decimals(blocks.right, 2),
-        leg_determinants.join(" "),
     );
     text += "nearest singularities, and the turns of A1, A2, A3, A4 that reach them\n";
     for singularity in &report.nearest {

@@ -1,6 +1,6 @@
 //! `lizard pose --show rates`: computes the rates and accelerations of the passive joints from the servos' motion.
 
-use lizard_kinematics::{Derivatives, Lizard, Pose, ServoMotion, Solution, wrap};
+use lizard_kinematics::{Derivative, Lizard, Pose, ServoMotion, Solution, wrap};
 use serde::Serialize;
 
 use crate::Failure;
@@ -112,42 +112,36 @@ fn format_text(rows: &[Row]) -> String {
     text
 }
 
-/// Lists the name, unit and value of each joint and coordinate.
-fn list_joint_values(solution: &Solution) -> [(&'static str, &'static str, f64); 12] {
-    let (head, tail) = (solution.head_point(), solution.tail_point());
-    [
-        ("theta2", "deg", solution.theta2()),
-        ("theta3", "deg", solution.theta3()),
-        ("theta6", "deg", solution.theta6()),
-        ("theta7", "deg", solution.theta7()),
-        ("head x", "mm", head.x),
-        ("head y", "mm", head.y),
-        ("tail x", "mm", tail.x),
-        ("tail y", "mm", tail.y),
-        ("phi left", "deg", solution.left.phi()),
-        ("s left", "mm", solution.left.s),
-        ("phi right", "deg", solution.right.phi()),
-        ("s right", "mm", solution.right.s),
-    ]
-}
+/// The name, unit, value and derivative of a joint or coordinate.
+type Joint = (&'static str, &'static str, f64, Derivative<f64>);
 
-/// Lists the rate and acceleration of each joint and coordinate, in the order of [`list_joint_values`].
-fn list_joint_rates(derivatives: &Derivatives) -> [(f64, f64); 12] {
-    let rate_and_acceleration =
-        |derivative: lizard_kinematics::Derivative<f64>| (derivative.rate, derivative.acceleration);
+/// Lists all joints and coordinates of a solution.
+fn list_joints(solution: &Solution, servo_motion: &ServoMotion) -> [Joint; 12] {
+    let derivatives = solution.derivatives(servo_motion);
+    let (head, tail) = (solution.head_point(), solution.tail_point());
+    let (left, right) = (&solution.left, &solution.right);
+    let ends = [derivatives.head, derivatives.tail];
+    let [head_x, tail_x] = ends.map(|end| Derivative {
+        rate: end.rate.x,
+        acceleration: end.acceleration.x,
+    });
+    let [head_y, tail_y] = ends.map(|end| Derivative {
+        rate: end.rate.y,
+        acceleration: end.acceleration.y,
+    });
     [
-        rate_and_acceleration(derivatives.theta2),
-        rate_and_acceleration(derivatives.theta3),
-        rate_and_acceleration(derivatives.theta6),
-        rate_and_acceleration(derivatives.theta7),
-        (derivatives.head.rate.x, derivatives.head.acceleration.x),
-        (derivatives.head.rate.y, derivatives.head.acceleration.y),
-        (derivatives.tail.rate.x, derivatives.tail.acceleration.x),
-        (derivatives.tail.rate.y, derivatives.tail.acceleration.y),
-        rate_and_acceleration(derivatives.phi_left),
-        rate_and_acceleration(derivatives.s_left),
-        rate_and_acceleration(derivatives.phi_right),
-        rate_and_acceleration(derivatives.s_right),
+        ("theta2", "deg", solution.theta2(), derivatives.theta2),
+        ("theta3", "deg", solution.theta3(), derivatives.theta3),
+        ("theta6", "deg", solution.theta6(), derivatives.theta6),
+        ("theta7", "deg", solution.theta7(), derivatives.theta7),
+        ("head x", "mm", head.x, head_x),
+        ("head y", "mm", head.y, head_y),
+        ("tail x", "mm", tail.x, tail_x),
+        ("tail y", "mm", tail.y, tail_y),
+        ("phi left", "deg", left.phi(), derivatives.phi_left),
+        ("s left", "mm", left.s, derivatives.s_left),
+        ("phi right", "deg", right.phi(), derivatives.phi_right),
+        ("s right", "mm", right.s, derivatives.s_right),
     ]
 }
 
@@ -167,21 +161,20 @@ fn compute_rows(lizard: &Lizard, solution: &Solution, servo_motion: &ServoMotion
                 + servo_motion.accelerations[i] * t * t / 2.0
         });
         let solution = lizard.solve(&Pose::from(angles)).ok()?;
-        Some(list_joint_values(&solution))
+        Some(list_joints(&solution, servo_motion).map(|(_, _, value, _)| value))
     };
     let neighbours = match [-2.0, -1.0, 1.0, 2.0].map(compute_values) {
         [Some(a), Some(b), Some(c), Some(d)] => Some([a, b, c, d]),
         _ => None,
     };
-    let rates_and_accelerations = list_joint_rates(&solution.derivatives(servo_motion));
-    list_joint_values(solution)
+    list_joints(solution, servo_motion)
         .into_iter()
-        .zip(rates_and_accelerations)
         .enumerate()
-        .map(|(i, ((joint, unit, value), (rate, acceleration)))| {
+        .map(|(i, (joint, unit, value, derivative))| {
+            let Derivative { rate, acceleration } = derivative;
             let differences = neighbours.as_ref().map(|neighbours| {
                 let [a, b, c, d] = neighbours.each_ref().map(|neighbour| {
-                    let change = neighbour[i].2 - value;
+                    let change = neighbour[i] - value;
                     if unit == "deg" { wrap(change) } else { change }
                 });
                 // Five-point differences: the error is of the fourth order in the step.

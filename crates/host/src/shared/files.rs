@@ -97,9 +97,22 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
             .open(path)
             .and_then(|mut stream| stream.write_all(bytes))
     } else {
-        create_parent_folders(path).and_then(|()| write_atomically(path, bytes))
+        fs::create_dir_all(parent_folder(path)).and_then(|()| write_atomically(path, bytes))
     };
     outcome.map_err(|error| write_failure(path, &error))
+}
+
+/// Creates a new file. `advice` completes the message about an existing file.
+///
+/// # Errors
+/// Fails if the file already exists, or cannot be created.
+pub fn create_new(path: &Path, advice: &str) -> Result<File, Failure> {
+    File::create_new(path).map_err(|error| match error.kind() {
+        ErrorKind::AlreadyExists => {
+            Failure::Input(format!("{} already exists; {advice}", path.display()))
+        }
+        _ => write_failure(path, &error),
+    })
 }
 
 /// Returns the failure for a path that cannot be written.
@@ -112,11 +125,11 @@ pub fn write_failure(path: &Path, error: &io::Error) -> Failure {
     Failure::Operation(format!("cannot write {}: {reason}", path.display()))
 }
 
-/// Creates the folders that contain a file.
-fn create_parent_folders(path: &Path) -> io::Result<()> {
+/// Returns the folder that contains a file.
+fn parent_folder(path: &Path) -> &Path {
     match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => fs::create_dir_all(folder),
-        _ => Ok(()),
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
     }
 }
 
@@ -152,10 +165,7 @@ fn resolve_links(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
 /// Writes the bytes to a nameless or temporary file in the target's folder, and then gives that file its final path.
 fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let (path, permissions) = resolve_links(path)?;
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
+    let folder = parent_folder(&path);
     let write_content = |file: &mut File| {
         file.write_all(bytes)?;
         if let Some(permissions) = permissions {
@@ -316,24 +326,12 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn the_error_in_a_read_only_folder_names_only_the_file() {
-        let message = write_error_text(Path::new("/proc/self/a.toml"));
-        assert!(
-            message.starts_with("cannot write /proc/self/a.toml: "),
-            "{message}"
-        );
-        assert!(!message.contains("at path"), "{message}");
-    }
-
-    #[test]
-    #[cfg(target_os = "linux")]
-    fn the_error_names_a_full_device() {
-        let message = write(Path::new("/dev/full"), b"<svg/>")
-            .expect_err("the full device must refuse the write");
-        let message = message.to_string();
-        assert!(
-            message.starts_with("cannot write /dev/full: No space left"),
-            "{message}"
-        );
+    fn the_error_names_only_the_file_in_a_read_only_folder_or_on_a_full_device() {
+        for (path, reason) in [("/proc/self/a.toml", ""), ("/dev/full", "No space left")] {
+            let message = write_error_text(Path::new(path));
+            let start = format!("cannot write {path}: {reason}");
+            assert!(message.starts_with(&start), "{message}");
+            assert!(!message.contains("at path"), "{message}");
+        }
     }
 }

@@ -1,10 +1,27 @@
-//! Rounding and formatting of numbers for human readers.
+//! Rounding and formatting of numbers for human readers, and numbers in a range on the command line.
 
 /// Rounds a value to `decimals` decimal places, for printing. The result is never -0.0.
 pub fn round_to_decimals(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
     // Adding 0.0 turns -0.0 into 0.0.
     (value * scale).round() / scale + 0.0
+}
+
+/// Returns a parser for numbers between `min` and `max`; `unit`, with a space before it, is for the error message.
+pub fn range_parser(
+    min: f64,
+    max: f64,
+    unit: &'static str,
+) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |text| match text.parse::<f64>() {
+        Ok(value) if (min..=max).contains(&value) => Ok(value),
+        _ => Err(format!("must be between {min} and {max}{unit}")),
+    }
+}
+
+/// Formats a number with `decimals` decimal places; a missing number becomes a dash.
+pub fn format_or_dash(value: Option<f64>, decimals: usize) -> String {
+    value.map_or("-".to_owned(), |value| format!("{value:.decimals$}"))
 }
 
 /// Formats a number, with spaces between groups of three digits.

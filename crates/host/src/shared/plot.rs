@@ -128,24 +128,20 @@ impl Plot {
             let column_left = |column: usize| self.x_range.0 + column as f64 * width;
             let cell_colour =
                 |column: usize| colour_at(column_left(column) + width / 2.0, y + height / 2.0);
+            let fills: Vec<_> = (0..cell_counts.0).map(cell_colour).collect();
             let mut first_column = 0;
-            let mut fill = cell_colour(0);
-            for column in 1..=cell_counts.0 {
-                let is_cell = column < cell_counts.0;
-                let next_fill = if is_cell { cell_colour(column) } else { None };
-                if is_cell && next_fill == fill {
-                    continue;
-                }
-                if let Some(fill) = fill {
+            for equal_fills in fills.chunk_by(|fill, next_fill| fill == next_fill) {
+                let end_column = first_column + equal_fills.len();
+                if let Some(fill) = equal_fills[0] {
                     let (left, top) = self.to_page_point(column_left(first_column), y + height);
-                    let (right, bottom) = self.to_page_point(column_left(column), y);
+                    let (right, bottom) = self.to_page_point(column_left(end_column), y);
                     let (band_width, band_height) = (right - left, bottom - top);
                     let _ = write!(
                         outlines.entry(fill).or_default(),
                         "M{left:.1} {top:.1}h{band_width:.1}v{band_height:.1}h-{band_width:.1}z"
                     );
                 }
-                (first_column, fill) = (column, next_fill);
+                first_column = end_column;
             }
         }
         for (fill, outline) in outlines {

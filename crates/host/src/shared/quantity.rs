@@ -1,7 +1,5 @@
 //! The bounds of quantities on the command line. Beyond the bounds, an f64 has too few digits for an accurate result.
 
-use std::fmt;
-
 /// A physical quantity with the largest absolute value allowed on the command line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantity {
@@ -47,26 +45,15 @@ impl Quantity {
 }
 
 /// An error in a number on the command line. The message completes a sentence that begins with the number.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NumberError {
     /// The text is not a number.
+    #[error("is not a number")]
     NotANumber,
     /// The number is infinite, NaN, or too large for an f64.
+    #[error("is not a finite number")]
     NotFinite,
     /// The number is outside the bounds of its quantity.
+    #[error("is not between -{max} and {max} {unit}", max = .0.max, unit = .0.unit)]
     OutOfRange(Quantity),
 }
-
-impl fmt::Display for NumberError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotANumber => f.write_str("is not a number"),
-            Self::NotFinite => f.write_str("is not a finite number"),
-            Self::OutOfRange(Quantity { max, unit }) => {
-                write!(f, "is not between -{max} and {max} {unit}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for NumberError {}

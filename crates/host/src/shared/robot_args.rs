@@ -64,14 +64,10 @@ impl RobotArgs {
     /// # Errors
     /// Fails if the file is missing or is not valid UTF-8, or if the current folder cannot be determined.
     pub(crate) fn text(&self) -> Result<String, Failure> {
-        if let Some(text) = &self.text {
-            return Ok(text.clone());
+        match self.find_source()? {
+            RobotSource::File(path) => files::read_text(&path),
+            RobotSource::Text(text) => Ok(text.to_owned()),
         }
-        let path = match self.find_source()? {
-            RobotSource::File(path) => path,
-            RobotSource::BuiltIn(text) => return Ok(text.to_owned()),
-        };
-        files::read_text(&path)
     }
 
     /// Selects the robot in the file at this path. With `None`, [`RobotArgs::load`] searches for robot.toml.
@@ -84,52 +80,54 @@ impl RobotArgs {
     /// # Errors
     /// Fails if the file is missing or invalid.
     pub fn load(&self) -> Result<Robot, Failure> {
-        if let Some(text) = &self.text {
-            return Ok(Robot::parse(text)?);
-        }
         Ok(match self.find_source()? {
             RobotSource::File(path) => Robot::load(record_input(&path))?,
-            RobotSource::BuiltIn(text) => Robot::parse(text)?,
+            RobotSource::Text(text) => Robot::parse(text)?,
         })
     }
 
-    /// Returns the name of the robot's source, for messages; ignores a text from `from_text`.
+    /// Returns the name of the robot's source, for messages; not for a text from `from_text`.
     ///
     /// # Errors
     /// Fails if the current folder cannot be determined.
     pub fn name(&self) -> Result<String, Failure> {
         Ok(match (self.find_source()?, &self.path) {
             (RobotSource::File(path), _) => path.display().to_string(),
-            (RobotSource::BuiltIn(_), Some(name)) => format!("the robot {}", name.display()),
-            (RobotSource::BuiltIn(_), None) => "the built-in robot.toml".to_owned(),
+            (RobotSource::Text(_), Some(name)) => format!("the robot {}", name.display()),
+            (RobotSource::Text(_), None) => "the built-in robot.toml".to_owned(),
         })
     }
 
     /// Finds the robot's source. A file takes precedence over a built-in robot with the same name. Without `--robot`,
     /// looks for robot.toml in the current folder and the folders above it.
-    fn find_source(&self) -> Result<RobotSource, Failure> {
+    fn find_source(&self) -> Result<RobotSource<'_>, Failure> {
+        if let Some(text) = &self.text {
+            return Ok(RobotSource::Text(text));
+        }
         if let Some(path) = &self.path {
             let built_in = BUILT_IN_ROBOTS
                 .iter()
                 .find(|(name, _)| path.as_os_str() == *name);
             return Ok(match built_in {
-                Some((_, text)) if !path.exists() => RobotSource::BuiltIn(text),
+                Some((_, text)) if !path.exists() => RobotSource::Text(text),
                 _ => RobotSource::File(path.clone()),
             });
         }
-        let folder = current_folder()?;
+        let folder = std::env::current_dir().map_err(|error| {
+            Failure::Operation(format!("cannot determine the current folder: {error}"))
+        })?;
         let mut candidates = folder.ancestors().map(|folder| folder.join("robot.toml"));
         let file = candidates.find(|path| path.is_file());
-        Ok(file.map_or(RobotSource::BuiltIn(DEFAULT_ROBOT_TOML), RobotSource::File))
+        Ok(file.map_or(RobotSource::Text(DEFAULT_ROBOT_TOML), RobotSource::File))
     }
 }
 
 /// The source of a robot.
-enum RobotSource {
+enum RobotSource<'a> {
     /// A file at this path.
     File(PathBuf),
-    /// The text of a built-in robot.
-    BuiltIn(&'static str),
+    /// The robot's text, for example of a built-in robot.
+    Text(&'a str),
 }
 
 /// Finds the gait called `name`.
@@ -161,16 +159,6 @@ pub(crate) fn unknown_gait_failure<'a>(
     let names: Vec<&str> = allowed_gaits.map(CheckedGait::name).collect();
     let (list, suggestion) = (names.join(", "), format_suggestion(name, names));
     Failure::Input(format!("{problem}; allowed values: {list}{suggestion}"))
-}
-
-/// Returns the current folder.
-///
-/// # Errors
-/// Fails if the folder does not exist or is not accessible.
-pub(crate) fn current_folder() -> Result<PathBuf, Failure> {
-    std::env::current_dir().map_err(|error| {
-        Failure::Operation(format!("cannot determine the current folder: {error}"))
-    })
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ const CYCLES_PER_BYTE: u64 = 1400;
 pub enum BoardError {
     /// The firmware cannot be loaded.
     #[error(transparent)]
-    Load(#[from] firmware::ReadError),
+    Load(#[from] Failure),
     /// The first line is not the firmware's banner.
     #[error(
         "expected the banner `# lizard ...` within {BANNER_TIMEOUT_MS} ms of power-on, got {0:?}"
@@ -71,7 +71,7 @@ pub enum BoardError {
 impl From<BoardError> for Failure {
     fn from(error: BoardError) -> Self {
         match error {
-            BoardError::Load(_) => Self::Input(error.to_string()),
+            BoardError::Load(failure) => failure,
             _ => Self::Operation(format!("cannot measure the firmware: {error}")),
         }
     }
@@ -265,11 +265,9 @@ impl SimulatedBoard {
 
     /// Returns the cycles spent so far in the handlers of the vectors that `is_counted` accepts.
     pub fn handler_cycles(&self, is_counted: impl Fn(u8) -> bool) -> u64 {
-        let interrupts = self.uno.interrupt_stats();
-        let counted_interrupts = interrupts
-            .iter()
-            .filter(|interrupt| is_counted(interrupt.vector));
-        counted_interrupts.map(|interrupt| interrupt.cycles).sum()
+        let mut interrupts = self.uno.interrupt_stats();
+        interrupts.retain(|interrupt| is_counted(interrupt.vector));
+        interrupts.iter().map(|interrupt| interrupt.cycles).sum()
     }
 
     /// Returns the start cycle of A1's first pulse in the recorded edges.
@@ -291,11 +289,10 @@ impl SimulatedBoard {
         let current_cycle = self.uno.cycle();
         self.frame_anchor =
             latest_frame_start(&self.uno.edges(), self.pins[0]).or(self.frame_anchor);
-        let start = self
-            .frame_anchor
-            .map_or(current_cycle + FRAME_CYCLES, |anchor| {
-                next_start(anchor, current_cycle)
-            });
+        let start = match self.frame_anchor {
+            Some(anchor) => next_start(anchor, current_cycle),
+            None => current_cycle + FRAME_CYCLES,
+        };
         self.run_until(first_cycle(start))?;
         self.uno.take_edges();
         self.run_until(first_cycle(start + count * FRAME_CYCLES))?;

@@ -26,24 +26,18 @@ pub fn add_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
     }
     let mut text = text.to_owned();
     for name in ["button", "nose"] {
-        if robot
-            .inputs()
-            .named_pins()
-            .any(|(input_name, _)| input_name == name)
-        {
+        let mut inputs = robot.inputs().named_pins();
+        if inputs.any(|(input_name, _)| input_name == name) {
             continue;
         }
         let add_input = |pin: &str| format!("{text}\n[input.{name}]\npin = \"{pin}\"\n");
-        let free_pin = CANDIDATE_PINS
-            .iter()
-            .find(|pin| Robot::parse(&add_input(pin)).is_ok());
+        let mut pins = CANDIDATE_PINS.iter();
+        let free_pin = pins.find(|pin| Robot::parse(&add_input(pin)).is_ok());
         // If no pin is free, the occupied first pin is used, so that the last `parse` reports the error.
         text = add_input(free_pin.unwrap_or(&CANDIDATE_PINS[0]));
     }
-    let gaits: Vec<String> = gait_choice::list_moving_gaits(&robot)
-        .iter()
-        .map(|name| to_command(name))
-        .collect();
+    let gaits = gait_choice::list_moving_gaits(&robot).into_iter();
+    let gaits: Vec<String> = gaits.map(to_command).collect();
     let first_gait = gaits.first().map_or("stand 1 s", String::as_str);
     let mut steps = vec!["wait button".to_owned(), format!("{first_gait} until nose")];
     let other_gaits = gaits.iter().skip(1).take(MAX_OTHER_GAITS);

@@ -5,7 +5,7 @@ use std::path::Path;
 use lizard_parts::Trajectory;
 use lizard_robot::Robot;
 use lizard_twin::FRAME_PERIOD_S;
-use simulated_uno::{CYCLES_PER_US, Fidelity, Uno};
+use simulated_uno::CYCLES_PER_US;
 
 use crate::shared::firmware;
 use crate::shared::robot_args::find_moving_gait;
@@ -26,9 +26,8 @@ pub fn record(
 ) -> Result<Trajectory, Failure> {
     let gait = find_moving_gait(robot, gait)?;
     let image = firmware::select_firmware(elf, robot_args, robot)?.image;
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     let script = twin::build_walk_script(robot, &[gait.name()]);
-    let recording = twin::record(&mut uno, robot, &script)?;
+    let recording = twin::record(image, robot, &script)?;
     let log = &recording.frames;
     let stop_ms = script.steps.last().map_or(script.end_ms, |step| step.ms);
     let end_s = log.index_at(stop_ms as f64 / 1000.0) as f64 * FRAME_PERIOD_S;
@@ -64,21 +63,16 @@ mod tests {
     #[test]
     fn a_servo_without_a_pulse_keeps_its_previous_target() {
         let robot = crate::shared::robot_args::built_in_robot("unequal");
-        let log = FrameLog {
-            widths: vec![
-                [0; 4],
-                [1470 * 16, 1535 * 16, 0, 0],
-                [1562 * 16, 0, 1500 * 16, 0],
-            ],
-            ..FrameLog::default()
-        };
+        let widths = [
+            [0; 4],
+            [1470 * 16, 1535 * 16, 0, 0],
+            [1562 * 16, 0, 1500 * 16, 0],
+        ];
+        let log = FrameLog::new(0, widths.to_vec());
         let sweeps = compute_target_sweeps(&robot, &log);
-        assert_eq!(sweeps[0], [0.0; 4]);
-        assert_eq!(sweeps[1], [0.0; 4]);
-        assert!(
-            (sweeps[2][0] - 10.0).abs() < 1e-9,
-            "92 us are 10 deg: {sweeps:?}"
-        );
+        assert_eq!(sweeps[..2], [[0.0; 4]; 2]);
+        let error = (sweeps[2][0] - 10.0).abs();
+        assert!(error < 1e-9, "92 us are 10 deg: {sweeps:?}");
         assert_eq!(sweeps[2][1..], [0.0; 3]);
     }
 }

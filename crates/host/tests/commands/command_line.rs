@@ -4,12 +4,23 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::program::{
-    assert_contains, read_cases, repo_root, run, run_command, run_line, run_line_in, scratch_folder,
+    assert_contains, expect_refusals, repo_root, run, run_command, run_line_in, scratch_folder,
 };
 
 fn run_successfully(arguments: &[&str]) -> String {
     run(arguments).expect_success()
 }
+
+/// The headings of `lizard --help`. Commands are under the first five, without those for scripts and development.
+const HEADINGS: [&str; 7] = [
+    "Drive the robot",
+    "Simulate it",
+    "Build it",
+    "Change its gaits and dimensions",
+    "The paper, computed",
+    "For scripts and development",
+    "Options",
+];
 
 /// Returns the first words of the lines under a heading of `lizard --help`.
 fn find_first_words(help: &str, heading: &str) -> Vec<String> {
@@ -22,20 +33,11 @@ fn find_first_words(help: &str, heading: &str) -> Vec<String> {
 #[test]
 fn help_groups_all_commands_by_purpose() {
     let help = run_successfully(&["--help"]);
-    let headings = [
-        "Drive the robot",
-        "Simulate it",
-        "Build it",
-        "Change its gaits and dimensions",
-        "The paper, computed",
-        "For scripts and development",
-        "Options",
-    ];
-    let positions = headings.map(|heading| help.find(&format!("\n{heading}:\n")).expect(heading));
+    let positions = HEADINGS.map(|heading| help.find(&format!("\n{heading}:\n")).expect(heading));
     assert!(positions.is_sorted(), "{help}");
     assert!(help.contains("\n  merge, completions\n"), "{help}");
     let count_commands = |heading: &&str| find_first_words(&help, heading).len();
-    let command_count: usize = headings[..5].iter().map(count_commands).sum();
+    let command_count: usize = HEADINGS[..5].iter().map(count_commands).sum();
     // Two more commands, `merge` and `completions`, are for scripts.
     assert!(command_count + 2 <= 20, "{help}");
     assert!(find_first_words(&help, "Drive the robot").contains(&"console".to_owned()));
@@ -70,10 +72,8 @@ fn a_deprecated_command_prints_the_same_output_and_names_the_new_command() {
     ] {
         let [old, new] = [old, new].map(|line| run_line_in(scratch_folder(), line));
         assert!(old.stdout == new.stdout, "{old:?}");
-        assert_contains(
-            &old.stderr,
-            "` is deprecated and will be removed in the next version; use `lizard ",
-        );
+        let advice = "` is deprecated and will be removed in the next version; use `lizard ";
+        assert_contains(&old.stderr, advice);
         assert_eq!(new.stderr, "");
     }
     run(&["spring", "--wire", "0.6"])
@@ -84,18 +84,17 @@ fn a_deprecated_command_prints_the_same_output_and_names_the_new_command() {
 fn a_message_about_a_very_long_word_shows_only_its_start() {
     let long_word = "x".repeat(20_000);
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let robot = folder.path().join("x.toml");
-    std::fs::write(&robot, format!("name = {long_word}\n")).expect("the file is written");
-    let robot = robot.display().to_string();
-    for arguments in [
-        &[long_word.as_str()][..],
-        &["gaits", "--robot", &long_word],
-        &["gaits", "--robot", &robot],
-        &["sim", "--gait", &long_word],
-        &["draw", "--theta1", &long_word],
-        &["calibrate", "restore", &long_word],
+    let robot_text = format!("name = {long_word}\n");
+    std::fs::write(folder.path().join("x.toml"), robot_text).expect("the file is written");
+    for line in [
+        long_word.as_str(),
+        &format!("gaits --robot {long_word}"),
+        "gaits --robot x.toml",
+        &format!("sim --gait {long_word}"),
+        &format!("draw --theta1 {long_word}"),
+        &format!("calibrate restore {long_word}"),
     ] {
-        let error = run(arguments).expect_refusal();
+        let error = run_line_in(folder.path(), line).expect_refusal();
         assert!(error.contains("xxx [..."), "{error}");
         assert!(error.len() < 2500, "{} bytes: {error}", error.len());
     }
@@ -113,9 +112,7 @@ fn the_refusal_of_a_mistyped_word_suggests_the_correct_word() {
         tune --gait wakl --robot robots/paper.toml => ; did you mean `walk`?
         gaits --trace arc-lfet --robot robots/paper.toml => ; did you mean `arc-left`?
     ";
-    for (line, expected) in read_cases(cases) {
-        run_line(line, "").expect_refusal_with(expected);
-    }
+    expect_refusals(&repo_root(), cases);
 }
 
 /// Runs the completion script in bash without bash's own completions; returns the completions of the word at `index`.
@@ -171,28 +168,22 @@ fn every_command_has_a_manual_page_that_names_its_options() {
     run_successfully(&["completions", "man", &pages.display().to_string()]);
     let help = run_successfully(&["--help"]);
     let mut page_count = 0;
-    for heading in [
-        "Drive the robot",
-        "Simulate it",
-        "Build it",
-        "The paper, computed",
-    ] {
-        for name in find_first_words(&help, heading) {
-            let page = std::fs::read_to_string(pages.join(format!("lizard-{name}.1")));
-            let page = page.expect("the manual page is readable");
-            assert!(page.contains(&format!(".TH lizard-{name} 1")), "{page}");
-            // In a manual page, a literal hyphen is written `\-`.
-            assert!(page.contains(r"\-\-help"), "{page}");
-            page_count += 1;
-        }
+    let headings = HEADINGS[..5].iter();
+    for name in headings.flat_map(|heading| find_first_words(&help, heading)) {
+        let page = std::fs::read_to_string(pages.join(format!("lizard-{name}.1")));
+        let page = page.expect("the manual page is readable");
+        assert_contains(&page, &format!(".TH lizard-{name} 1"));
+        // In a manual page, a literal hyphen is written `\-`.
+        assert_contains(&page, r"\-\-help");
+        page_count += 1;
     }
+    assert!(page_count > 17, "{page_count} pages");
     for subcommand in ["calibrate-backup", "flash-image", "sim-bench"] {
         let page = pages.join(format!("lizard-{subcommand}.1"));
         assert!(page.is_file(), "{subcommand}");
     }
-    assert!(page_count > 13, "{page_count} pages");
     let main_page = std::fs::read_to_string(pages.join("lizard.1")).expect("the file is readable");
-    assert!(main_page.contains("lizard\\-console(1)"), "{main_page}");
+    assert_contains(&main_page, "lizard\\-console(1)");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use lizard_robot::Robot;
 
-use crate::program::{assert_contains, robot_path, run_line_in};
+use crate::program::{assert_contains, expect_refusals, robot_path, run_line_in};
 
 /// An image of 20 bytes, as avr-objcopy writes it.
 const HEX: &str = "\
@@ -21,10 +21,12 @@ const BOOT_LOADER_START: usize = 0x7e00;
 #[test]
 fn flash_without_built_firmware_fails_only_because_the_port_is_missing() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    for options in ["", "--only-robot", "--robot large"] {
-        let line = format!("flash /dev/no-such-port {options}");
-        run_line_in(folder.path(), &line).expect_refusal_with("no-such-port");
-    }
+    let cases = "
+        flash /dev/no-such-port => no-such-port
+        flash /dev/no-such-port --only-robot => no-such-port
+        flash /dev/no-such-port --robot large => no-such-port
+    ";
+    expect_refusals(folder.path(), cases);
 }
 
 #[test]
@@ -77,8 +79,8 @@ fn flash_image_prints_its_summary_as_json() {
 fn flash_image_refuses_an_invalid_robot_and_writes_no_file() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     fs::write(folder.path().join("x.toml"), "[servo]\n").expect("the file is written");
-    let line = "flash image --robot x.toml --output x.hex";
-    run_line_in(folder.path(), line).expect_refusal_with("x.toml");
+    run_line_in(folder.path(), "flash image --robot x.toml --output x.hex")
+        .expect_refusal_with("x.toml");
     assert!(!folder.path().join("x.hex").exists());
 }
 
@@ -87,23 +89,19 @@ fn flash_image_refuses_an_invalid_robot_and_writes_no_file() {
 fn the_refusal_of_a_missing_port_names_the_port() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     fs::write(folder.path().join("a.hex"), HEX).expect("the file is written");
-    let line = "flash /dev/no-such-port --image a.hex";
-    let message = run_line_in(folder.path(), line).expect_refusal();
-    let expected_start =
-        "lizard: /dev/no-such-port does not exist; USB serial ports of this machine: ";
-    assert!(message.starts_with(expected_start), "{message}");
+    run_line_in(folder.path(), "flash /dev/no-such-port --image a.hex").expect_refusal_with(
+        "lizard: /dev/no-such-port does not exist; USB serial ports of this machine: ...",
+    );
 }
 
 #[test]
 fn an_invalid_image_is_refused_before_a_port_is_opened() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     fs::write(folder.path().join("partial.hex"), &HEX[..60]).expect("the file is written");
-    let command = "flash /dev/no-such-port --image partial.hex";
-    let message = run_line_in(folder.path(), command).expect_refusal();
-    let expected_start = "lizard: partial.hex: line 2 is not Intel HEX";
-    assert!(message.starts_with(expected_start), "{message}");
-    for conflicting_options in ["--robot robot.toml", "--only-robot"] {
-        let line = format!("{command} {conflicting_options}");
-        run_line_in(folder.path(), &line).expect_refusal_with("cannot be used with");
-    }
+    let cases = "
+        flash /dev/no-such-port --image partial.hex => lizard: partial.hex: line 2 is not Intel HEX...
+        flash /dev/no-such-port --image partial.hex --robot robot.toml => cannot be used with
+        flash /dev/no-such-port --image partial.hex --only-robot => cannot be used with
+    ";
+    expect_refusals(folder.path(), cases);
 }

@@ -1,7 +1,7 @@
 //! Tests of long computations that are split into parts: independent processes compute the parts, and `lizard merge`
 //! prints the output of a single process. `make parallel-test` repeats this with GNU parallel and longer commands.
 
-use crate::program::{run_line, with_paper};
+use crate::program::{expect_refusals, repo_root, run_line, with_paper};
 
 /// Computes all parts and returns their output, the last part first.
 fn compute_parts(arguments: &str, part_count: usize) -> String {
@@ -35,27 +35,30 @@ fn merge_refuses_parts_that_are_not_one_complete_computation() {
     let (last_part, first_part) = parts.split_once('\n').expect("the parts are two lines");
     let merge_with_last_part =
         |other_part: &str| run_line("merge", format!("{last_part}\n{other_part}"));
-    let refusal = merge_with_last_part("").expect_refusal();
-    assert_eq!(refusal, "lizard: part 1/2 is missing");
+    merge_with_last_part("").expect_refusal_with("lizard: part 1/2 is missing");
     let other_robot = "design --search --step 0.1 --robot robots/unequal.toml --part 1/2";
     let other_robot = run_line(other_robot, "").expect_success();
-    let refusal = merge_with_last_part(&other_robot).expect_refusal();
-    let expected = "lizard: part 1/2 has a different robot from another part";
-    assert_eq!(refusal, expected);
+    merge_with_last_part(&other_robot)
+        .expect_refusal_with("lizard: part 1/2 has a different robot from another part");
     let other_step = with_paper("design --search --step 0.2 --part 1/2");
     let other_step = run_line(&other_step, "").expect_success();
     merge_with_last_part(&other_step).expect_refusal_with("different options");
     // A killed job leaves a partial line.
     let partial_line = &first_part[..first_part.len() / 2];
-    let refusal = merge_with_last_part(partial_line).expect_refusal();
-    let expected = "lizard: standard input: line 2 is not a part: ";
-    assert!(refusal.starts_with(expected), "{refusal}");
-    run_line("merge", "").expect_refusal_with("no parts given");
-    run_line("merge no-such-part", "").expect_refusal_with("cannot read no-such-part: ");
+    merge_with_last_part(partial_line)
+        .expect_refusal_with("lizard: standard input: line 2 is not a part: ...");
+    let cases = "
+        merge => no parts given
+        merge no-such-part => lizard: cannot read no-such-part: ...
+    ";
+    expect_refusals(&repo_root(), cases);
 }
 
 #[test]
 fn the_option_part_needs_a_valid_number_and_a_command_that_can_be_split() {
-    run_line("prove --part 3/2", "").expect_refusal_with("expected K/N with K from 1 to N");
-    run_line(&with_paper("design --part 1/2"), "").expect_refusal_with("--part requires --search");
+    let cases = "
+        prove --part 3/2 => expected K/N with K from 1 to N
+        design --part 1/2 --robot robots/paper.toml => --part requires --search
+    ";
+    expect_refusals(&repo_root(), cases);
 }

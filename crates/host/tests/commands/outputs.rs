@@ -71,9 +71,8 @@ fn new_writes_a_valid_robot_file_and_replaces_no_file() {
     }
     run_line_in(folder_path, "gaits --robot my.toml").expect_success();
     fs::write(&file, "mine").expect("the file is written");
-    let refusal = run_line_in(folder_path, "new my.toml").expect_refusal();
-    let expected = "lizard: my.toml already exists; choose another name";
-    assert_eq!(refusal, expected);
+    run_line_in(folder_path, "new my.toml")
+        .expect_refusal_with("lizard: my.toml already exists; choose another name");
     let current_text = fs::read_to_string(&file).expect("the file is readable");
     assert_eq!(current_text, "mine");
     let outcome = run_line_in(folder_path, "new no/folder/my.toml");

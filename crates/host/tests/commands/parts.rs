@@ -3,31 +3,31 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::program::{Outcome, assert_contains, read_file, robot_path, run, scratch_folder};
+use crate::program::{Outcome, TemporaryRobot, assert_contains, run_line_in, scratch_folder};
 
-fn make_parts(folder: &Path, arguments: &[&str]) -> Outcome {
-    let folder = folder.display().to_string();
-    run(&[&["parts", &folder], arguments].concat())
-}
-
-/// Returns a path at which no folder exists.
-fn unused_path(name: &str) -> PathBuf {
+/// Runs `lizard parts` with a folder that does not exist; returns the folder's path.
+fn make_parts(name: &str, options: &str) -> (PathBuf, Outcome) {
     let folder = scratch_folder().join(name);
     let _ = fs::remove_dir_all(&folder);
-    folder
+    let outcome = run_line_in(scratch_folder(), &format!("parts {name} {options}"));
+    (folder, outcome)
 }
 
-/// Writes a changed copy of the paper's robot file; returns its path.
-fn write_changed_paper(name: &str, change: impl Fn(String) -> String) -> String {
-    let file = scratch_folder().join(name);
-    fs::write(&file, change(read_file("robots/paper.toml"))).expect("the file is written");
-    file.display().to_string()
+/// Runs `lizard parts` with the paper's robot, which gets additional tables.
+fn make_parts_with_tables(name: &str, tables: &str) -> (PathBuf, Outcome) {
+    let tables = format!("{tables}\n[limits]");
+    let robot = TemporaryRobot::from_paper(name, &[("[limits]", &tables)]);
+    make_parts(name, &robot.add_option(""))
+}
+
+fn read_guide(folder: &Path) -> String {
+    fs::read_to_string(folder.join("guide/guide.md")).expect("the file is readable")
 }
 
 #[test]
 fn parts_writes_all_files_needed_to_build_the_robot() {
-    let folder = unused_path("parts-all");
-    make_parts(&folder, &["--robot", &robot_path("paper")]).expect_success();
+    let (folder, outcome) = make_parts("parts-all", "--robot paper");
+    outcome.expect_success();
     for file in [
         "step/plate.step",
         "stl/link-A1-A3.stl",
@@ -47,7 +47,7 @@ fn parts_writes_all_files_needed_to_build_the_robot() {
     ] {
         assert!(folder.join(file).is_file(), "{file}");
     }
-    let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("the file is readable");
+    let guide = read_guide(&folder);
     assert_contains(&guide, "## 9. Struts\n");
     assert_contains(&guide, ", print 4 x strut,");
     assert_contains(&guide, " g each, instead of the struts.");
@@ -63,9 +63,8 @@ fn parts_writes_all_files_needed_to_build_the_robot() {
 
 #[test]
 fn the_option_corner_writes_only_the_parts_of_one_corner() {
-    let folder = unused_path("parts-corner");
-    let options = ["--robot", &robot_path("paper"), "--corner", "--json"];
-    let list = make_parts(&folder, &options).expect_json();
+    let (folder, outcome) = make_parts("parts-corner", "--robot paper --corner --json");
+    let list = outcome.expect_json();
     let list = list.as_array().expect("the value is an array");
     let names = list.iter().filter_map(|part| part["part"].as_str());
     let names: Vec<_> = names.collect();
@@ -82,28 +81,24 @@ fn the_option_corner_writes_only_the_parts_of_one_corner() {
 
 #[test]
 fn a_wrong_mass_is_reported_with_the_correct_mass() {
-    let lighten = |text: String| text.replace("mass = 435.0", "mass = 280.0");
-    let light_robot = write_changed_paper("light.toml", lighten);
-    let make_summary =
-        |robot: &str| make_parts(&unused_path("parts-light"), &["--robot", robot]).expect_success();
-    let light_summary = make_summary(&light_robot);
+    let make_summary = |options: &str| make_parts("parts-light", options).1.expect_success();
+    let light_robot = TemporaryRobot::from_paper("light", &[("mass = 435.0", "mass = 280.0")]);
+    let light_summary = make_summary(&light_robot.add_option(""));
     assert_contains(&light_summary, "The parts weigh 435 g");
     let advice = "\n[body]\nmass = 435.0\n";
     assert!(light_summary.ends_with(advice), "{light_summary}");
-    assert_eq!(make_summary(&robot_path("paper")).lines().count(), 1);
+    assert_eq!(make_summary("--robot paper").lines().count(), 1);
 }
 
 #[test]
 fn parts_for_struts_with_springs_include_rigid_struts() {
-    let folder = unused_path("parts-strut");
-    let robot = write_changed_paper("strut.toml", |text| {
-        text + "\n[leg.drive]\nkind = \"strut\"\nforce = 4.0\nrate = 0.4\n"
-    });
-    make_parts(&folder, &["--robot", &robot]).expect_success();
+    let strut = "[leg.drive]\nkind = \"strut\"\nforce = 4.0\nrate = 0.4";
+    let (folder, outcome) = make_parts_with_tables("parts-strut", strut);
+    outcome.expect_success();
     for file in "stl/rigid-strut.stl cut/rigid-strut.dxf stl/strut.stl".split(' ') {
         assert!(folder.join(file).is_file(), "{file}");
     }
-    let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("the file is readable");
+    let guide = read_guide(&folder);
     for phrase in [
         "## 9. Struts and springs",
         ", print 4 x rigid strut,",
@@ -119,9 +114,7 @@ fn parts_for_struts_with_springs_include_rigid_struts() {
 
 #[test]
 fn parts_refuses_a_robot_whose_parts_overlap_and_writes_no_file() {
-    let folder = unused_path("parts-refused");
-    let robot = write_changed_paper("wide.toml", |text| text + "\n[parts]\nbar = 24.0\n");
-    let outcome = make_parts(&folder, &["--robot", &robot]);
+    let (folder, outcome) = make_parts_with_tables("parts-refused", "[parts]\nbar = 24.0");
     assert_eq!(outcome.code, Some(1));
     let message = outcome.stderr;
     for part in [" overlap by ", " at pose "] {

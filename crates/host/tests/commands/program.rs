@@ -41,11 +41,26 @@ impl Outcome {
         self.stderr.trim().to_owned()
     }
 
-    /// Checks that the run refused its input with a message that contains `expected`.
+    /// Checks that the run refused its input with a message that contains `expected`. If `expected` begins with
+    /// `lizard: ` or contains `...`, which stands for any text, it is the complete message.
     #[track_caller]
     pub fn expect_refusal_with(self, expected: &str) {
-        assert_contains(&self.expect_refusal(), expected);
+        assert_refusal(&self.expect_refusal(), expected, "refusal");
     }
+}
+
+/// Checks the message of a refusal: see [`Outcome::expect_refusal_with`].
+#[track_caller]
+fn assert_refusal(message: &str, expected: &str, case_name: &str) {
+    let is_expected = match expected.split_once("...") {
+        Some((start, end)) => message.starts_with(start) && message.ends_with(end),
+        None if expected.starts_with("lizard: ") => message == expected,
+        None => message.contains(expected),
+    };
+    assert!(
+        is_expected,
+        "{case_name}: expected {expected:?}, got: {message}"
+    );
 }
 
 /// Checks that `text` contains `expected`.
@@ -61,6 +76,17 @@ pub fn assert_contains(text: &str, expected: &str) {
 pub fn read_cases(table: &str) -> impl Iterator<Item = (&str, &str)> {
     let lines = table.trim().lines().map(str::trim_start);
     lines.map(|line| line.split_once(" => ").expect(line))
+}
+
+/// Runs the command lines of a table in a folder; checks that each is refused with its message: see
+/// [`Outcome::expect_refusal_with`].
+#[track_caller]
+pub fn expect_refusals(folder: &Path, table: &str) {
+    for (line, expected) in read_cases(table) {
+        let outcome = run_line_in(folder, line);
+        assert_eq!(outcome.code, Some(2), "{line}: {}", outcome.stderr);
+        assert_refusal(&outcome.expect_refusal(), expected, line);
+    }
 }
 
 /// Creates an empty folder in the scratch folder.
@@ -148,24 +174,25 @@ impl Drop for TemporaryRobot {
 
 /// Runs a command line in the repository's root with the given standard input.
 pub fn run_line(line: &str, input: impl AsRef<[u8]>) -> Outcome {
-    let arguments: Vec<&str> = line.split_whitespace().collect();
-    run_in(&repo_root(), &arguments, input)
+    run_in(&repo_root(), line, input)
 }
 
 /// Runs a command line in a folder without standard input.
 pub fn run_line_in(folder: &Path, line: &str) -> Outcome {
-    run_in(folder, &line.split_whitespace().collect::<Vec<_>>(), "")
+    run_in(folder, line, "")
+}
+
+/// Runs a command line in a folder with the given standard input.
+fn run_in(folder: &Path, line: &str, input: impl AsRef<[u8]>) -> Outcome {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
+    command.args(line.split_whitespace()).current_dir(folder);
+    run_command(&mut command, input)
 }
 
 /// Runs the program in the scratch folder without standard input.
 pub fn run(arguments: &[&str]) -> Outcome {
-    run_in(scratch_folder(), arguments, "")
-}
-
-/// Runs the program in a folder with the given standard input.
-pub fn run_in(folder: &Path, arguments: &[&str], input: impl AsRef<[u8]>) -> Outcome {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
-    run_command(command.args(arguments).current_dir(folder), input)
+    run_command(command.args(arguments).current_dir(scratch_folder()), "")
 }
 
 /// Runs a command with the given standard input.

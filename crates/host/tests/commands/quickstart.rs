@@ -28,13 +28,12 @@ fn every_example_line_of_the_quickstart_gets_the_answer_on_the_page() {
     for block in page.split("```text\n").skip(1) {
         let block = block.split("```").next().expect("the block has a text");
         for exchange in block.split("> ").skip(1) {
-            let mut page_lines = exchange.lines();
-            let line = page_lines.next().expect("a line follows the prompt");
-            let page_lines: Vec<&str> = page_lines.collect();
+            let lines: Vec<&str> = exchange.lines().collect();
+            let (line, page_lines) = lines.split_first().expect("a line follows the prompt");
             let mut answer = board.send(format!("{line}\r").as_bytes());
             // After 100 frames, all motion has ended.
             answer.extend(board.run_frames(100));
-            let mut line_pairs = answer.iter().zip(&page_lines);
+            let mut line_pairs = answer.iter().zip(page_lines);
             let is_as_shown = answer.len() == page_lines.len()
                 && line_pairs.all(|(answer, page_line)| matches_page(answer, page_line));
             assert!(
@@ -49,10 +48,8 @@ fn every_example_line_of_the_quickstart_gets_the_answer_on_the_page() {
 
 #[test]
 fn the_firmware_prints_every_message_of_the_troubleshooting_table() {
-    let (page, messages) = (
-        read_file("docs/quickstart.md"),
-        read_file("crates/core/src/console/text.rs"),
-    );
+    let page = read_file("docs/quickstart.md");
+    let messages = read_file("crates/core/src/console/text.rs");
     let table = page.split_once("## Troubleshooting");
     let (_, table) = table.expect("the page has a troubleshooting table");
     let mut codes = [false; 10];

@@ -2,24 +2,25 @@
 
 use lizard_time_limit::TIME_LIMIT;
 
-use crate::fixture::{Uno, find_moving_gait, run};
+use crate::fixture::{Uno, find_moving_gait, run_unchecked};
 
 #[test]
 fn the_robot_stops_after_a_script_by_radio_since_the_script_uses_deadman() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let uno = Uno::start_by_radio(folder.path());
+    let uno = Uno::start_by_radio(&folder);
+    let command = format!("console {}", uno.port());
     // The radio loses lines, so the script is repeated until all answers have arrived.
     let send_script = |lines: &str, expected: &[&str]| {
         let mut text = String::new();
         TIME_LIMIT.wait_for("all answers to the script", || {
             // The sleep is longer than the `deadman` time, so that the robot stops.
             std::thread::sleep(std::time::Duration::from_millis(1_500));
-            text = run(folder.path(), &["console", &uno.port()], lines).0;
+            (text, ..) = run_unchecked(&folder, &command, lines);
             expected.iter().all(|answer| text.contains(answer))
         });
         text
     };
-    let gait = find_moving_gait(folder.path());
+    let gait = find_moving_gait(&folder);
     let accepted = format!("ok {gait}");
     send_script(
         &format!("stand\n{gait}\ncal\n"),

@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, TryRecvError};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -12,6 +12,7 @@ use std::time::Duration;
 use lizard_time_limit::TIME_LIMIT;
 use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
 use rustix::termios::{Winsize, tcsetwinsize};
+use tempfile::TempDir;
 
 /// Returns the path of the simulated board's robot file, as in the other tests: `LIZARD_ROBOT` (relative to the
 /// repository's root) or robot.toml.
@@ -22,36 +23,44 @@ fn robot_path() -> PathBuf {
 }
 
 /// Prepares a run of `lizard`, with the robot under test if the board is simulated.
-pub fn lizard_command(folder: &Path, arguments: &[&str]) -> Command {
+pub fn lizard_command(folder: &TempDir, line: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
-    command.args(arguments);
-    if arguments.iter().any(|word| ["sim", "--sim"].contains(word)) {
+    let mut words = line.split_whitespace();
+    command.args(words.clone());
+    if words.any(|word| ["sim", "--sim"].contains(&word)) {
         command.arg("--robot").arg(robot_path());
     }
-    command
-        .current_dir(folder)
-        .env("XDG_STATE_HOME", folder)
-        .env("TERM", "xterm");
+    command.current_dir(folder).env("TERM", "xterm");
+    command.env("XDG_STATE_HOME", folder.path());
     command
 }
 
-/// Runs `lizard`; returns standard output, standard error and the exit code.
-pub fn run(folder: &Path, arguments: &[&str], input: &str) -> (String, String, Option<i32>) {
-    let Output {
-        status,
-        stdout,
-        stderr,
-    } = TIME_LIMIT
-        .run_command(&mut lizard_command(folder, arguments), input.as_bytes())
-        .expect("the program ends");
+/// Runs a command line of `lizard`; returns standard output, standard error and the exit code.
+pub fn run_unchecked(folder: &TempDir, line: &str, input: &str) -> (String, String, Option<i32>) {
+    let output = TIME_LIMIT.run_command(&mut lizard_command(folder, line), input.as_bytes());
+    let output = output.expect("the program ends");
     let [stdout, stderr] =
-        [stdout, stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
-    (stdout, stderr, status.code())
+        [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+    (stdout, stderr, output.status.code())
+}
+
+/// Runs a command line of `lizard`, and checks its exit code; returns standard output and standard error.
+#[track_caller]
+pub fn run(folder: &TempDir, line: &str, input: &str, expected_code: i32) -> (String, String) {
+    let (stdout, stderr, code) = run_unchecked(folder, line, input);
+    assert_eq!(code, Some(expected_code), "{line}: {stderr}");
+    (stdout, stderr)
+}
+
+/// Waits until a program exits.
+pub fn wait_for_exit(child: &mut Child) -> ExitStatus {
+    let status = TIME_LIMIT.wait_for_exit(child);
+    status.expect("the program exits")
 }
 
 /// Returns the first gait of the robot under test that moves.
-pub fn find_moving_gait(folder: &Path) -> String {
-    let help = run(folder, &["console", "--sim"], "help\n").0;
+pub fn find_moving_gait(folder: &TempDir) -> String {
+    let (help, ..) = run_unchecked(folder, "console --sim", "help\n");
     let mut lines = help.lines();
     let gaits = lines.find_map(|line| line.strip_prefix("# gaits: "));
     let gait = gaits.and_then(|names| names.split('|').find(|name| *name != "stand"));
@@ -65,22 +74,21 @@ pub struct Uno {
 }
 
 impl Uno {
-    pub fn start(folder: &Path) -> Self {
-        Self::start_with(folder, &[])
+    pub fn start(folder: &TempDir) -> Self {
+        Self::start_with(folder, "")
     }
 
     /// Starts a board behind a radio module, which sometimes loses a packet.
-    pub fn start_by_radio(folder: &Path) -> Self {
-        Self::start_with(folder, &["--radio", "115200"])
+    pub fn start_by_radio(folder: &TempDir) -> Self {
+        Self::start_with(folder, "--radio 115200")
     }
 
-    fn start_with(folder: &Path, options: &[&str]) -> Self {
-        let link = folder.join("uno");
-        let name = link.display().to_string();
-        let child = lizard_command(folder, &[&["sim", "--pty", &name], options].concat())
-            .stdout(Stdio::null())
-            .spawn()
-            .expect("the program starts");
+    fn start_with(folder: &TempDir, options: &str) -> Self {
+        let link = folder.path().join("uno");
+        let line = format!("sim --pty {} {options}", link.display());
+        let mut command = lizard_command(folder, &line);
+        let child = command.stdout(Stdio::null()).spawn();
+        let child = child.expect("the program starts");
         let mut uno = Self { child, link };
         TIME_LIMIT.wait_for("a board of `lizard sim --pty`, or its end", || {
             uno.link.exists() || uno.has_ended()
@@ -123,7 +131,7 @@ pub fn open_terminal() -> (File, OwnedFd, PathBuf) {
 
 /// Starts `lizard` in its own pseudo terminal, 100 columns wide; returns the test's side of the terminal and the
 /// program.
-pub fn spawn_in_terminal(folder: &Path, arguments: &[&str]) -> (File, Child) {
+pub fn spawn_in_terminal(folder: &TempDir, line: &str) -> (File, Child) {
     let (test_side, program_side, _) = open_terminal();
     let size = Winsize {
         ws_row: 30,
@@ -133,7 +141,7 @@ pub fn spawn_in_terminal(folder: &Path, arguments: &[&str]) -> (File, Child) {
     };
     tcsetwinsize(&program_side, size).expect("the size is set");
     let copy_stdio = || Stdio::from(program_side.try_clone().expect("the clone succeeds"));
-    let child = lizard_command(folder, arguments)
+    let child = lizard_command(folder, line)
         .stdin(copy_stdio())
         .stdout(copy_stdio())
         .stderr(copy_stdio())
@@ -151,8 +159,8 @@ pub struct TerminalSession {
 }
 
 impl TerminalSession {
-    pub fn start(folder: &Path, arguments: &[&str]) -> Self {
-        let (test_side, child) = spawn_in_terminal(folder, arguments);
+    pub fn start(folder: &TempDir, line: &str) -> Self {
+        let (test_side, child) = spawn_in_terminal(folder, line);
         let mut screen_reader = test_side.try_clone().expect("the clone succeeds");
         let (sender, receiver) = mpsc::channel();
         std::thread::spawn(move || {
@@ -174,6 +182,12 @@ impl TerminalSession {
     /// Types keys into the terminal.
     pub fn press(&mut self, keys: &str) {
         self.keys.write_all(keys.as_bytes()).expect("keys are sent");
+    }
+
+    /// Types keys, and waits until the program prints `expected`.
+    pub fn press_and_wait(&mut self, keys: &str, expected: &str) {
+        self.press(keys);
+        self.wait_for(expected);
     }
 
     /// Reads the output so far; returns true once the program has closed the terminal.
@@ -206,10 +220,7 @@ impl TerminalSession {
 
     /// Waits for the program to exit, and returns the exit code.
     pub fn wait_for_exit(mut self) -> Option<i32> {
-        TIME_LIMIT
-            .wait_for_exit(&mut self.child)
-            .expect("the program exits")
-            .code()
+        wait_for_exit(&mut self.child).code()
     }
 }
 
@@ -233,9 +244,8 @@ impl Device {
                 act(&mut test_side);
             }
         });
-        let port = path.display().to_string();
         Self {
-            port,
+            port: path.display().to_string(),
             stop_sender,
             thread,
         }

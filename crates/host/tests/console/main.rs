@@ -16,14 +16,13 @@ use rustix::termios::{LocalModes, tcgetattr};
 
 use fixture::{
     Device, TerminalSession, Uno, find_moving_gait, lizard_command, run, spawn_in_terminal,
+    wait_for_exit,
 };
 
 #[test]
 fn console_prints_the_banner_and_the_answers_to_a_script_in_order() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let arguments = ["console", "--sim"];
-    let (stdout, stderr, exit_code) = run(folder.path(), &arguments, "cal\nfly\nstop\n");
-    assert_eq!(exit_code, Some(1), "after a refused line: {stderr}");
+    let (stdout, stderr) = run(&folder, "console --sim", "cal\nfly\nstop\n", 1);
     assert!(
         stderr.ends_with(
             "lizard: the robot did not accept 1 of 3 lines, the first `fly`: err 1 unknown command; \
@@ -43,30 +42,26 @@ fn console_prints_the_banner_and_the_answers_to_a_script_in_order() {
     );
     assert!(stdout.contains("\n# A4 trim 0.00 limit "), "{stdout}");
     assert!(stderr.contains("(a simulated UNO)"), "no port: {stderr}");
-
-    let (_, stderr, exit_code) = run(folder.path(), &arguments, "cal\nstop\n");
-    assert_eq!(exit_code, Some(0), "after accepted lines: {stderr}");
+    run(&folder, "console --sim", "cal\nstop\n", 0);
 }
 
 #[test]
 fn restore_writes_a_backup_to_the_board_and_a_refused_calibration_changes_nothing() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let folder_path = folder.path();
-    let uno = Uno::start(folder_path);
+    let uno = Uno::start(&folder);
     let port = uno.port();
     let back_up = |file: &str| {
-        let (_, stderr, exit_code) = run(folder_path, &["calibrate", "backup", file, &port], "");
-        assert_eq!(exit_code, Some(0), "{stderr}");
-        fs::read_to_string(folder_path.join(file)).expect("the file is readable")
+        run(&folder, &format!("calibrate backup {file} {port}"), "", 0);
+        fs::read_to_string(folder.path().join(file)).expect("the file is readable")
     };
-    let restore = |file: &str, text: &str| {
-        fs::write(folder_path.join(file), text).expect("the file is written");
-        run(folder_path, &["calibrate", "restore", file, &port], "")
+    let restore = |file: &str, text: &str, expected_code: i32| {
+        fs::write(folder.path().join(file), text).expect("the file is written");
+        let line = format!("calibrate restore {file} {port}");
+        run(&folder, &line, "", expected_code)
     };
     let first_text = back_up("a.toml");
     let changed_text = first_text.replacen("trim = 0.0", "trim = -1.75", 1);
-    let (stdout, stderr, exit_code) = restore("b.toml", &changed_text);
-    assert_eq!(exit_code, Some(0), "{stderr}");
+    let (stdout, _) = restore("b.toml", &changed_text, 0);
     assert!(
         stdout.ends_with("has accepted and saved the calibration from b.toml\n"),
         "{stdout}"
@@ -75,8 +70,7 @@ fn restore_writes_a_backup_to_the_board_and_a_refused_calibration_changes_nothin
     let scale_line = first_text.lines().find(|line| line.starts_with("scale = "));
     let refused_text =
         changed_text.replacen(scale_line.expect("A1 has a scale"), "scale = 99.0", 1);
-    let (stdout, stderr, exit_code) = restore("c.toml", &refused_text);
-    assert_eq!(exit_code, Some(1), "{stderr}");
+    let (stdout, stderr) = restore("c.toml", &refused_text, 1);
     assert!(
         stderr.contains("c.toml: the robot refuses `scale 1 99.00`: 3 scale must be 5..20"),
         "{stderr}"
@@ -90,15 +84,12 @@ fn restore_writes_a_backup_to_the_board_and_a_refused_calibration_changes_nothin
 #[test]
 fn info_prints_a_boards_firmware_and_settings_and_changes_nothing() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let folder_path = folder.path();
-    let uno = Uno::start(folder_path);
+    let uno = Uno::start(&folder);
     let port = uno.port();
     let lines = "trim 3 -4.25\nboot rest\nsave\n";
-    let (_, stderr, exit_code) = run(folder_path, &["console", &port], lines);
-    assert_eq!(exit_code, Some(0), "{stderr}");
+    run(&folder, &format!("console {port}"), lines, 0);
     for _ in 0..2 {
-        let (stdout, stderr, exit_code) = run(folder_path, &["info", "--json", &port], "");
-        assert_eq!(exit_code, Some(0), "{stderr}");
+        let (stdout, _) = run(&folder, &format!("info --json {port}"), "", 0);
         let board: serde_json::Value = serde_json::from_str(&stdout).expect("the output is JSON");
         assert_eq!(board["firmware"], env!("CARGO_PKG_VERSION"));
         assert_eq!(board["robot"]["hash"].as_str().map(str::len), Some(8));
@@ -107,31 +98,28 @@ fn info_prints_a_boards_firmware_and_settings_and_changes_nothing() {
         assert_eq!(board["calibration"]["boot"], "rest");
         assert_eq!(board["calibration"]["servo"]["A3"]["trim"], -4.25);
     }
-    let (text, ..) = run(folder_path, &["info", &port], "");
+    let (text, _) = run(&folder, &format!("info {port}"), "", 0);
     assert!(text.contains("\nA3          trim -4.25 deg, "), "{text}");
 }
 
 #[test]
 fn a_terminal_session_has_line_editing_and_reconnects_to_an_unplugged_board() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let uno = Uno::start(folder.path());
-    let mut session = TerminalSession::start(folder.path(), &["console", &uno.port()]);
+    let uno = Uno::start(&folder);
+    let mut session = TerminalSession::start(&folder, &format!("console {}", uno.port()));
     session.wait_for("# lizard ");
     session.wait_for("no fault");
     // Ctrl-A moves the cursor to the start of the line, where the missing letter is inserted.
-    session.press("top\x01s\r");
-    session.wait_for("> stop");
+    session.press_and_wait("top\x01s\r", "> stop");
     session.wait_for("ok stop");
     session.wait_for("stop  A1..A4");
-    session.press("\x1b[A\r");
-    session.wait_for("ok stop");
+    session.press_and_wait("\x1b[A\r", "ok stop");
     drop(uno);
     session.wait_for("the port is gone: the board was unplugged, or its cable is loose");
     session.wait_for("waiting for the board");
-    let _uno = Uno::start(folder.path());
+    let _uno = Uno::start(&folder);
     session.wait_for("is connected again: # lizard ");
-    session.press("stand\r");
-    session.wait_for("ok stand");
+    session.press_and_wait("stand\r", "ok stand");
     session.press("\x04");
     assert_eq!(session.wait_for_exit(), Some(0));
     let history = fs::read_to_string(folder.path().join("lizard/history"));
@@ -141,8 +129,7 @@ fn a_terminal_session_has_line_editing_and_reconnects_to_an_unplugged_board() {
 #[test]
 fn calibrate_advances_by_keys_and_a_cancelled_calibration_changes_nothing() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let arguments = ["calibrate", "--sim"];
-    let mut session = TerminalSession::start(folder.path(), &arguments);
+    let mut session = TerminalSession::start(&folder, "calibrate --sim");
     session.wait_for("before you begin");
     for (key, expected) in [
         ("\r", "fit the horns"),
@@ -151,8 +138,7 @@ fn calibrate_advances_by_keys_and_a_cancelled_calibration_changes_nothing() {
         ("n", "The sign of A1 is `"),
         ("q", "cancelled: the robot keeps its old calibration"),
     ] {
-        session.press(key);
-        session.wait_for(expected);
+        session.press_and_wait(key, expected);
     }
     assert_eq!(session.wait_for_exit(), Some(0));
 }
@@ -160,8 +146,7 @@ fn calibrate_advances_by_keys_and_a_cancelled_calibration_changes_nothing() {
 #[test]
 fn replay_draws_and_summarises_a_recorded_session() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let folder_path = folder.path();
-    let mut child = lizard_command(folder_path, &["console", "--record", "a.jsonl", "--sim"])
+    let mut child = lizard_command(&folder, "console --record a.jsonl --sim")
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
@@ -170,20 +155,16 @@ fn replay_draws_and_summarises_a_recorded_session() {
     let mut stdin = child.stdin.take().expect("standard input is piped");
     let lines = b"speed 50\nfly\n";
     stdin.write_all(lines).expect("the program reads its input");
-    let file = folder_path.join("a.jsonl");
+    let file = folder.path().join("a.jsonl");
     TIME_LIMIT.wait_for("a refusal and a second of poses in the file", || {
         let recording = fs::read_to_string(&file).unwrap_or_default();
         recording.contains(r#""answer":"err "#) && recording.matches(r#""pose":"#).count() > 50
     });
     drop(stdin);
-    let status = TIME_LIMIT
-        .wait_for_exit(&mut child)
-        .expect("the program exits");
-    assert_eq!(status.code(), Some(1), "exit code after a refused line");
+    let code = wait_for_exit(&mut child).code();
+    assert_eq!(code, Some(1), "exit code after a refused line");
 
-    let arguments = ["console", "replay", "a.jsonl", "--svg", "a.svg"];
-    let (stdout, stderr, exit_code) = run(folder_path, &arguments, "");
-    assert_eq!(exit_code, Some(0), "{stderr}");
+    let (stdout, _) = run(&folder, "console replay a.jsonl --svg a.svg", "", 0);
     for line in [
         " > speed 50\n",
         "commands    2, 1 refused\n",
@@ -191,7 +172,7 @@ fn replay_draws_and_summarises_a_recorded_session() {
     ] {
         assert!(stdout.contains(line), "{line}: {stdout}");
     }
-    let drawing = fs::read_to_string(folder_path.join("a.svg")).expect("the file is readable");
+    let drawing = fs::read_to_string(folder.path().join("a.svg")).expect("the file is readable");
     // If the machine pauses for a second, all four servos' curves have a gap.
     let curve_count = drawing.matches("<polyline").count();
     assert!(
@@ -199,23 +180,21 @@ fn replay_draws_and_summarises_a_recorded_session() {
         "{curve_count} curves"
     );
 
-    let arguments = ["console", "--record", "a.jsonl", "--sim"];
-    let (_, stderr, exit_code) = run(folder_path, &arguments, "");
-    assert_eq!(exit_code, Some(2));
+    let (_, stderr) = run(&folder, "console --record a.jsonl --sim", "", 2);
     assert!(stderr.contains("a.jsonl already exists"), "{stderr}");
 }
 
 #[test]
 fn a_command_refuses_a_port_that_another_program_has_open() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let uno = Uno::start(folder.path());
-    let mut other_session = TerminalSession::start(folder.path(), &["console", &uno.port()]);
+    let uno = Uno::start(&folder);
+    let port = uno.port();
+    let mut other_session = TerminalSession::start(&folder, &format!("console {port}"));
     other_session.wait_for("# lizard ");
-    let arguments = ["calibrate", "backup", "a.toml", &uno.port()];
-    let (_, stderr, exit_code) = run(folder.path(), &arguments, "");
+    let line = format!("calibrate backup a.toml {port}");
+    let (_, stderr) = run(&folder, &line, "", 1);
     let owner_text = format!("is open in lizard (process {})", other_session.child.id());
     other_session.press("\x03");
-    assert_eq!(exit_code, Some(1));
     assert!(stderr.contains(&owner_text), "{stderr}");
     assert!(!folder.path().join("a.toml").exists());
 }
@@ -227,10 +206,9 @@ fn the_error_for_a_board_without_lizard_firmware_shows_its_output() {
         // Writing fails while no program has the port open.
         let _ = terminal.write_all(b"Grbl 1.1h ['$' for help]\r\n");
     });
-    let arguments = ["calibrate", "backup", "a.toml", &device.port];
-    let (_, stderr, exit_code) = run(folder.path(), &arguments, "");
+    let line = format!("calibrate backup a.toml {}", device.port);
+    let (_, stderr) = run(&folder, &line, "", 1);
     device.stop();
-    assert_eq!(exit_code, Some(1), "{stderr}");
     let expected = "this is not a lizard: expected `# lizard ...`, got `Grbl 1.1h ['$' for help]`";
     assert!(stderr.contains(expected), "{stderr}");
     // No incomplete file remains.
@@ -250,10 +228,9 @@ fn the_error_for_a_silent_board_counts_the_unanswered_lines() {
             let _ = terminal.write_all(b"ok gait=rest pose=1,2,3,4 fault=none\r\n");
         }
     });
-    let arguments = ["console", "--record", "a.jsonl", &device.port];
-    let (_, stderr, exit_code) = run(folder.path(), &arguments, "walk\nspeed 50\nstop\n");
+    let line = format!("console --record a.jsonl {}", device.port);
+    let (_, stderr) = run(&folder, &line, "walk\nspeed 50\nstop\n", 1);
     device.stop();
-    assert_eq!(exit_code, Some(1), "{stderr}");
     let expected = "lizard: the robot did not accept 3 of 3 lines, the first `walk`: not sent\n";
     assert!(stderr.ends_with(expected), "{stderr}");
 }
@@ -261,38 +238,34 @@ fn the_error_for_a_silent_board_counts_the_unanswered_lines() {
 #[test]
 fn commands_refuse_invalid_input_with_a_message() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let folder_path = folder.path();
-    fs::write(folder_path.join("no.toml"), "trim: 5\n").expect("the file is written");
-    fs::write(folder_path.join("other.toml"), "[links]\nl0 = 20.0\n").expect("the file is written");
-    for (arguments, expected) in [
+    for (name, text) in [
+        ("no.toml", "trim: 5\n"),
+        ("other.toml", "[links]\nl0 = 20.0\n"),
+    ] {
+        fs::write(folder.path().join(name), text).expect("the file is written");
+    }
+    let not_a_calibration =
+        "other.toml: format must be \"lizard calibration 1\": this is not a calibration";
+    let not_a_session = "other.toml: this is not a session of `lizard console --record`: \
+        \"lizard record 1\" is missing";
+    for (line, expected) in [
         (
-            &["console", "/dev/no-such-port"][..],
-            "lizard: /dev/no-such-port does not exist; USB serial ports of this machine: ",
+            "console /dev/no-such-port",
+            "/dev/no-such-port does not exist; USB serial ports of this machine: ",
         ),
+        ("calibrate restore no.toml", "no.toml:1: invalid TOML: "),
+        ("calibrate restore other.toml", not_a_calibration),
+        ("calibrate restore none.toml", "cannot read none.toml: "),
+        ("console replay other.toml", not_a_session),
         (
-            &["calibrate", "restore", "no.toml"],
-            "lizard: no.toml:1: invalid TOML: ",
-        ),
-        (
-            &["calibrate", "restore", "other.toml"],
-            "lizard: other.toml: format must be \"lizard calibration 1\": this is not a calibration",
-        ),
-        (
-            &["calibrate", "restore", "none.toml"],
-            "lizard: cannot read none.toml: ",
-        ),
-        (
-            &["console", "replay", "other.toml"],
-            "lizard: other.toml: this is not a session of `lizard console --record`: \"lizard record 1\" is missing",
-        ),
-        (
-            &["calibrate", "/dev/no-such-port"],
-            "lizard: calibrate reads single keys; run it in a terminal",
+            "calibrate /dev/no-such-port",
+            "calibrate reads single keys; run it in a terminal",
         ),
     ] {
-        let (stdout, stderr, exit_code) = run(folder_path, arguments, "");
-        assert!(stderr.trim().starts_with(expected), "{stderr}");
-        assert_eq!((stdout.as_str(), exit_code), ("", Some(2)), "{stderr}");
+        let (stdout, stderr) = run(&folder, line, "", 2);
+        let message = stderr.trim().strip_prefix("lizard: ");
+        let is_expected = message.is_some_and(|message| message.starts_with(expected));
+        assert!(is_expected && stdout.is_empty(), "{line}: {stderr}");
     }
 }
 
@@ -302,29 +275,22 @@ fn the_link_to_a_simulated_board_replaces_no_other_file_and_ends_with_the_board(
     let (board_link, other_link) = (folder.path().join("uno"), folder.path().join("other"));
     std::os::unix::fs::symlink("a-file", &other_link).expect("the link is created");
     let name = other_link.display().to_string();
-    let (_, stderr, exit_code) = run(folder.path(), &["sim", "--pty", &name], "");
+    let (_, stderr) = run(&folder, &format!("sim --pty {name}"), "", 2);
     assert_eq!(
         stderr.trim(),
         format!("lizard: {name} already exists and is not a link to a pseudo terminal")
     );
-    assert_eq!(exit_code, Some(2));
-    assert_eq!(
-        fs::read_link(&other_link).expect("the link is readable"),
-        Path::new("a-file")
-    );
+    let target = fs::read_link(&other_link).expect("the link is readable");
+    assert_eq!(target, Path::new("a-file"));
 
     // A killed run leaves a broken link, which a new run replaces.
     std::os::unix::fs::symlink("/dev/pts/999999", &board_link).expect("the link is created");
-    let name = board_link.display().to_string();
-    let mut child = lizard_command(folder.path(), &["sim", "--pty", &name])
-        .stdout(Stdio::null())
-        .spawn()
-        .expect("the program starts");
+    let line = format!("sim --pty {}", board_link.display());
+    let child = lizard_command(&folder, &line).stdout(Stdio::null()).spawn();
+    let mut child = child.expect("the program starts");
     TIME_LIMIT.wait_for("a port at the end of the link", || board_link.exists());
     send_signal(&child, Signal::TERM);
-    let status = TIME_LIMIT
-        .wait_for_exit(&mut child)
-        .expect("the program exits");
+    let status = wait_for_exit(&mut child);
     let signal = std::os::unix::process::ExitStatusExt::signal(&status);
     assert_eq!(signal, Some(15), "not ended by SIGTERM");
     assert!(!board_link.is_symlink(), "the link must be removed");
@@ -333,7 +299,7 @@ fn the_link_to_a_simulated_board_replaces_no_other_file_and_ends_with_the_board(
 #[test]
 fn draw_refuses_to_print_a_drawing_to_a_terminal() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let mut session = TerminalSession::start(folder.path(), &["draw", "--wiring"]);
+    let mut session = TerminalSession::start(&folder, "draw --wiring");
     session
         .wait_for("lizard: standard output is a terminal; write the SVG to a file with --output");
     assert!(!session.new_text.contains("<svg"));
@@ -363,13 +329,13 @@ fn is_cooked(terminal: &File) -> bool {
 #[test]
 fn control_z_restores_the_terminal_and_the_program_can_continue() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let uno = Uno::start(folder.path());
+    let uno = Uno::start(&folder);
     let port = uno.port();
     for (command, first_text, keys, next_text) in [
         ("console", "no fault", "stop\r", "ok stop"),
         ("calibrate", "before you begin", "\r", "fit the horns"),
     ] {
-        let mut session = TerminalSession::start(folder.path(), &[command, &port]);
+        let mut session = TerminalSession::start(&folder, &format!("{command} {port}"));
         session.wait_for(first_text);
         assert!(!is_cooked(&session.keys), "{command}");
         session.press("\x1a");
@@ -379,8 +345,7 @@ fn control_z_restores_the_terminal_and_the_program_can_continue() {
         assert!(is_cooked(&session.keys), "{command}");
         send_signal(&session.child, Signal::CONT);
         TIME_LIMIT.wait_for("raw mode", || !is_cooked(&session.keys));
-        session.press(keys);
-        session.wait_for(next_text);
+        session.press_and_wait(keys, next_text);
         session.press(if command == "console" { "\x04" } else { "q" });
         assert_eq!(session.wait_for_exit(), Some(0), "{command}");
     }
@@ -389,10 +354,11 @@ fn control_z_restores_the_terminal_and_the_program_can_continue() {
 #[test]
 fn a_program_ends_when_its_terminal_is_closed() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let uno = Uno::start(folder.path());
+    let uno = Uno::start(&folder);
     let port = uno.port();
     for (command, first_text) in [("console", "no fault"), ("calibrate", "before you begin")] {
-        let (mut test_side, mut child) = spawn_in_terminal(folder.path(), &[command, &port]);
+        let line = format!("{command} {port}");
+        let (mut test_side, mut child) = spawn_in_terminal(&folder, &line);
         let printed_text = TIME_LIMIT.run(first_text, move || {
             let (mut text, mut bytes) = (String::new(), [0; 4096]);
             while !text.contains(first_text) {
@@ -404,22 +370,18 @@ fn a_program_ends_when_its_terminal_is_closed() {
             text
         });
         assert!(printed_text.contains(first_text));
-        let status = TIME_LIMIT
-            .wait_for_exit(&mut child)
-            .expect("the program exits");
-        assert_eq!(status.code(), Some(0), "{command}");
+        let code = wait_for_exit(&mut child).code();
+        assert_eq!(code, Some(0), "{command}");
     }
 }
 
 #[test]
 fn console_does_not_say_that_an_ended_simulated_robot_continues() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let arguments = ["console", "--sim"];
-    let mut session = TerminalSession::start(folder.path(), &arguments);
+    let mut session = TerminalSession::start(&folder, "console --sim");
     session.wait_for("no fault");
-    let gait = find_moving_gait(folder.path());
-    session.press(&format!("{gait}\r"));
-    session.wait_for(&format!("ok {gait}"));
+    let gait = find_moving_gait(&folder);
+    session.press_and_wait(&format!("{gait}\r"), &format!("ok {gait}"));
     session.wait_for(&format!("{gait}  "));
     session.press("\x04");
     TIME_LIMIT.wait_for("the end of the program", || {
@@ -440,8 +402,7 @@ fn control_characters_of_a_robot_file_do_not_reach_the_terminal() {
     let text = include_str!("../../../../robots/paper.toml");
     let text = format!("{text}\n[gait.\"\\u001b]0;owned\\u0007\"]\nperiod = 1.0\n");
     fs::write(folder.path().join("bad.toml"), text).expect("the file is written");
-    let (_, stderr, exit_code) = run(folder.path(), &["gaits", "--robot", "bad.toml"], "");
-    assert_eq!(exit_code, Some(2));
+    let (_, stderr) = run(&folder, "gaits --robot bad.toml", "", 2);
     assert!(stderr.contains("]0;owned"), "{stderr}");
     let control_count = stderr.trim_end().matches(|c: char| c.is_control()).count();
     assert_eq!(control_count, 0, "{stderr:?}");

@@ -41,19 +41,24 @@ fn default_file_values() -> Values {
     std::array::from_fn(|i| KEYS[i].min_value.max(0.0))
 }
 
+/// Simulates a camera's measurement of travels, with a mounting error of the card but without random errors.
+fn measure_exactly(travels: Vec<Travel>, card: CardPose) -> Vec<MeasuredMovement> {
+    let to_movement = |travel| MeasuredMovement {
+        gait: "walk".to_owned(),
+        pace: 1.0,
+        mean: card.convert_travel(travel),
+        error: [MEAN_ERROR; 3],
+    };
+    travels.into_iter().map(to_movement).collect()
+}
+
 /// Simulates a camera's measurement of a robot, with a mounting error of the card and with random errors.
 fn measure_robot(values: &Values, card: CardPose, rng: &mut Rng) -> Vec<MeasuredMovement> {
-    let movements = compute_travels(values).into_iter().map(|travel| {
-        let components = card.convert_travel(travel);
-        MeasuredMovement {
-            gait: "walk".to_owned(),
-            pace: 1.0,
-            mean: components
-                .map(|component| component + MEAN_ERROR.hypot(MODEL_ERROR) * random_deviate(rng)),
-            error: [MEAN_ERROR; 3],
-        }
-    });
-    movements.collect()
+    let mut movements = measure_exactly(compute_travels(values), card);
+    for mean in movements.iter_mut().flat_map(|movement| &mut movement.mean) {
+        *mean += MEAN_ERROR.hypot(MODEL_ERROR) * random_deviate(rng);
+    }
+    movements
 }
 
 fn random_card(rng: &mut Rng) -> CardPose {
@@ -131,10 +136,7 @@ fn at_a_fold_of_the_model_the_error_follows_the_flatter_side() {
     };
     let mut true_values = default_file_values();
     true_values[TWIST_INDEX] = FOLD;
-    let mut movements = measure_robot(&true_values, CardPose::default(), &mut Rng::with_seed(1));
-    for (movement, travel) in movements.iter_mut().zip(compute_travels(&true_values)) {
-        movement.mean = [travel.forward, travel.left, travel.turn];
-    }
+    let movements = measure_exactly(compute_travels(&true_values), CardPose::default());
     let folded_error = solve_with(&folded_model, &movements).keys[TWIST_INDEX].error;
     let smooth_error = solve_with(&compute_travels, &movements).keys[TWIST_INDEX].error;
     assert!(
@@ -152,12 +154,8 @@ fn a_key_without_effect_keeps_its_value_and_is_undetermined() {
     };
     let mut true_values = default_file_values();
     (true_values[0], true_values[5]) = (8.0, 1.1);
-    let mut rng = Rng::with_seed(1);
-    let card = random_card(&mut rng);
-    let mut movements = measure_robot(&true_values, card, &mut rng);
-    for (movement, travel) in movements.iter_mut().zip(model_without_key_5(&true_values)) {
-        movement.mean = card.convert_travel(travel);
-    }
+    let card = random_card(&mut Rng::with_seed(1));
+    let movements = measure_exactly(model_without_key_5(&true_values), card);
     let result = solve_with(&model_without_key_5, &movements);
     let mut expected = vec![Verdict::Unchanged; KEY_COUNT];
     (expected[0], expected[5]) = (Verdict::Changed, Verdict::Undetermined);

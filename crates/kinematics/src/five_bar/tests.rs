@@ -34,10 +34,10 @@ proptest! {
         five_bar in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
     ) {
         match (five_bar.forward(left, right), end_point_by_cosines(&five_bar, left, right)) {
-            (Ok(pose), Some([x, y])) => {
+            (Ok(pose), Some(point)) => {
                 // acos loses half the digits when the triangle is flat.
                 let tolerance = 1e-9 / pose.type2.max(1e-9);
-                prop_assert!((pose.end_point.x - x).hypot(pose.end_point.y - y) < tolerance);
+                prop_assert!((pose.end_point - point).length() < tolerance);
             }
             (Err(Fault::TooFarApart { .. } | Fault::TooClose { .. }), None) => {}
             (computed, expected) => prop_assert!(false, "{computed:?}, expected {expected:?}"),

@@ -66,15 +66,14 @@ pub fn end_point_by_cosines(
     five_bar: &FiveBar,
     theta_left: f64,
     theta_right: f64,
-) -> Option<[f64; 2]> {
+) -> Option<Vector> {
     let (a, b) = (theta_left * PI / 180.0, theta_right * PI / 180.0);
     let half_base = five_bar.base / 2.0;
     let (l1, l4) = (five_bar.left_crank_length, five_bar.right_crank_length);
     let (l2, l3) = (five_bar.left_coupler_length, five_bar.right_coupler_length);
     let left = Vector::new(l1 * a.cos() - half_base, l1 * a.sin());
     let right = Vector::new(l4 * b.cos() + half_base, l4 * b.sin());
-    let point = circle_intersection(left, l2, right, l3)?;
-    Some([point.x, point.y])
+    circle_intersection(left, l2, right, l3)
 }
 
 /// Robots of random proportions: each link is 0.6 to 1.6 times as long as that of the paper's robot, and l10 = l15.

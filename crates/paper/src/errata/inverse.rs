@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use lizard_kinematics::{End, Vector};
+use lizard_kinematics::{End, Side, Vector};
 
 use super::equation::Equation;
 use super::sample::{Sample, polar};
@@ -77,21 +77,21 @@ pub const EQUATIONS: &[Equation] = &[
         "4.1 left body, x31 and y31",
         "2 x31 = l13 cos θ11 + l14 cos θ12 (y31: sin)",
         "mm",
-        |sample| slider_error(sample, 0, [(13, 11), (14, 12)]),
+        |sample| slider_error(sample, Side::Left, [(13, 11), (14, 12)]),
     )
     .with_correction(
         "2 x31 = l11 cos θ9 + l14 cos θ12, from the middle of l10",
-        |sample| slider_error(sample, 0, [(11, 9), (14, 12)]),
+        |sample| slider_error(sample, Side::Left, [(11, 9), (14, 12)]),
     ),
     Equation::new(
         "4.1 right body, x41 and y41",
         "2 x41 = l19 cos θ16 + l18 cos θ15 (y41: sin)",
         "mm",
-        |sample| slider_error(sample, 1, [(19, 16), (18, 15)]),
+        |sample| slider_error(sample, Side::Right, [(19, 16), (18, 15)]),
     )
     .with_correction(
         "2 x41 = l16 cos θ13 + l19 cos θ16, from the middle of l15",
-        |sample| slider_error(sample, 1, [(16, 13), (19, 16)]),
+        |sample| slider_error(sample, Side::Right, [(16, 13), (19, 16)]),
     ),
 ];
 
@@ -113,14 +113,11 @@ fn tail_point(sample: &Sample) -> Vector {
 
 /// Computes the distance from the middle of a slider to half the sum of two vectors, each given by the paper's indices
 /// of its length and of its angle, mm.
-fn slider_error(sample: &Sample, side: usize, vectors: [(usize, usize); 2]) -> Option<f64> {
+fn slider_error(sample: &Sample, side: Side, vectors: [(usize, usize); 2]) -> Option<f64> {
     let (lengths, theta) = (sample.lizard.links.to_array(), sample.theta());
     let [first, second] = vectors.map(|(length, angle)| polar(lengths[length], theta[angle]));
-    Some((slider_middle(sample, side) - (first + second) * 0.5).length())
-}
-
-/// Computes the middle of a slider, relative to the middle between its shafts. `side` is 0 for left, 1 for right.
-fn slider_middle(sample: &Sample, side: usize) -> Vector {
-    let slider = [&sample.solution.left, &sample.solution.right][side];
-    (slider.rear_tip + slider.front_tip - slider.front_shaft) * 0.5
+    // The middle of the slider relative to the middle between its shafts.
+    let slider = sample.solution.side(side);
+    let middle = (slider.rear_tip + slider.front_tip - slider.front_shaft) * 0.5;
+    Some((middle - (first + second) * 0.5).length())
 }

@@ -101,10 +101,7 @@ pub const EQUATIONS: &[Equation] = &[
     })
     .with_special_case(
         "the neutral pose, which the equation flags as singular",
-        |sample| {
-            let (neutral_margin, sum) = neutral_margin_and_sum(sample)?;
-            Some((sum.sin().abs() - neutral_margin).abs())
-        },
+        neutral_error,
     ),
     Equation::new(
         "5.1 singular tail",
@@ -167,20 +164,16 @@ pub const EQUATIONS: &[Equation] = &[
     ),
 ];
 
-/// Computes theta1 in the neutral pose, where every slider has its nominal length, degrees.
-fn neutral_theta1(sample: &Sample) -> f64 {
+/// Computes the difference between the sine of theta2 + theta3 and the head's type-2 margin in the neutral pose, where
+/// every slider has its nominal length.
+fn neutral_error(sample: &Sample) -> Option<f64> {
     let links = &sample.lizard.links;
     let cos = (links.l12 + links.l13 - links.l10) / (links.l11 + links.l14);
-    cos.acos().to_degrees()
-}
-
-/// Computes the head's type-2 margin and theta2 + theta3 (radians), both in the neutral pose.
-fn neutral_margin_and_sum(sample: &Sample) -> Option<(f64, f64)> {
-    let theta1 = neutral_theta1(sample);
+    let theta1 = cos.acos().to_degrees();
     let head = sample.lizard.end(End::Head);
     let pose = head.forward(theta1, 180.0 - theta1).ok()?;
     let sum = pose.theta_left_coupler() + pose.theta_right_coupler();
-    Some((pose.type2, sum.to_radians()))
+    Some((sum.to_radians().sin().abs() - pose.type2).abs())
 }
 
 /// The 2x2 block of K or K* for a left and a right bar (crank or coupler) of the head or the tail, or for the rear and

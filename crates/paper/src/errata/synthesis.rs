@@ -70,20 +70,16 @@ pub const EQUATIONS: &[Equation] = &[
         "r = (l1 + l2 - |l1 - l2|)/2, y = sqrt((l1 + l2 + |l1 - l2|)²/4 - (l0/2)²)",
         "mm",
         |sample| {
-            let five_bar = sample.lizard.end(End::Head);
-            let (sum, difference) = (
-                five_bar.left_crank_length + five_bar.left_coupler_length,
-                (five_bar.left_crank_length - five_bar.left_coupler_length).abs(),
-            );
+            let head = Workspace::for_five_bar(&sample.lizard.end(End::Head));
+            let (sum, difference) = (head.outer_radius, head.inner_radius);
             let r = (sum - difference) / 2.0;
-            let y = ((sum + difference).powi(2) / 4.0 - (five_bar.base / 2.0).powi(2)).sqrt();
+            let y = ((sum + difference).powi(2) / 4.0 - head.half_base.powi(2)).sqrt();
             let clearance_at = |x: f64, y: f64| {
-                let left_distance = (x + five_bar.base / 2.0).hypot(y);
-                let right_distance = (x - five_bar.base / 2.0).hypot(y);
-                [left_distance, right_distance]
-                    .iter()
-                    .map(|distance| (distance - difference).min(sum - distance))
-                    .fold(f64::INFINITY, f64::min)
+                let [left, right] = [x + head.half_base, x - head.half_base].map(|offset| {
+                    let distance = offset.hypot(y);
+                    (distance - difference).min(sum - distance)
+                });
+                left.min(right)
             };
             // The circle is inscribed, and no other centre allows a larger one.
             let other_radius =
@@ -117,17 +113,14 @@ pub const EQUATIONS: &[Equation] = &[
         "3.2 legs",
         "the parallelogram does not operate in the singularity zone",
         "below the margin of 0.3",
-        |sample| {
-            let angle_deg: f64 = 360.0 * sample.random[0];
-            Some((MIN_LEG_MARGIN - angle_deg.to_radians().sin().abs()).max(0.0))
-        },
+        |sample| Some(compute_leg_shortfall(360.0 * sample.random[0])),
     )
     .with_correction(
         "change points at theta_lg = 0 and 180; \
          the margin |sin theta_lg| is 0.3 within 72.5 deg of 90 and 270",
         |sample| {
-            let angle_deg: f64 = 90.0 + 72.5 * (2.0 * sample.random[0] - 1.0);
-            Some((MIN_LEG_MARGIN - angle_deg.to_radians().sin().abs()).max(0.0))
+            let angle_deg = 90.0 + 72.5 * (2.0 * sample.random[0] - 1.0);
+            Some(compute_leg_shortfall(angle_deg))
         },
     ),
 ];
@@ -135,13 +128,10 @@ pub const EQUATIONS: &[Equation] = &[
 /// Computes the largest radius error of the circle equation at random points on the boundaries of the arms' reach.
 /// `y_term` returns the equation's term in y.
 fn compute_circle_error(sample: &Sample, y_term: fn(f64) -> f64) -> Option<f64> {
-    let five_bar = sample.lizard.end(End::Head);
+    let head = Workspace::for_five_bar(&sample.lizard.end(End::Head));
     let mut max_error = 0.0_f64;
-    for shaft_x in [-five_bar.base / 2.0, five_bar.base / 2.0] {
-        for radius in [
-            five_bar.left_crank_length + five_bar.left_coupler_length,
-            (five_bar.left_crank_length - five_bar.left_coupler_length).abs(),
-        ] {
+    for shaft_x in [-head.half_base, head.half_base] {
+        for radius in [head.outer_radius, head.inner_radius] {
             let rim_point = polar(radius, PI * sample.random[0]);
             // x11 is measured from the middle of the base. The rim point is measured from the shaft.
             let (x11, y11) = (rim_point.x + shaft_x, rim_point.y);
@@ -150,6 +140,11 @@ fn compute_circle_error(sample: &Sample, y_term: fn(f64) -> f64) -> Option<f64> 
         }
     }
     Some(max_error)
+}
+
+/// Computes by how much the margin of a leg at this angle is below [`MIN_LEG_MARGIN`].
+fn compute_leg_shortfall(angle_deg: f64) -> f64 {
+    (MIN_LEG_MARGIN - angle_deg.to_radians().sin().abs()).max(0.0)
 }
 
 /// Computes the LCI at a random point inside the circle with the centre of the inscribed circle and `radius_factor`

@@ -86,7 +86,8 @@ impl Assembly {
 
     /// Computes the placement of a mount's frame at a pose without lags of the legs.
     pub fn placement(&self, mount: Mount, pose: &Solution) -> Placement {
-        self.placement_for_cranks(mount, &Cranks::from_pose(self.robot.lizard(), pose))
+        let (lizard, directions) = (self.robot.lizard(), pose.legs.map(|leg| leg.direction));
+        self.placement_for_cranks(mount, &Cranks { lizard, directions })
     }
 
     /// Computes the placement of a mount's frame from crank directions of any number type.
@@ -95,38 +96,35 @@ impl Assembly {
         mount: Mount,
         cranks: &Cranks<T>,
     ) -> Placement<T> {
-        let placement_on_crank = |servo: usize, origin: Vector| Placement {
-            origin: Vector::constant(origin),
-            x_axis: cranks.directions[servo],
+        let placement_on_crank = |servo: usize, origin: Vector| {
+            Placement::new(Vector::constant(origin), cranks.directions[servo])
         };
         let link_placement = |servo: usize| placement_on_crank(servo, self.layout.shafts[servo]);
         let legs = &self.layout.legs;
         match mount {
-            Mount::Chassis => Placement {
-                origin: Vector::constant(Placement::CHASSIS.origin),
-                x_axis: Vector::constant(Placement::CHASSIS.x_axis),
-            },
+            Mount::Chassis => {
+                let Placement { origin, x_axis } = Placement::CHASSIS;
+                Placement::new(Vector::constant(origin), Vector::constant(x_axis))
+            }
             Mount::Link(servo) => link_placement(servo),
             Mount::Crank(servo) => placement_on_crank(servo, legs[servo].crank_pivot),
             Mount::Follower(servo) => placement_on_crank(servo, legs[servo].follower_pivot),
-            Mount::Foot(servo) => Placement {
-                origin: placement_on_crank(servo, legs[servo].crank_pivot)
-                    .map(legs[servo].crank_joint),
-                x_axis: Vector::constant(legs[servo].coupler_direction),
-            },
-            Mount::Strut(servo) => Placement {
-                origin: link_placement(servo).map(legs[servo].anchor),
-                x_axis: Vector::constant(legs[servo].strut_direction),
-            },
+            Mount::Foot(servo) => {
+                let leg = &legs[servo];
+                let joint = placement_on_crank(servo, leg.crank_pivot).map(leg.crank_joint);
+                Placement::new(joint, Vector::constant(leg.coupler_direction))
+            }
+            Mount::Strut(servo) => {
+                let anchor = link_placement(servo).map(legs[servo].anchor);
+                Placement::new(anchor, Vector::constant(legs[servo].strut_direction))
+            }
             Mount::Coupler(servo) => {
                 let (end, index) = end_and_index(servo);
                 let five_bar = cranks.five_bar(end);
                 let tip = [five_bar.left_tip, five_bar.right_tip][index];
                 let coupler_direction = [five_bar.left_coupler, five_bar.right_coupler][index];
-                Placement {
-                    origin: self.robot.lizard().to_chassis(end, tip),
-                    x_axis: end.mirror(coupler_direction),
-                }
+                let origin = self.robot.lizard().to_chassis(end, tip);
+                Placement::new(origin, end.mirror(coupler_direction))
             }
             Mount::Sleeve(side) | Mount::Rod(side) => {
                 let slider = cranks.slider(side);
@@ -135,10 +133,8 @@ impl Assembly {
                     Mount::Rod(_) => slider.front_tip,
                     _ => slider.rear_tip,
                 };
-                Placement {
-                    origin: rear_shaft + tip,
-                    x_axis: slider.span.scaled(T::constant(1.0) / slider.d),
-                }
+                let direction = slider.span.scaled(T::constant(1.0) / slider.d);
+                Placement::new(rear_shaft + tip, direction)
             }
         }
     }

@@ -4,25 +4,21 @@ use lizard_kinematics::Vector;
 use lizard_robot::{Parts, Robot};
 
 use crate::bodies::layout::Layout;
-use crate::bodies::names;
 use crate::layers::body::{Body, Kind, Mount, Prism};
 use crate::layers::shape::Shape;
-use crate::layers::stack::{HEAD_CLEARANCE, HEX_HEAD_HEIGHT, Span, Stack, find_screw_length};
+use crate::layers::stack::{
+    HEAD_CLEARANCE, HEX_HEAD_HEIGHT, Span, Stack, find_screw_length, order_heights,
+};
 
-/// The direction from a screw's head to its tip.
-#[derive(Clone, Copy, PartialEq)]
-pub enum ScrewDirection {
-    Up,
-    Down,
-}
+/// Direction of a screw whose tip is above its head.
+pub const UP: f64 = 1.0;
+/// Direction of a screw whose tip is below its head.
+pub const DOWN: f64 = -1.0;
 
-impl ScrewDirection {
-    fn sign(self) -> f64 {
-        match self {
-            Self::Up => 1.0,
-            Self::Down => -1.0,
-        }
-    }
+/// Name of a leg's strut, slotted or rigid.
+pub fn strut_name(is_slotted: bool, servo: usize) -> String {
+    let prefix = if is_slotted { "" } else { "rigid " };
+    format!("{prefix}{}", Mount::Strut(servo).name())
 }
 
 /// A robot's dimensions and the bodies added so far.
@@ -40,41 +36,47 @@ pub struct AssemblyBuilder<'a> {
 }
 
 /// A screw to add, with a nut or without one.
-pub struct Screw<'a> {
+pub struct Screw {
     /// Name of the screw and of its nut, without the word "screw" or "nut".
-    pub name: &'a str,
+    pub name: String,
     /// Mount that the screw moves with.
     pub mount: Mount,
     /// Position of the screw's axis, mount frame, mm.
     pub position: Vector,
     /// Height of the face under the screw's head, mm.
     pub seat_z: f64,
-    /// Direction from the screw's head to its tip.
-    pub direction: ScrewDirection,
+    /// Direction from the screw's head to its tip: [`UP`] or [`DOWN`].
+    pub direction: f64,
     /// Names of the bodies with other mounts that screw and nut may touch.
-    pub allowed_contacts: &'a [&'a str],
+    pub allowed_contacts: Vec<String>,
     /// True for a hexagon head sunk into the part; false for a button head.
     pub has_hex_head: bool,
 }
 
-impl<'a> Screw<'a> {
+impl Screw {
     /// Creates a screw with a button head and without allowed contacts.
     pub fn new(
-        name: &'a str,
+        name: impl Into<String>,
         mount: Mount,
         position: Vector,
         seat_z: f64,
-        direction: ScrewDirection,
+        direction: f64,
     ) -> Self {
         Self {
-            name,
+            name: name.into(),
             mount,
             position,
             seat_z,
             direction,
-            allowed_contacts: &[],
+            allowed_contacts: Vec::new(),
             has_hex_head: false,
         }
+    }
+
+    /// Returns the screw with one more body that screw and nut may touch.
+    pub fn touching(mut self, name: impl Into<String>) -> Self {
+        self.allowed_contacts.push(name.into());
+        self
     }
 }
 
@@ -113,9 +115,9 @@ impl<'a> AssemblyBuilder<'a> {
         self.robot.drive().strut().is_some()
     }
 
-    /// Name of a leg's strut.
-    pub fn strut_name(&self, leg: &str) -> String {
-        names::strut_name(self.has_slotted_struts(), leg)
+    /// Name of the strut between a servo and its leg.
+    pub fn strut_name(&self, servo: usize) -> String {
+        strut_name(self.has_slotted_struts(), servo)
     }
 
     /// Makes a hole in which a screw can turn.
@@ -139,39 +141,26 @@ impl<'a> AssemblyBuilder<'a> {
         Shape::hexagon(centre, self.parts.screw.nut + self.parts.fit)
     }
 
-    /// Adds a body.
+    /// Adds a body and returns it.
     pub fn add_body(
         &mut self,
         name: impl Into<String>,
         kind: Kind,
         mount: Mount,
         prisms: impl Into<Vec<Prism>>,
-    ) {
-        self.bodies.push(Body {
+    ) -> &mut Body {
+        self.bodies.push_mut(Body {
             name: name.into(),
             kind,
             mount,
             prisms: prisms.into(),
             allowed_contacts: Vec::new(),
-        });
+        })
     }
 
-    /// Adds a printed body.
-    pub fn add_printed(
-        &mut self,
-        name: impl Into<String>,
-        mount: Mount,
-        prisms: impl Into<Vec<Prism>>,
-    ) {
-        self.add_body(name, Kind::Printed, mount, prisms);
-    }
-
-    /// Records the bodies that the last added body touches by design.
-    pub fn allow_contact<S: AsRef<str>>(&mut self, names: &[S]) {
-        if let Some(body) = self.bodies.last_mut() {
-            let names = names.iter().map(|name| name.as_ref().to_owned());
-            body.allowed_contacts.extend(names);
-        }
+    /// Adds the printed body of a mount, under the mount's name, and returns it.
+    pub fn add_printed(&mut self, mount: Mount, prisms: impl Into<Vec<Prism>>) -> &mut Body {
+        self.add_body(mount.name(), Kind::Printed, mount, prisms)
     }
 
     /// Adds a printed ring that fills the gap between two parts on a screw.
@@ -181,29 +170,29 @@ impl<'a> AssemblyBuilder<'a> {
         mount: Mount,
         centre: Vector,
         z: Span,
-        allowed_contacts: &[&str],
+        allowed_contact: &str,
     ) {
         let hole = self.clearance_hole(centre);
         let disc = Shape::disc(centre, hole.radius + self.parts.wall);
         let ring = Prism::new([disc], [hole], z);
-        self.add_printed(name, mount, [ring]);
-        self.allow_contact(allowed_contacts);
+        let spacer = self.add_body(name, Kind::Printed, mount, [ring]);
+        spacer.allowed_contacts = vec![allowed_contact.to_owned()];
     }
 
     /// Adds a screw that is as long as its nut needs, and the nut. `nut_z` is the height of the face on which the nut
     /// bears, mm.
     pub fn add_bolt(&mut self, screw: &Screw, nut_z: f64) {
-        let nut_end = nut_z + screw.direction.sign() * self.parts.screw.nut_height;
+        let nut_end = nut_z + screw.direction * self.parts.screw.nut_height;
         self.add_screw(screw, find_screw_length((nut_end - screw.seat_z).abs()));
         self.add_nut(screw, nut_z);
     }
 
     /// Adds the nut of a screw. `nut_z` is the height of the face on which the nut bears, mm.
     pub fn add_nut(&mut self, screw: &Screw, nut_z: f64) {
-        let nut_end = nut_z + screw.direction.sign() * self.parts.screw.nut_height;
+        let nut_end = nut_z + screw.direction * self.parts.screw.nut_height;
         let nut = self.make_nut(screw.position, order_heights(nut_z, nut_end));
-        self.add_body(format!("nut {}", screw.name), Kind::Nut, screw.mount, [nut]);
-        self.allow_contact(screw.allowed_contacts);
+        let nut = self.add_body(format!("nut {}", screw.name), Kind::Nut, screw.mount, [nut]);
+        nut.allowed_contacts.clone_from(&screw.allowed_contacts);
     }
 
     /// Makes the layer of a nut.
@@ -215,10 +204,7 @@ impl<'a> AssemblyBuilder<'a> {
 
     /// Adds a screw of a length (mm) below its head, without a nut.
     pub fn add_screw(&mut self, screw: &Screw, length: f64) {
-        let size = self.parts.screw;
-        let sign = screw.direction.sign();
-        let build_prism =
-            |shape: Shape, from: f64, to: f64| Prism::solid([shape], order_heights(from, to));
+        let (size, direction, seat_z) = (self.parts.screw, screw.direction, screw.seat_z);
         let shank = Shape::disc(screw.position, size.diameter / 2.0);
         let (head, height, kind) = if screw.has_hex_head {
             let hexagon = Shape::hexagon(screw.position, size.nut);
@@ -228,35 +214,26 @@ impl<'a> AssemblyBuilder<'a> {
             (disc, size.head_height, Kind::Screw(length))
         };
         let mut prisms = vec![
-            build_prism(shank, screw.seat_z, screw.seat_z + sign * length),
-            build_prism(head, screw.seat_z - sign * height, screw.seat_z),
+            Prism::solid([shank], order_heights(seat_z, seat_z + direction * length)),
+            Prism::solid([head], order_heights(seat_z - direction * height, seat_z)),
         ];
         prisms.sort_by(|a, b| a.z[0].total_cmp(&b.z[0]));
-        self.add_body(format!("screw {}", screw.name), kind, screw.mount, prisms);
-        self.allow_contact(screw.allowed_contacts);
+        let body = self.add_body(format!("screw {}", screw.name), kind, screw.mount, prisms);
+        body.allowed_contacts.clone_from(&screw.allowed_contacts);
     }
 
     /// Adds the bolt of a joint on a servo's link. A pocket in the link's underside keeps the hexagon head from
     /// turning, since no wrench can reach the head once the link is on its servo. `top` is the joint's upper face, mm.
     pub fn add_link_joint(
         &mut self,
-        name: &str,
+        name: String,
         mount: Mount,
         position: Vector,
         top: f64,
-        allowed_contacts: &[&str],
+        allowed_contact: &str,
     ) {
-        let seat_z = self.stack.hex_head_face;
-        let screw = Screw {
-            allowed_contacts,
-            has_hex_head: true,
-            ..Screw::new(name, mount, position, seat_z, ScrewDirection::Up)
-        };
-        self.add_bolt(&screw, top + HEAD_CLEARANCE);
+        let mut screw = Screw::new(name, mount, position, self.stack.hex_head_face, UP);
+        screw.has_hex_head = true;
+        self.add_bolt(&screw.touching(allowed_contact), top + HEAD_CLEARANCE);
     }
-}
-
-/// Orders two heights, lower before upper.
-fn order_heights(a: f64, b: f64) -> Span {
-    [a.min(b), a.max(b)]
 }

@@ -1,15 +1,15 @@
 //! The bodies that do not move: plate, servos, battery, deck and board.
 
 use lizard_kinematics::{End, Vector};
+use lizard_robot::servo::SERVO_NAMES;
 
-use crate::bodies::builder::{AssemblyBuilder, Screw, ScrewDirection};
+use crate::bodies::builder::{AssemblyBuilder, DOWN, Screw, UP};
 use crate::bodies::fittings;
 use crate::bodies::layout::{STANDOFF_DISTANCES, STANDOFF_RADIUS, UNO_BOARD_THICKNESS, UNO_SIZE};
 use crate::bodies::leads;
-use crate::bodies::names::servo_and_leg_names;
 use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::mark;
-use crate::layers::shape::Shape;
+use crate::layers::shape::{Shape, vector};
 
 /// Radius of a servo's spline, mm.
 pub const SPLINE_RADIUS: f64 = 2.4;
@@ -22,18 +22,14 @@ const NUMBER_DISTANCE: f64 = 4.0;
 
 /// Holes of a UNO relative to its middle, with the USB socket behind, mm: (550, 100), (600, 2000), (2600, 300) and
 /// (2600, 1400) mil from a corner.
-const UNO_HOLES: [(f64, f64); 4] = [
-    (24.13, -20.32),
-    (-24.13, -19.05),
-    (19.05, 31.75),
-    (-8.89, 31.75),
+const UNO_HOLES: [Vector; 4] = [
+    Vector::new(24.13, -20.32),
+    Vector::new(-24.13, -19.05),
+    Vector::new(19.05, 31.75),
+    Vector::new(-8.89, 31.75),
 ];
 /// Index in [`UNO_HOLES`] of the hole beside the pin AREF, whose header leaves no room for a screw's head.
 const UNO_SCREWLESS_HOLE: usize = 1;
-
-fn vector(x: f64, y: f64) -> Vector {
-    Vector::new(x, y)
-}
 
 /// Adds the bodies that do not move.
 pub fn add(builder: &mut AssemblyBuilder) {
@@ -132,7 +128,7 @@ fn add_plate(builder: &mut AssemblyBuilder) {
         Prism::new(filled, engraved_cuts, [mark_bottom, high]),
         Prism::new(seats, all_cutouts, stack.seat),
     ];
-    builder.add_printed("plate", Mount::Chassis, prisms);
+    builder.add_body("plate", Kind::Printed, Mount::Chassis, prisms);
 }
 
 /// Makes the layers of the plate's piece around one servo and its leg's pivots, which is printed first, as a trial.
@@ -178,7 +174,7 @@ fn make_number_strokes(builder: &AssemblyBuilder) -> Vec<Shape> {
 }
 
 fn add_servo(builder: &mut AssemblyBuilder, servo: usize) {
-    let (name, _) = servo_and_leg_names(servo);
+    let name = SERVO_NAMES[servo];
     let body = builder.parts.servo;
     let bottom = builder.stack.servo_bottom;
     let shaft = builder.layout.shafts[servo];
@@ -201,8 +197,8 @@ fn add_servo(builder: &mut AssemblyBuilder, servo: usize) {
         solid_layer(gears, body.height, body.boss),
         solid_layer(spline, body.boss, body.boss + 3.0),
     ];
-    builder.add_body(format!("servo {name}"), Kind::Servo, Mount::Chassis, prisms);
-    builder.allow_contact(&[format!("horn {name}")]);
+    let servo_body = builder.add_body(format!("servo {name}"), Kind::Servo, Mount::Chassis, prisms);
+    servo_body.allowed_contacts = vec![format!("horn {name}")];
     for (number, position) in (1..).zip(flange_hole_positions(builder, servo)) {
         let z = [bottom + flange_top, bottom + flange_top + 1.6];
         let head = Prism::solid([Shape::disc(position, 2.2)], z);
@@ -221,29 +217,26 @@ fn add_battery(builder: &mut AssemblyBuilder) {
 fn add_deck(builder: &mut AssemblyBuilder) {
     let (stack, parts) = (builder.stack, builder.parts);
     let [x, y] = STANDOFF_DISTANCES;
-    let bar_between = |(ax, ay): (f64, f64), (bx, by): (f64, f64)| {
-        Shape::bar(vector(ax, ay), vector(bx, by), 5.0)
-    };
     let size = vector(2.0 * x + 10.5, 2.0 * y + 14.0);
     let mut filled = vec![
         Shape::rectangle(Vector::default(), size, 5.0),
-        bar_between(UNO_HOLES[0], UNO_HOLES[1]),
-        bar_between(UNO_HOLES[2], UNO_HOLES[3]),
+        Shape::bar(UNO_HOLES[0], UNO_HOLES[1], 5.0),
+        Shape::bar(UNO_HOLES[2], UNO_HOLES[3], 5.0),
     ];
     let [wings, openings] = fittings::make_wing_shapes(UNO_HOLES);
     filled.extend(wings);
     let screws = standoff_positions().map(|position| builder.clearance_hole(position));
-    let pilot_holes = UNO_HOLES.map(|(x, y)| builder.pilot_hole(vector(x, y)));
+    let pilot_holes = UNO_HOLES.map(|position| builder.pilot_hole(position));
     // The window saves weight; the cable ties of the fittings under the deck pass through it.
     let window = Shape::rectangle(vector(0.0, 4.0), vector(12.0, 36.0), 3.0);
     let wire_holes = leads::make_wire_holes();
     let holes = [&screws[..], &pilot_holes, &wire_holes, &[window], &openings].concat();
-    let bosses = UNO_HOLES.map(|(x, y)| Shape::disc(vector(x, y), 4.0));
+    let bosses = UNO_HOLES.map(|position| Shape::disc(position, 4.0));
     let prisms = [
         Prism::new(filled, holes, stack.deck),
         Prism::new(bosses, pilot_holes, stack.board_boss),
     ];
-    builder.add_printed("deck", Mount::Chassis, prisms);
+    builder.add_body("deck", Kind::Printed, Mount::Chassis, prisms);
     for (number, position) in (1..).zip(standoff_positions()) {
         let length = stack.deck[0];
         let post = Shape::disc(position, STANDOFF_RADIUS);
@@ -251,11 +244,11 @@ fn add_deck(builder: &mut AssemblyBuilder) {
         let name = format!("standoff {number}");
         builder.add_body(&name, Kind::Standoff(length), Mount::Chassis, [post]);
         for (end, seat_z, direction) in [
-            ("below", stack.plate[0], ScrewDirection::Up),
-            ("above", stack.deck[1], ScrewDirection::Down),
+            ("below", stack.plate[0], UP),
+            ("above", stack.deck[1], DOWN),
         ] {
             let name = format!("{name} {end}");
-            let screw = Screw::new(&name, Mount::Chassis, position, seat_z, direction);
+            let screw = Screw::new(name, Mount::Chassis, position, seat_z, direction);
             builder.add_screw(&screw, parts.plate + 4.0);
         }
     }
@@ -266,16 +259,15 @@ fn add_board(builder: &mut AssemblyBuilder) {
     let [x, y, z] = UNO_SIZE;
     let top = low + UNO_BOARD_THICKNESS;
     let build_block = |x: f64, y: f64| [Shape::rectangle(Vector::default(), vector(x, y), 0.0)];
-    let holes = UNO_HOLES.map(|(x, y)| Shape::disc(vector(x, y), 1.6));
-    let heads = UNO_HOLES.map(|(x, y)| builder.counterbore(vector(x, y)));
+    let holes = UNO_HOLES.map(|position| Shape::disc(position, 1.6));
+    let heads = UNO_HOLES.map(|position| builder.counterbore(position));
     let board = Prism::new(build_block(x, y), holes, [low, top]);
     let components = Prism::new(build_block(x - 4.0, y - 4.0), heads, [top, low + z]);
     builder.add_body("board", Kind::Board, Mount::Chassis, [board, components]);
-    for (index, (x, y)) in UNO_HOLES.into_iter().enumerate() {
+    for (index, position) in UNO_HOLES.into_iter().enumerate() {
         if index != UNO_SCREWLESS_HOLE {
             let name = format!("board {}", index + 1);
-            let (position, direction) = (vector(x, y), ScrewDirection::Down);
-            let screw = Screw::new(&name, Mount::Chassis, position, top, direction);
+            let screw = Screw::new(name, Mount::Chassis, position, top, DOWN);
             builder.add_screw(&screw, 10.0);
         }
     }

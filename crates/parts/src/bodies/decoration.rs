@@ -6,10 +6,10 @@
 //! straight forward, and the tail links point back, spread by a few degrees.
 
 use lizard_kinematics::{End, Solution, Vector};
+use lizard_robot::servo::SERVO_NAMES;
 
-use crate::bodies::builder::{AssemblyBuilder, Screw, ScrewDirection};
-use crate::bodies::names::servo_and_leg_names;
-use crate::layers::body::{Mount, Prism, coupler_length, end_and_index};
+use crate::bodies::builder::{AssemblyBuilder, DOWN, Screw};
+use crate::layers::body::{Kind, Mount, Prism, coupler_length, end_and_index};
 use crate::layers::shape::Shape;
 use crate::layers::stack::HEAD_CLEARANCE;
 
@@ -69,13 +69,14 @@ pub fn add(builder: &mut AssemblyBuilder, end: End) -> EndDecoration {
             (0.0, "head plate".to_owned(), part)
         }
         End::Tail => {
+            let tail_name = |servo: usize| format!("tail {}", SERVO_NAMES[servo]);
             let lower_part = make_tail_part(builder, left, &neutral);
-            add_under_lower_coupler(builder, left, lower_part);
-            let name = format!("tail {}", servo_and_leg_names(right).0);
-            (THICKNESS, name, make_tail_part(builder, right, &neutral))
+            add_part(builder, left, &tail_name(left), lower_part);
+            let part = make_tail_part(builder, right, &neutral);
+            (THICKNESS, tail_name(right), part)
         }
     };
-    add_on_upper_coupler(builder, right, &name, upper_part);
+    add_part(builder, right, &name, upper_part);
     EndDecoration {
         lower_thickness,
         upper_thickness: THICKNESS,
@@ -136,24 +137,21 @@ fn make_head_part(builder: &AssemblyBuilder, servo: usize, neutral: &Solution) -
         |forward: f64, left: f64| end_point + direction * forward + direction.rotated_left() * left;
     let half_width = 0.24 * length;
     let [cheek, neck] = [0.34 * length, -0.1 * length];
-    let snout = (length - CORNER_RADIUS, 0.0);
-    let sides = [
+    let corners = [
         (cheek, half_width),
         (cheek, -half_width),
         (neck, 0.4 * half_width),
         (neck, -0.4 * half_width),
+        (length - CORNER_RADIUS, 0.0),
     ];
-    let corners = sides.into_iter().chain([snout]);
     let corners = corners.map(|(forward, left)| point_at(forward, left));
-    let corners: Vec<_> = corners.collect();
     let face = Shape::hull(&corners, CORNER_RADIUS);
-    let eyes = [half_width, -half_width]
+    let [left_eye, right_eye] = [half_width, -half_width]
         .map(|left| Shape::disc(point_at(0.42 * length, left), EYE_RADIUS));
-    let mut cut = vec![builder.clearance_hole(end_point)];
-    cut.extend(eyes);
     let screw_position = second_screw_position(builder, servo);
     let bar = Shape::bar(screw_position, end_point, builder.half_bar_width());
-    (vec![bar, face], cut)
+    let hole = builder.clearance_hole(end_point);
+    (vec![bar, face], vec![hole, left_eye, right_eye])
 }
 
 /// Position of the second screw in a coupler's frame, mm.
@@ -162,29 +160,25 @@ fn second_screw_position(builder: &AssemblyBuilder, servo: usize) -> Vector {
     Vector::new(x, 0.0)
 }
 
-fn add_on_upper_coupler(builder: &mut AssemblyBuilder, servo: usize, name: &str, part: FlatPart) {
+/// Adds a part to a coupler, with its second screw: under a left coupler, on a right one.
+fn add_part(builder: &mut AssemblyBuilder, servo: usize, name: &str, part: FlatPart) {
     let (filled, mut cut) = part;
-    let low = builder.stack.upper_coupler[1];
-    cut.push(builder.clearance_hole(second_screw_position(builder, servo)));
-    let z = [low, low + THICKNESS];
-    builder.add_printed(name, Mount::Coupler(servo), [Prism::new(filled, cut, z)]);
-    add_second_screw(builder, name, servo, z[1]);
-}
-
-fn add_under_lower_coupler(builder: &mut AssemblyBuilder, servo: usize, part: FlatPart) {
-    let (filled, mut cut) = part;
-    let high = builder.stack.lower_coupler[0];
-    cut.push(builder.pilot_hole(second_screw_position(builder, servo)));
-    let z = [high - THICKNESS, high];
-    let name = format!("tail {}", servo_and_leg_names(servo).0);
-    builder.add_printed(&name, Mount::Coupler(servo), [Prism::new(filled, cut, z)]);
-    // The screw's head is sunk, since the upper coupler turns above it.
-    let seat_z = builder.stack.lower_coupler[1] - builder.parts.screw.head_height - HEAD_CLEARANCE;
-    add_second_screw(builder, &name, servo, seat_z);
-}
-
-fn add_second_screw(builder: &mut AssemblyBuilder, part_name: &str, servo: usize, seat_z: f64) {
+    let (stack, screw) = (builder.stack, builder.parts.screw);
     let (mount, position) = (Mount::Coupler(servo), second_screw_position(builder, servo));
-    let screw = Screw::new(part_name, mount, position, seat_z, ScrewDirection::Down);
+    let (_, index) = end_and_index(servo);
+    let is_left = index == 0;
+    let (hole, z, seat_z) = if is_left {
+        let [low, high] = stack.lower_coupler;
+        // The screw's head is sunk, since the upper coupler turns above it.
+        let seat_z = high - screw.head_height - HEAD_CLEARANCE;
+        (builder.pilot_hole(position), [low - THICKNESS, low], seat_z)
+    } else {
+        let [_, low] = stack.upper_coupler;
+        let high = low + THICKNESS;
+        (builder.clearance_hole(position), [low, high], high)
+    };
+    cut.push(hole);
+    builder.add_body(name, Kind::Printed, mount, [Prism::new(filled, cut, z)]);
+    let screw = Screw::new(name, mount, position, seat_z, DOWN);
     builder.add_screw(&screw, SECOND_SCREW_LENGTH);
 }

@@ -1,10 +1,10 @@
 //! The couplers of head and tail, with their screws. Each end's left coupler is below its right coupler.
 
 use lizard_kinematics::{End, Vector};
+use lizard_robot::servo::SERVO_NAMES;
 
-use crate::bodies::builder::{AssemblyBuilder, Screw, ScrewDirection};
+use crate::bodies::builder::{AssemblyBuilder, Screw, UP};
 use crate::bodies::decoration;
-use crate::bodies::names::{coupler_name, servo_and_leg_names};
 use crate::layers::body::{Mount, Prism, coupler_length};
 use crate::layers::shape::Shape;
 use crate::layers::stack::{HEAD_CLEARANCE, Span};
@@ -17,31 +17,25 @@ pub fn add(builder: &mut AssemblyBuilder) {
         let (link, lower, upper) = (stack.link, stack.lower_coupler, stack.upper_coupler);
         add_coupler(builder, left, lower);
         add_coupler(builder, right, upper);
-        // A spacer fills the gap between the crank and the right coupler, which lies higher.
-        for (servo, top, spacer_top) in [(left, lower[1], None), (right, upper[1], Some(upper[0]))]
-        {
+        for (servo, [bottom, top]) in [(left, lower), (right, upper)] {
             let tip = Vector::new(builder.layout.crank_lengths[servo], 0.0);
-            let (mount, allowed_contacts) = (Mount::Link(servo), [&*coupler_name(servo)]);
-            let (name, _) = servo_and_leg_names(servo);
-            if let Some(spacer_top) = spacer_top {
+            let (mount, coupler) = (Mount::Link(servo), Mount::Coupler(servo).name());
+            let name = SERVO_NAMES[servo];
+            // A spacer fills the gap between the crank and the right coupler, which lies higher.
+            if servo == right {
                 let name = format!("tip spacer {name}");
-                builder.add_spacer(name, mount, tip, [link[1], spacer_top], &allowed_contacts);
+                builder.add_spacer(name, mount, tip, [link[1], bottom], &coupler);
             }
-            builder.add_link_joint(&format!("tip {name}"), mount, tip, top, &allowed_contacts);
+            builder.add_link_joint(format!("tip {name}"), mount, tip, top, &coupler);
         }
         // The screw of the end point joins both couplers and the decorative parts.
         let end_point = Vector::new(coupler_length(builder.robot, left), 0.0);
         let decoration = decoration::add(builder, end);
-        let upper_coupler_name = coupler_name(right);
-        let upper_bodies = decoration.upper_bodies.iter().map(String::as_str);
-        let allowed_contacts: Vec<_> = upper_bodies.chain([&*upper_coupler_name]).collect();
         let (seat_z, mount) = (lower[0] - decoration.lower_thickness, Mount::Coupler(left));
-        let screw = Screw {
-            allowed_contacts: &allowed_contacts,
-            ..Screw::new(end.name(), mount, end_point, seat_z, ScrewDirection::Up)
-        };
+        let mut screw = Screw::new(end.name(), mount, end_point, seat_z, UP);
+        screw.allowed_contacts = decoration.upper_bodies;
         let nut_z = upper[1] + decoration.upper_thickness + HEAD_CLEARANCE;
-        builder.add_bolt(&screw, nut_z);
+        builder.add_bolt(&screw.touching(Mount::Coupler(right).name()), nut_z);
     }
 }
 
@@ -66,5 +60,5 @@ fn add_coupler(builder: &mut AssemblyBuilder, servo: usize, z: Span) {
         }
         None => vec![build_layer(None, z)],
     };
-    builder.add_printed(coupler_name(servo), Mount::Coupler(servo), prisms);
+    builder.add_printed(Mount::Coupler(servo), prisms);
 }

@@ -9,8 +9,8 @@ use lizard_kinematics::Vector;
 use crate::bodies::builder::AssemblyBuilder;
 use crate::bodies::layout::{STANDOFF_DISTANCES, STANDOFF_RADIUS, UNO_BOARD_THICKNESS, UNO_SIZE};
 use crate::layers::body::{Kind, Mount, Prism};
-use crate::layers::fitting::{Fitting, STRAP_SECTION, STRIP_PITCH};
-use crate::layers::shape::Shape;
+use crate::layers::fitting::{Fitting, FittingSpec, STRAP_SECTION, STRIP_PITCH};
+use crate::layers::shape::{Shape, vector};
 
 /// Size of a slot for the battery's strap, mm: along the plate and across.
 const STRAP_SLOT: [f64; 2] = [17.0, 2.4];
@@ -44,10 +44,6 @@ const JACK_OVERHANG: f64 = 2.0;
 /// Position of the barrel jack's middle, mm to the right of the board's middle.
 const JACK_X: f64 = 19.05;
 
-fn vector(x: f64, y: f64) -> Vector {
-    Vector::new(x, y)
-}
-
 /// Makes a slot with its middle at `x`, `y`, mm.
 fn make_slot(x: f64, y: f64, [slot_length, slot_width]: [f64; 2]) -> Shape {
     Shape::rectangle(vector(x, y), vector(slot_width, slot_length), 0.5)
@@ -79,7 +75,7 @@ fn strip_x(builder: &AssemblyBuilder) -> f64 {
 
 /// Makes the filled shapes of the deck's wings and of the arms from the wings to the board's holes; then the openings
 /// and slots in the wings.
-pub fn make_wing_shapes(board_holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
+pub fn make_wing_shapes(board_holes: [Vector; 4]) -> [Vec<Shape>; 2] {
     let [inner, outer] = WING_EDGES;
     let middle = (inner + outer) / 2.0;
     let mut filled = Vec::new();
@@ -93,8 +89,9 @@ pub fn make_wing_shapes(board_holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
             cut.push(Shape::rectangle(middle, size, 2.0));
         }
     }
-    for (x, y) in board_holes {
-        filled.push(Shape::bar(vector(x, y), vector(middle.copysign(x), y), 5.0));
+    for hole in board_holes {
+        let wing_point = vector(middle.copysign(hole.x), hole.y);
+        filled.push(Shape::bar(hole, wing_point, 5.0));
     }
     // The signal strip's ties are behind the resistors, whose wires lie beside the strip's middle.
     for x in WING_TIE_X {
@@ -152,7 +149,7 @@ pub fn add(builder: &mut AssemblyBuilder) {
 
 /// Adds a fitting as a block of its own size with its lower face at the height `low`, mm.
 fn add_block(builder: &mut AssemblyBuilder, fitting: Fitting, middle: Vector, low: f64) {
-    let (name, size) = (fitting.name().to_owned(), fitting.spec().size);
+    let FittingSpec { name, size, .. } = fitting.spec();
     add_sized_block(builder, fitting, name, middle, low, size);
 }
 
@@ -160,7 +157,7 @@ fn add_block(builder: &mut AssemblyBuilder, fitting: Fitting, middle: Vector, lo
 fn add_sized_block(
     builder: &mut AssemblyBuilder,
     fitting: Fitting,
-    name: String,
+    name: &str,
     middle: Vector,
     low: f64,
     [width, length, height]: [f64; 3],
@@ -227,7 +224,7 @@ fn add_on_deck(builder: &mut AssemblyBuilder) {
         let y = signal_strip_y() + pitches * STRIP_PITCH;
         let middle = vector(resistor_x - row * row_pitch, y);
         let (size, name) = (Fitting::Resistor.spec().size, format!("resistor {number}"));
-        add_sized_block(builder, Fitting::Resistor, name, middle, top + 4.0, size);
+        add_sized_block(builder, Fitting::Resistor, &name, middle, top + 4.0, size);
     }
 }
 
@@ -235,18 +232,18 @@ fn add_on_deck(builder: &mut AssemblyBuilder) {
 /// battery leaves no room in front.
 fn add_plugs(builder: &mut AssemblyBuilder) {
     let [_, battery_length, battery_height] = builder.parts.battery;
-    let [width, thickness, height] = Fitting::BatteryPlug.spec().size;
+    let fitting = Fitting::BatteryPlug;
+    let FittingSpec { name, size, .. } = fitting.spec();
+    let [width, thickness, height] = size;
     let battery_end = battery_length / 2.0 + 0.3;
     let (y, low, size) = if battery_end + thickness <= STANDOFF_DISTANCES[1] - STANDOFF_RADIUS {
         let y = battery_end + thickness / 2.0;
-        (y, TIE_THICKNESS, [width, thickness, height])
+        (y, TIE_THICKNESS, size)
     } else {
         let y = STRAP_SECTION[0] / 2.0 + 1.0 + height / 2.0;
         (y, battery_height + 0.2, [width, height, thickness])
     };
-    let (fitting, middle) = (Fitting::BatteryPlug, vector(0.0, y));
-    let name = fitting.name().to_owned();
-    add_sized_block(builder, fitting, name, middle, low, size);
+    add_sized_block(builder, fitting, name, vector(0.0, y), low, size);
     let [_, plug_length, plug_height] = Fitting::BarrelPlug.spec().size;
     let y = -(UNO_SIZE[1] + plug_length) / 2.0 - JACK_OVERHANG - 0.1;
     let low = builder.stack.board_boss[1] + UNO_BOARD_THICKNESS + JACK_HEIGHT - plug_height / 2.0;
@@ -278,6 +275,6 @@ fn add_strap(builder: &mut AssemblyBuilder) {
         Prism::solid(sides, [strap_bottom, battery_top]),
         Prism::solid([full_bar], [battery_top, battery_top + thickness]),
     ];
-    let (fitting, mount) = (Fitting::Strap, Mount::Chassis);
-    builder.add_body(fitting.name(), Kind::Fitting(fitting), mount, prisms);
+    let (name, kind) = (Fitting::Strap.spec().name, Kind::Fitting(Fitting::Strap));
+    builder.add_body(name, kind, Mount::Chassis, prisms);
 }

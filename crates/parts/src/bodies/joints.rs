@@ -1,6 +1,6 @@
 //! The directions of the cranks, and the five-bars and sliders that follow from them, for any number type.
 
-use lizard_kinematics::{End, FiveBarPose, Lizard, Real, Side, SliderPose, Solution, Vector};
+use lizard_kinematics::{End, FiveBarPose, Lizard, Real, Side, SliderPose, Vector};
 
 /// The directions of the cranks, which determine the placements of all bodies. Some directions may be placeholders; a
 /// five-bar or slider that depends on a placeholder is meaningless.
@@ -9,14 +9,6 @@ pub struct Cranks<'a, T> {
     pub lizard: &'a Lizard,
     /// Unit vectors along the cranks, chassis frame, servo order.
     pub directions: [Vector<T>; 4],
-}
-
-impl<'a> Cranks<'a, f64> {
-    /// Returns the cranks at a pose.
-    pub fn from_pose(lizard: &'a Lizard, pose: &Solution) -> Self {
-        let directions = pose.legs.map(|leg| leg.direction);
-        Self { lizard, directions }
-    }
 }
 
 impl<T: Real> Cranks<'_, T> {

@@ -20,12 +20,10 @@ pub const UNO_BOARD_THICKNESS: f64 = 1.6;
 pub struct Layout {
     /// Servos' shafts, chassis frame, servo order, mm.
     pub shafts: [Vector; 4],
-    /// Sign of each link's arm, servo order: 1 if the arm is counter-clockwise from the crank, otherwise -1.
-    pub arm_signs: [f64; 4],
     /// Lengths of the cranks of head and tail, servo order, mm.
     pub crank_lengths: [f64; 4],
-    /// Lengths of the sliders' arms, servo order, mm.
-    pub arm_lengths: [f64; 4],
+    /// Tips of the sliders' arms in the frames of their links, servo order, mm.
+    pub arm_tips: [Vector; 4],
     /// Pivots and anchors of the legs, servo order.
     pub legs: [LegPlan; 4],
     /// Outline of the chassis plate.
@@ -48,11 +46,11 @@ impl Layout {
             (crank_lengths[left], crank_lengths[right]) =
                 (five_bar.left_crank_length, five_bar.right_crank_length);
         }
+        let arm_tip = |servo: usize| Vector::new(0.0, ARM_TURN_SIGN[servo] * arm_lengths[servo]);
         Self {
             shafts: lizard.shafts(),
-            arm_signs: ARM_TURN_SIGN,
             crank_lengths,
-            arm_lengths,
+            arm_tips: [0, 1, 2, 3].map(arm_tip),
             legs: *robot.legs(),
             plate: robot.plate(),
         }

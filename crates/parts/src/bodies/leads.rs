@@ -6,12 +6,12 @@
 
 use lizard_kinematics::{End, Vector};
 use lizard_robot::ServoBody;
+use lizard_robot::servo::SERVO_NAMES;
 
 use crate::bodies::builder::AssemblyBuilder;
 use crate::bodies::layout::STANDOFF_DISTANCES;
-use crate::bodies::names::servo_and_leg_names;
 use crate::layers::body::{Kind, Mount, Prism};
-use crate::layers::shape::Shape;
+use crate::layers::shape::{Shape, vector};
 
 /// Width and thickness of a lead, mm.
 pub const LEAD_SECTION: [f64; 2] = [4.0, 1.2];
@@ -52,8 +52,7 @@ pub fn make_wire_holes() -> [Shape; 2] {
 
 /// Adds the leads of all servos.
 pub fn add(builder: &mut AssemblyBuilder) {
-    for servo in 0..4 {
-        let (name, _) = servo_and_leg_names(servo);
+    for (servo, name) in SERVO_NAMES.into_iter().enumerate() {
         let outward = End::from_servo(servo).sign();
         let body = builder.parts.servo;
         let middle = builder.layout.plate.case_centres[servo];
@@ -62,7 +61,6 @@ pub fn add(builder: &mut AssemblyBuilder) {
         let inward_sign = -middle.x.signum();
         let x = middle.x + inward_sign * (half_size.x + LEAD_SECTION[1]);
         let bend_y = middle.y + outward * (half_size.y + BEND_LENGTH / 2.0);
-        let vector = Vector::new;
         let riser_position = wire_hole_centre(outward) + vector(-inward_sign * 1.6, 0.0);
         let radius = LEAD_SECTION[1];
         let low = builder.stack.servo_bottom + LEAD_EXIT_HEIGHT;

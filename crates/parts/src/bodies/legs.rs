@@ -5,9 +5,9 @@
 //! bends the leaf and turns the foot, so a column reaches down from the coupler to a low leaf.
 
 use lizard_kinematics::Vector;
+use lizard_robot::servo::LEG_NAMES;
 
-use crate::bodies::builder::{AssemblyBuilder, Screw, ScrewDirection};
-use crate::bodies::names::servo_and_leg_names;
+use crate::bodies::builder::{AssemblyBuilder, DOWN, Screw, UP};
 use crate::bodies::pads;
 use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::shape::Shape;
@@ -50,7 +50,6 @@ pub fn add(builder: &mut AssemblyBuilder) {
 }
 
 fn add_crank(builder: &mut AssemblyBuilder, servo: usize) {
-    let (_, leg) = servo_and_leg_names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
     let plan = builder.layout.legs[servo];
     let (anchor, joint) = (plan.anchor, plan.crank_joint);
@@ -77,11 +76,10 @@ fn add_crank(builder: &mut AssemblyBuilder, servo: usize) {
         Prism::new([bearing], holes, [stack.anchor[1], stack.bearing[1]]),
     ];
     prisms.retain(Prism::has_height);
-    builder.add_printed(format!("crank {leg}"), Mount::Crank(servo), prisms);
+    builder.add_printed(Mount::Crank(servo), prisms);
 }
 
 fn add_follower(builder: &mut AssemblyBuilder, servo: usize) {
-    let (_, leg) = servo_and_leg_names(servo);
     let (pivot, joint) = (Vector::default(), builder.layout.legs[servo].crank_joint);
     let (stack, half_width) = (builder.stack, builder.half_bar_width());
     let holes = [builder.clearance_hole(pivot), builder.clearance_hole(joint)];
@@ -92,7 +90,7 @@ fn add_follower(builder: &mut AssemblyBuilder, servo: usize) {
         Shape::bar(pivot, joint, half_width),
     ];
     let prisms = [Prism::new(bar, holes, stack.crank), bearing];
-    builder.add_printed(format!("follower {leg}"), Mount::Follower(servo), prisms);
+    builder.add_printed(Mount::Follower(servo), prisms);
 }
 
 /// Positions of the two screws between coupler and foot, coupler frame, mm.
@@ -107,7 +105,6 @@ fn clamp_seat_z(builder: &AssemblyBuilder) -> f64 {
 }
 
 fn add_coupler(builder: &mut AssemblyBuilder, servo: usize) {
-    let (_, leg) = servo_and_leg_names(servo);
     let stack = builder.stack;
     let ground = builder.robot.lizard().leg.ground;
     let (from, to) = (Vector::default(), Vector::new(ground, 0.0));
@@ -123,11 +120,11 @@ fn add_coupler(builder: &mut AssemblyBuilder, servo: usize) {
         Prism::new(bar.clone(), through_holes, [low, seat_z]),
         Prism::new(bar, [joints, counterbores].concat(), [seat_z, high]),
     ];
-    builder.add_printed(format!("leg coupler {leg}"), Mount::Foot(servo), prisms);
+    builder.add_printed(Mount::Foot(servo), prisms);
 }
 
 fn add_foot(builder: &mut AssemblyBuilder, servo: usize) {
-    let (_, leg) = servo_and_leg_names(servo);
+    let leg = LEG_NAMES[servo];
     let stack = builder.stack;
     let foot = builder.layout.legs[servo].foot;
     let clamps = clamp_positions(builder);
@@ -163,15 +160,14 @@ fn add_foot(builder: &mut AssemblyBuilder, servo: usize) {
         Prism::new(column, pilot_holes, [hole_bottom, stack.leg_coupler[0]]),
     ];
     let mount = Mount::Foot(servo);
-    builder.add_printed(format!("foot {leg}"), mount, prisms);
+    builder.add_body(format!("foot {leg}"), Kind::Printed, mount, prisms);
     for (number, position) in (1..).zip(clamps) {
         let name = format!("foot {leg} {number}");
-        let (seat_z, direction) = (clamp_seat_z(builder), ScrewDirection::Down);
-        let screw = Screw::new(&name, mount, position, seat_z, direction);
+        let screw = Screw::new(name, mount, position, clamp_seat_z(builder), DOWN);
         builder.add_screw(&screw, CLAMP_SCREW_LENGTH);
     }
-    let (name, seat_z) = (format!("height {leg}"), stack.pad[1] - PAD_LIP_HEIGHT);
-    let screw = Screw::new(&name, mount, foot, seat_z, ScrewDirection::Up);
+    let seat_z = stack.pad[1] - PAD_LIP_HEIGHT;
+    let screw = Screw::new(format!("height {leg}"), mount, foot, seat_z, UP);
     builder.add_screw(&screw, FOOT_SCREW_LENGTH);
     let nut = builder.make_nut(foot, [stack.leaf[0], nut_z]);
     builder.add_body(format!("height nut {leg}"), Kind::Nut, mount, [nut]);
@@ -184,34 +180,22 @@ fn add_foot(builder: &mut AssemblyBuilder, servo: usize) {
 
 /// Adds the bolts of a leg's pivots and joints, and the bolt that joins crank and strut.
 fn add_screws(builder: &mut AssemblyBuilder, servo: usize) {
-    let (_, leg) = servo_and_leg_names(servo);
+    let leg = LEG_NAMES[servo];
     let (stack, parts) = (builder.stack, builder.parts);
     let plan = builder.layout.legs[servo];
     let (anchor, joint) = (plan.anchor, plan.crank_joint);
-    let (coupler, strut) = (format!("leg coupler {leg}"), builder.strut_name(leg));
-    let pivot = Vector::default();
-    let crank = Mount::Crank(servo);
-    for (mount, name) in [(crank, "crank"), (Mount::Follower(servo), "follower")] {
-        let (pivot_name, joint_name) =
-            (format!("{name} pivot {leg}"), format!("{name} joint {leg}"));
-        let seat_z = stack.bearing[1] + HEAD_CLEARANCE;
-        let screw = Screw {
-            allowed_contacts: &["plate"],
-            ..Screw::new(&pivot_name, mount, pivot, seat_z, ScrewDirection::Down)
-        };
-        builder.add_bolt(&screw, stack.plate[0] - HEAD_CLEARANCE);
-        let seat_z = stack.leg_coupler[0];
-        let screw = Screw {
-            allowed_contacts: &[&coupler],
-            ..Screw::new(&joint_name, mount, joint, seat_z, ScrewDirection::Up)
-        };
+    let (coupler, strut) = (Mount::Foot(servo).name(), builder.strut_name(servo));
+    let (pivot, crank) = (Vector::default(), Mount::Crank(servo));
+    for (mount, part) in [(crank, "crank"), (Mount::Follower(servo), "follower")] {
+        let (name, seat_z) = (format!("{part} pivot {leg}"), stack.bearing[1]);
+        let screw = Screw::new(name, mount, pivot, seat_z + HEAD_CLEARANCE, DOWN);
+        builder.add_bolt(&screw.touching("plate"), stack.plate[0] - HEAD_CLEARANCE);
+        let (name, seat_z) = (format!("{part} joint {leg}"), stack.leg_coupler[0]);
+        let screw = Screw::new(name, mount, joint, seat_z, UP).touching(&coupler);
         builder.add_bolt(&screw, stack.crank[1] + HEAD_CLEARANCE);
     }
     let (name, seat_z) = (format!("leg anchor {leg}"), stack.anchor_head_face);
-    let screw = Screw {
-        allowed_contacts: &[&strut],
-        ..Screw::new(&name, crank, anchor, seat_z, ScrewDirection::Down)
-    };
+    let screw = Screw::new(name, crank, anchor, seat_z, DOWN).touching(strut);
     builder.add_screw(&screw, stack.anchor_screw_length());
     builder.add_nut(&screw, stack.anchor_pocket_top(parts));
 }

@@ -4,10 +4,10 @@
 
 use lizard_kinematics::Vector;
 use lizard_robot::Horn;
+use lizard_robot::servo::SERVO_NAMES;
 
-use crate::bodies::builder::{AssemblyBuilder, Screw, ScrewDirection};
+use crate::bodies::builder::{AssemblyBuilder, DOWN, Screw};
 use crate::bodies::chassis::SPLINE_RADIUS;
-use crate::bodies::names::servo_and_leg_names;
 use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::shape::Shape;
 use crate::layers::stack::{HEAD_CLEARANCE, Span};
@@ -58,7 +58,7 @@ pub fn make_horn_arm(horn: &Horn, margin: f64) -> Vec<Shape> {
 }
 
 fn add_horn(builder: &mut AssemblyBuilder, servo: usize) {
-    let (name, _) = servo_and_leg_names(servo);
+    let name = SERVO_NAMES[servo];
     let horn = builder.parts.horn;
     let [low, _] = builder.stack.horn_pocket;
     let spline = Shape::disc(Vector::default(), SPLINE_RADIUS);
@@ -72,16 +72,16 @@ fn add_horn(builder: &mut AssemblyBuilder, servo: usize) {
         Prism::new(make_horn_arm(&horn, 0.0), through_holes, arm_z),
     ];
     let mount = Mount::Link(servo);
-    builder.add_body(format!("horn {name}"), Kind::Horn, mount, prisms);
-    builder.allow_contact(&[format!("servo {name}")]);
+    let horn_body = builder.add_body(format!("horn {name}"), Kind::Horn, mount, prisms);
+    horn_body.allowed_contacts = vec![format!("servo {name}")];
 }
 
 fn add_link(builder: &mut AssemblyBuilder, servo: usize) {
-    let (name, _) = servo_and_leg_names(servo);
+    let name = SERVO_NAMES[servo];
     let (parts, stack, layout) = (builder.parts, builder.stack, builder.layout);
     let hub = Vector::default();
     let tip = Vector::new(layout.crank_lengths[servo], 0.0);
-    let arm_tip = Vector::new(0.0, layout.arm_signs[servo] * layout.arm_lengths[servo]);
+    let arm_tip = layout.arm_tips[servo];
     let anchor = layout.legs[servo].anchor;
     let half_width = builder.half_bar_width();
     let hub_radius = parts.horn.hub / 2.0 + 2.0 * parts.fit + 1.5 * parts.wall;
@@ -125,8 +125,8 @@ fn add_link(builder: &mut AssemblyBuilder, servo: usize) {
         Prism::new(filled.clone(), cut_shapes, [z[0], z[1]])
     };
     let prisms: Vec<_> = heights.windows(2).map(build_layer).collect();
-    builder.add_printed(format!("link {name}"), Mount::Link(servo), prisms);
-    builder.allow_contact(&[format!("servo {name}")]);
+    let link = builder.add_printed(Mount::Link(servo), prisms);
+    link.allowed_contacts = vec![format!("servo {name}")];
 }
 
 /// Positions of the small screws that hold the horn.
@@ -135,7 +135,7 @@ fn horn_screw_positions(horn: &Horn) -> [Vector; 2] {
 }
 
 fn add_horn_screws(builder: &mut AssemblyBuilder, servo: usize) {
-    let (name, _) = servo_and_leg_names(servo);
+    let name = SERVO_NAMES[servo];
     let top = builder.stack.horn_pocket[0] + builder.parts.horn.thickness;
     let [radius, head_height] = HORN_SCREW_HEAD_SIZE;
     for (number, position) in (1..).zip(horn_screw_positions(&builder.parts.horn)) {
@@ -152,21 +152,18 @@ fn add_horn_screws(builder: &mut AssemblyBuilder, servo: usize) {
 
 /// Adds the screw that holds the strut, and the ring that fills the gap below the link.
 fn add_anchor(builder: &mut AssemblyBuilder, servo: usize) {
-    let (name, leg) = servo_and_leg_names(servo);
+    let name = SERVO_NAMES[servo];
     let (stack, parts) = (builder.stack, builder.parts);
     let position = builder.layout.legs[servo].anchor;
-    let strut = builder.strut_name(leg);
+    let strut = builder.strut_name(servo);
     let ring_z = [stack.anchor_head_face, stack.link[0] - HEAD_CLEARANCE];
     // The ring is thin enough to fit beside the spring's coil.
     let ring_disc = Shape::disc(position, parts.screw.diameter / 2.0 + RING_WALL);
     let prism = Prism::new([ring_disc], [builder.clearance_hole(position)], ring_z);
     let mount = Mount::Link(servo);
-    builder.add_printed(format!("strut ring {name}"), mount, [prism]);
-    builder.allow_contact(&[&strut]);
+    let ring = builder.add_body(format!("strut ring {name}"), Kind::Printed, mount, [prism]);
+    ring.allowed_contacts = vec![strut.clone()];
     let (name, seat_z) = (format!("anchor {name}"), stack.counterbore[0]);
-    let screw = Screw {
-        allowed_contacts: &[&strut],
-        ..Screw::new(&name, mount, position, seat_z, ScrewDirection::Down)
-    };
+    let screw = Screw::new(name, mount, position, seat_z, DOWN).touching(strut);
     builder.add_bolt(&screw, stack.strut_floor[0] - HEAD_CLEARANCE);
 }

@@ -14,7 +14,6 @@ pub(crate) mod layout;
 pub(crate) mod leads;
 pub(crate) mod legs;
 pub(crate) mod links;
-pub(crate) mod names;
 pub(crate) mod pads;
 pub(crate) mod sliders;
 pub(crate) mod struts;

@@ -5,9 +5,9 @@
 
 use lizard_kinematics::{Side, Vector};
 use lizard_robot::Robot;
+use lizard_robot::servo::SERVO_NAMES;
 
 use crate::bodies::builder::AssemblyBuilder;
-use crate::bodies::names::servo_and_leg_names;
 use crate::layers::body::{Mount, Prism};
 use crate::layers::shape::Shape;
 
@@ -78,8 +78,8 @@ fn add_sleeve(builder: &mut AssemblyBuilder, side: Side, lengths: &SliderLengths
         Prism::solid([case], [bore_high, stack.sleeve[1]]),
     ];
     prisms.retain(Prism::has_height);
-    builder.add_printed(format!("sleeve {side}"), Mount::Sleeve(side), prisms);
-    builder.allow_contact(&[format!("rod {side}")]);
+    let sleeve = builder.add_printed(Mount::Sleeve(side), prisms);
+    sleeve.allowed_contacts = vec![Mount::Rod(side).name()];
 }
 
 fn add_rod(builder: &mut AssemblyBuilder, side: Side, lengths: &SliderLengths) {
@@ -92,25 +92,22 @@ fn add_rod(builder: &mut AssemblyBuilder, side: Side, lengths: &SliderLengths) {
     let bend = Shape::bar(pin, bend_end, half_width - 0.02);
     let filled = [Shape::disc(pin, half_width), bend, bar];
     let prism = Prism::new(filled, [builder.clearance_hole(pin)], builder.stack.rod);
-    builder.add_printed(format!("rod {side}"), Mount::Rod(side), [prism]);
+    builder.add_printed(Mount::Rod(side), [prism]);
 }
 
 fn add_pins(builder: &mut AssemblyBuilder, side: Side) {
     let [front, rear] = side.servos();
-    let stack = builder.stack;
-    let layout = builder.layout;
-    let arm_tip =
-        |servo: usize| Vector::new(0.0, layout.arm_signs[servo] * layout.arm_lengths[servo]);
-    let [sleeve, rod] = ["sleeve", "rod"].map(|prefix| format!("{prefix} {side}"));
-    let name = format!("arm {}", servo_and_leg_names(rear).0);
-    let (position, mount) = (arm_tip(rear), Mount::Link(rear));
-    builder.add_link_joint(&name, mount, position, stack.lower_coupler[1], &[&sleeve]);
-    let (name, _) = servo_and_leg_names(front);
-    let (position, mount) = (arm_tip(front), Mount::Link(front));
+    let (stack, arm_tips) = (builder.stack, builder.layout.arm_tips);
+    let [sleeve, rod] = [Mount::Sleeve(side), Mount::Rod(side)].map(Mount::name);
+    let name = format!("arm {}", SERVO_NAMES[rear]);
+    let (position, mount) = (arm_tips[rear], Mount::Link(rear));
+    builder.add_link_joint(name, mount, position, stack.lower_coupler[1], &sleeve);
+    let name = SERVO_NAMES[front];
+    let (position, mount) = (arm_tips[front], Mount::Link(front));
     let spacer_z = [stack.link[1], stack.rod[0]];
     let (spacer_name, name) = (format!("arm spacer {name}"), format!("arm {name}"));
-    builder.add_spacer(spacer_name, mount, position, spacer_z, &[&rod]);
-    builder.add_link_joint(&name, mount, position, stack.rod[1], &[&rod]);
+    builder.add_spacer(spacer_name, mount, position, spacer_z, &rod);
+    builder.add_link_joint(name, mount, position, stack.rod[1], &rod);
 }
 
 /// Computes the shortest and the longest distance between a slider's pins, mm.

@@ -12,9 +12,9 @@
 
 use lizard_kinematics::Vector;
 use lizard_robot::SLOT_LENGTH;
+use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
 
-use crate::bodies::builder::AssemblyBuilder;
-use crate::bodies::names::{self, servo_and_leg_names};
+use crate::bodies::builder::{AssemblyBuilder, strut_name};
 use crate::layers::body::{Body, Kind, Mount, Prism};
 use crate::layers::shape::Shape;
 
@@ -37,16 +37,15 @@ pub fn make_alternatives(builder: &AssemblyBuilder) -> Vec<Body> {
 }
 
 fn make_strut(builder: &AssemblyBuilder, servo: usize, is_slotted: bool) -> Body {
-    let (_, leg) = servo_and_leg_names(servo);
     Body {
-        name: names::strut_name(is_slotted, leg),
+        name: strut_name(is_slotted, servo),
         kind: Kind::Printed,
         mount: Mount::Strut(servo),
         prisms: match is_slotted {
             true => make_slotted_prisms(builder, servo),
             false => vec![make_rigid_prism(builder, servo)],
         },
-        allowed_contacts: vec![format!("crank {leg}")],
+        allowed_contacts: vec![Mount::Crank(servo).name()],
     }
 }
 
@@ -84,7 +83,7 @@ fn make_rigid_prism(builder: &AssemblyBuilder, servo: usize) -> Prism {
 }
 
 fn add_spring(builder: &mut AssemblyBuilder, servo: usize) {
-    let (name, leg) = servo_and_leg_names(servo);
+    let (name, leg) = (SERVO_NAMES[servo], LEG_NAMES[servo]);
     let (stack, parts) = (builder.stack, builder.parts);
     let length = builder.layout.legs[servo].strut_length;
     let radius = parts.spring.outer_diameter / 2.0;
@@ -96,10 +95,8 @@ fn add_spring(builder: &mut AssemblyBuilder, servo: usize) {
     let z = [stack.coil_middle - radius, stack.coil_middle + radius];
     let coil = Prism::solid([coil], z);
     let mount = Mount::Strut(servo);
-    builder.add_body(format!("spring {leg}"), Kind::Spring, mount, [coil]);
+    let spring = builder.add_body(format!("spring {leg}"), Kind::Spring, mount, [coil]);
     // The screw heads lie over the hooks and extend to the coil's ends.
-    builder.allow_contact(&[
-        format!("screw leg anchor {leg}"),
-        format!("screw anchor {name}"),
-    ]);
+    let leg_screw = format!("screw leg anchor {leg}");
+    spring.allowed_contacts = vec![leg_screw, format!("screw anchor {name}")];
 }

@@ -4,7 +4,6 @@
 //! consists of an M3 hole, a horn's pocket, a servo's opening with the notch for its lead, and a piece of a sleeve. Use
 //! the first column into which all counterparts go by hand.
 
-use lizard_kinematics::Vector;
 use lizard_robot::Parts;
 
 use crate::bodies::leads::{LEAD_SECTION, make_lead_notch};
@@ -12,7 +11,7 @@ use crate::bodies::links::{POCKET_FIT_FACTOR, make_horn_arm};
 use crate::bodies::sliders::ROD_WIDTH;
 use crate::layers::body::Prism;
 use crate::layers::placement::Placement;
-use crate::layers::shape::Shape;
+use crate::layers::shape::{Shape, vector};
 use crate::part::Part;
 
 /// Number of columns, each with its own fit.
@@ -40,7 +39,6 @@ pub fn build_coupon(parts: &Parts) -> [Part; 2] {
     let sleeve_y = hole_y + 6.0 + SLEEVE_LENGTH / 2.0;
     let top_y = sleeve_y + SLEEVE_LENGTH / 2.0 + 2.0;
     let width = pitch * f64::from(COLUMN_COUNT);
-    let vector = Vector::new;
     let plate = Shape::rectangle(vector(width / 2.0, top_y / 2.0), vector(width, top_y), 2.0);
     let (mut floor_cuts, mut upper_cuts, mut walls, mut bores) = (vec![], vec![], vec![], vec![]);
     let mut roof_heights = Vec::new();
@@ -56,10 +54,7 @@ pub fn build_coupon(parts: &Parts) -> [Part; 2] {
         floor_cuts.extend(through_holes.iter().cloned());
         upper_cuts.extend(through_holes);
         floor_cuts.push(Shape::disc(vector(x, pocket_y), horn.hub / 2.0 + fit));
-        let arm_placement = Placement {
-            origin: vector(x, pocket_y),
-            x_axis: vector(0.0, 1.0),
-        };
+        let arm_placement = Placement::new(vector(x, pocket_y), vector(0.0, 1.0));
         let arm_shapes = make_horn_arm(horn, POCKET_FIT_FACTOR * fit).into_iter();
         upper_cuts.extend(arm_shapes.map(|shape| shape.placed(&arm_placement)));
         for dot in 0..=column {

@@ -7,7 +7,9 @@ use std::collections::BTreeMap;
 
 use lizard_kinematics::Vector;
 
-use crate::files::solid::{Face, Solid, Surface, position_along};
+use crate::build_error::BuildError;
+use crate::files::solid::{Edge, Face, Solid, Surface, position_along};
+use crate::layers::body::Prism;
 use crate::layers::outline::Segment;
 
 /// Largest distance between a chord and its arc, mm.
@@ -36,7 +38,7 @@ impl Mesh {
             corner_indices: BTreeMap::new(),
             edge_corners: Vec::new(),
         };
-        for edge in 0..solid.edges.len() {
+        for edge in &solid.edges {
             let corners = builder.divide_edge(edge);
             builder.edge_corners.push(corners);
         }
@@ -50,6 +52,17 @@ impl Mesh {
             }
         }
         builder.mesh
+    }
+
+    /// Divides the surface of layers into triangles. `name` is the name of their part.
+    ///
+    /// # Errors
+    /// Returns [`BuildError::OpenSurface`] if the layers do not form a closed surface.
+    pub fn from_prisms(name: &str, prisms: &[Prism]) -> Result<Self, BuildError> {
+        let solid = Solid::from_prisms(prisms);
+        let mesh = solid.is_closed().then(|| Self::from_solid(&solid));
+        let closed_mesh = mesh.filter(Self::is_closed);
+        closed_mesh.ok_or_else(|| BuildError::OpenSurface(name.to_owned()))
     }
 
     /// Computes the enclosed volume, mm^3.
@@ -97,14 +110,10 @@ impl MeshBuilder<'_> {
     }
 
     /// Divides an edge into chords, and returns the indices of the corners along it.
-    fn divide_edge(&mut self, edge: usize) -> Vec<usize> {
-        let edge = self.solid.edges[edge];
+    fn divide_edge(&mut self, edge: &Edge) -> Vec<usize> {
         let [from, to] = edge.ends;
         let (first, last) = (self.find_or_add_corner(from), self.find_or_add_corner(to));
-        let side = Segment {
-            from: self.solid.points[from.0],
-            bulge: edge.bulge,
-        };
+        let side = Segment::new(self.solid.points[from.0], edge.bulge);
         let mut corners = vec![first];
         let count_chords = |radius: f64, angle: f64| {
             let chord = 2.0 * libm::acos((1.0 - MAX_CHORD_ERROR / radius).clamp(-1.0, 1.0));
@@ -152,10 +161,8 @@ impl MeshBuilder<'_> {
         let indices = earcutr::earcut(&coordinates, &hole_starts, 2).expect("a loop has points");
         let to_triangle = |corner_indices: &[usize]| {
             let [(a, p), (b, q), (c, r)] = [0, 1, 2].map(|i| positions[corner_indices[i]]);
-            match (q - p).cross(r - p) < 0.0 {
-                true => [a, c, b],
-                false => [a, b, c],
-            }
+            let is_clockwise = (q - p).cross(r - p) < 0.0;
+            if is_clockwise { [a, c, b] } else { [a, b, c] }
         };
         let mut triangles: Vec<_> = indices.chunks_exact(3).map(to_triangle).collect();
         split_at_corners(&mut triangles, &positions);

@@ -27,12 +27,10 @@ pub struct OutputFile {
 }
 
 impl OutputFile {
-    /// Creates a text file.
-    pub fn from_text(path: impl Into<String>, text: String) -> Self {
-        Self {
-            path: path.into(),
-            bytes: text.into_bytes(),
-        }
+    /// Creates a file with a text or with bytes.
+    pub fn new(path: impl Into<String>, content: impl Into<Vec<u8>>) -> Self {
+        let (path, bytes) = (path.into(), content.into());
+        Self { path, bytes }
     }
 }
 
@@ -43,30 +41,22 @@ impl OutputFile {
 /// Returns [`BuildError::OpenSurface`] if the layers of the part do not form a closed surface.
 pub fn make_part_files(part: &Part, kerf: f64) -> Result<Vec<OutputFile>, BuildError> {
     let solid = Solid::from_prisms(&part.prisms);
-    let (printed_layers, _) = part.build_printed_layers();
-    let printed_solid = Solid::from_prisms(&printed_layers);
-    let open_surface = || Err(BuildError::OpenSurface(part.name.clone()));
-    if !solid.is_closed() || !printed_solid.is_closed() {
-        return open_surface();
+    if !solid.is_closed() {
+        return Err(BuildError::OpenSurface(part.name.clone()));
     }
-    let mesh = Mesh::from_solid(&printed_solid);
-    if !mesh.is_closed() {
-        return open_surface();
-    }
+    let mesh = Mesh::from_prisms(&part.name, &part.build_printed_layers().0)?;
     let name = part.file_stem();
     let step = step::format_step(&part.name, &solid);
+    let stl = stl::encode_stl(&part.name, &mesh);
     let mut files = vec![
-        OutputFile::from_text(format!("step/{name}.step"), step),
-        OutputFile {
-            path: format!("stl/{name}.stl"),
-            bytes: stl::encode_stl(&part.name, &mesh),
-        },
+        OutputFile::new(format!("step/{name}.step"), step),
+        OutputFile::new(format!("stl/{name}.stl"), stl),
     ];
     for sheet in sheet::draw_sheets(part) {
         let path = format!("cut/{}", sheet.name.replace(' ', "-"));
         let (dxf, svg) = (dxf::format_dxf(&sheet, kerf), svg::format_svg(&sheet, kerf));
-        files.push(OutputFile::from_text(format!("{path}.dxf"), dxf));
-        files.push(OutputFile::from_text(format!("{path}.svg"), svg));
+        files.push(OutputFile::new(format!("{path}.dxf"), dxf));
+        files.push(OutputFile::new(format!("{path}.svg"), svg));
     }
     Ok(files)
 }

@@ -168,9 +168,10 @@ impl SolidBuilder {
                 let is_uncut = positions.len() == 2;
                 let to_piece = |pair: &[(f64, usize)]| {
                     let [(start, from), (end, to)] = [pair[0], pair[1]];
-                    let bulge = match is_uncut {
+                    // On an arc, positions are angles.
+                    let bulge = match is_uncut || side.bulge == 0.0 {
                         true => side.bulge,
-                        false => compute_bulge(end - start, side.bulge),
+                        false => libm::tan((end - start) / 4.0) * side.bulge.signum(),
                     };
                     self.add_piece(level, from, to, bulge)
                 };
@@ -182,18 +183,13 @@ impl SolidBuilder {
     /// Returns a piece between two points; adds its edge and its middle if they are new.
     fn add_piece(&mut self, level: usize, from: usize, to: usize, bulge: f64) -> Piece {
         let points = &self.solid.points;
-        let side = Segment {
-            from: points[from],
-            bulge,
-        };
-        let middle = find_or_add(&mut self.middles, side.midpoint(points[to]));
+        let midpoint = Segment::new(points[from], bulge).midpoint(points[to]);
+        let middle = find_or_add(&mut self.middles, midpoint);
         let key = (level, from.min(to), from.max(to), middle);
         let edges = &mut self.solid.edges;
         let edge = *self.edge_indices.entry(key).or_insert_with(|| {
-            edges.push(Edge {
-                ends: [(from, level), (to, level)],
-                bulge,
-            });
+            let ends = [(from, level), (to, level)];
+            edges.push(Edge { ends, bulge });
             edges.len() - 1
         });
         Piece {
@@ -293,10 +289,8 @@ impl SolidBuilder {
     fn build_loop(&self, trail: &[Piece]) -> Loop {
         let to_segment = |piece: &Piece| {
             let bulge = self.solid.edges[piece.edge].bulge;
-            Segment {
-                from: self.solid.points[piece.from],
-                bulge: if piece.is_forward { bulge } else { -bulge },
-            }
+            let bulge = if piece.is_forward { bulge } else { -bulge };
+            Segment::new(self.solid.points[piece.from], bulge)
         };
         let sides = trail.iter().map(to_segment).collect();
         Loop { sides }
@@ -342,10 +336,8 @@ impl SolidBuilder {
         let edges = &mut self.solid.edges;
         let index = self.rising_edge_indices.entry((low, high, level));
         *index.or_insert_with(|| {
-            edges.push(Edge {
-                ends: [(low, level - 1), (high, level)],
-                bulge: 0.0,
-            });
+            let ends = [(low, level - 1), (high, level)];
+            edges.push(Edge { ends, bulge: 0.0 });
             edges.len() - 1
         })
     }
@@ -368,14 +360,6 @@ pub(crate) fn position_along(side: Segment, to: Vector, point: Vector) -> f64 {
     match angle < -1e-6 {
         true => angle + std::f64::consts::TAU,
         false => angle.max(0.0),
-    }
-}
-
-/// Computes the bulge of an arc of `angle` (rad) with the sign of `reference_bulge`; 0 if `reference_bulge` is 0.
-fn compute_bulge(angle: f64, reference_bulge: f64) -> f64 {
-    match reference_bulge == 0.0 {
-        true => 0.0,
-        false => libm::tan(angle / 4.0) * reference_bulge.signum(),
     }
 }
 
@@ -403,11 +387,7 @@ fn add_intersections(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layers::shape::Shape;
-
-    fn vector(x: f64, y: f64) -> Vector {
-        Vector::new(x, y)
-    }
+    use crate::layers::shape::{Shape, vector};
 
     #[test]
     fn a_plate_with_a_hole_has_eight_faces() {

@@ -70,6 +70,11 @@ impl StepWriter {
         self.add(&format!("AXIS2_PLACEMENT_3D('',#{origin},#{z},#{x})"))
     }
 
+    /// Adds a frame with its z axis up if `z` is 1, down if it is -1.
+    fn add_vertical_frame(&mut self, origin: Vector, height: f64, z: f64) -> usize {
+        self.add_frame([origin.x, origin.y, height], [0.0, 0.0, z], [1.0, 0.0, 0.0])
+    }
+
     fn add_solid(&mut self, name: &str, solid: &Solid) -> usize {
         let mut corners = std::collections::BTreeMap::new();
         let mut edges = Vec::new();
@@ -116,13 +121,9 @@ impl StepWriter {
     }
 
     fn add_curve(&mut self, [from, to]: [[f64; 3]; 2], bulge: f64) -> usize {
-        let side = Segment {
-            from: Vector::new(from[0], from[1]),
-            bulge,
-        };
+        let side = Segment::new(Vector::new(from[0], from[1]), bulge);
         if let Some((centre, radius)) = side.arc(Vector::new(to[0], to[1])) {
-            let (origin, axis) = ([centre.x, centre.y, from[2]], [0.0, 0.0, bulge.signum()]);
-            let frame = self.add_frame(origin, axis, [1.0, 0.0, 0.0]);
+            let frame = self.add_vertical_frame(centre, from[2], bulge.signum());
             return self.add(&format!("CIRCLE('',#{frame},{})", format_real(radius)));
         }
         let direction = [0, 1, 2].map(|i| to[i] - from[i]);
@@ -138,22 +139,17 @@ impl StepWriter {
     fn add_surface(&mut self, solid: &Solid, surface: Surface) -> (usize, bool) {
         match surface {
             Surface::Top(level) | Surface::Bottom(level) => {
-                let z_direction = match surface {
-                    Surface::Top(_) => 1.0,
-                    _ => -1.0,
-                };
-                let origin = [0.0, 0.0, solid.heights[level]];
-                let frame = self.add_frame(origin, [0.0, 0.0, z_direction], [1.0, 0.0, 0.0]);
+                let is_top = matches!(surface, Surface::Top(_));
+                let (height, z) = (solid.heights[level], if is_top { 1.0 } else { -1.0 });
+                let frame = self.add_vertical_frame(Vector::default(), height, z);
                 (self.add(&format!("PLANE('',#{frame})")), true)
             }
             Surface::Slope(side, end, level, upper_radius) => {
                 let (centre, radius) = side.arc(end).expect("a slope's side is an arc");
                 let [low, high] = [level, level + 1].map(|level| solid.heights[level]);
                 // A cone's angle is positive in STEP, so a cone that narrows upward gets a frame that points down.
-                let is_narrowing = radius > upper_radius;
-                let z_direction = if is_narrowing { -1.0 } else { 1.0 };
-                let (origin, axis) = ([centre.x, centre.y, low], [0.0, 0.0, z_direction]);
-                let frame = self.add_frame(origin, axis, [1.0, 0.0, 0.0]);
+                let z_direction = if radius > upper_radius { -1.0 } else { 1.0 };
+                let frame = self.add_vertical_frame(centre, low, z_direction);
                 let angle = libm::atan((upper_radius - radius).abs() / (high - low));
                 let (radius, angle) = (format_real(radius), format_real(angle));
                 let cone = format!("CONICAL_SURFACE('',#{frame},{radius},{angle})");
@@ -161,10 +157,9 @@ impl StepWriter {
             }
             Surface::Wall(side, end) => match side.arc(end) {
                 Some((centre, radius)) => {
-                    let origin = [centre.x, centre.y, 0.0];
-                    let frame = self.add_frame(origin, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
-                    let cylinder =
-                        format!("CYLINDRICAL_SURFACE('',#{frame},{})", format_real(radius));
+                    let frame = self.add_vertical_frame(centre, 0.0, 1.0);
+                    let radius = format_real(radius);
+                    let cylinder = format!("CYLINDRICAL_SURFACE('',#{frame},{radius})");
                     (self.add(&cylinder), side.bulge > 0.0)
                 }
                 None => {
@@ -192,7 +187,7 @@ impl StepWriter {
             self.add(&entity);
         }
         let (shape_id, context_id) = (first_id + PRODUCT_SHAPE_INDEX, self.last_id);
-        let frame = self.add_frame([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
+        let frame = self.add_vertical_frame(Vector::default(), 0.0, 1.0);
         let body_id = self.add(&format!(
             "ADVANCED_BREP_SHAPE_REPRESENTATION('',(#{frame},#{solid_id}),#{context_id})"
         ));

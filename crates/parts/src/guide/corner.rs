@@ -4,10 +4,11 @@
 //! Printing the corner takes three hours instead of fifteen for the whole robot, and shows whether the servo fits its
 //! opening and the horn its link, whether the bearings turn without play, and how much a foot yields.
 
+use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
+
 use crate::bodies::assembly::Assembly;
 use crate::bodies::builder::AssemblyBuilder;
 use crate::bodies::chassis;
-use crate::bodies::names::servo_and_leg_names;
 use crate::guide::CORNER_SERVO;
 use crate::layers::body::Mount;
 use crate::part::Part;
@@ -15,7 +16,7 @@ use crate::part::Part;
 impl Assembly {
     /// Collects the printed parts of the corner of `CORNER_SERVO`, each once.
     pub fn collect_corner_parts(&self) -> Vec<Part> {
-        let (servo_name, leg_name) = servo_and_leg_names(CORNER_SERVO);
+        let (servo_name, leg_name) = (SERVO_NAMES[CORNER_SERVO], LEG_NAMES[CORNER_SERVO]);
         let prisms = chassis::make_corner_prisms(&AssemblyBuilder::new(self.robot()), CORNER_SERVO);
         let mut parts = vec![Part::single(&format!("seat {servo_name}"), prisms)];
         let is_in_corner = |body_name: &str| {

@@ -57,18 +57,10 @@ impl Frame {
     }
 }
 
-/// The style of a polygon.
-#[derive(PartialEq)]
-struct Style {
-    colour: String,
-    /// True if the polygon's edge is drawn.
-    has_edge: bool,
-}
-
-/// A drawing: the styles and the rings of its polygons in drawing order.
+/// A drawing: the styles (as CSS) and the rings of its polygons in drawing order.
 #[derive(Default)]
 pub(super) struct Drawing {
-    polygons: Vec<(Style, Vec<Ring>)>,
+    polygons: Vec<(String, Vec<Ring>)>,
 }
 
 impl Drawing {
@@ -76,7 +68,10 @@ impl Drawing {
     pub(super) fn draw_polygon(&mut self, rings: Vec<Ring>, colour: [f64; 3], has_edge: bool) {
         let [r, g, b] = colour.map(|channel| channel.clamp(0.0, 255.0).round() as u8);
         let colour = format!("#{r:02x}{g:02x}{b:02x}");
-        self.polygons.push((Style { colour, has_edge }, rings));
+        // Without an edge, a thin stroke in the polygon's own colour closes the seams between neighbours.
+        let (stroke, stroke_width) = if has_edge { ("#333", 5) } else { (&*colour, 4) };
+        let style = format!("fill:{colour};stroke:{stroke};stroke-width:{stroke_width}");
+        self.polygons.push((style, rings));
     }
 
     /// Converts the drawing to SVG, `width` pixels wide, with the labels within the frame.
@@ -91,11 +86,11 @@ impl Drawing {
         let height = ((max.y - min.y) * scale + 2.0 * MARGIN).ceil();
         // To make the SVG about four times smaller, each style is written once, and a point is relative to the previous
         // one, in whole tenths of a pixel.
-        let mut styles: Vec<&Style> = Vec::new();
+        let mut styles: Vec<&str> = Vec::new();
         let mut paths = String::new();
         let to_tenths = |x: f64, offset: f64| (10.0 * (x * scale + offset)).round() as i64;
         for (style, rings) in &self.polygons {
-            let listed_index = styles.iter().position(|listed| *listed == style);
+            let listed_index = styles.iter().position(|listed| listed == style);
             let class_index = listed_index.unwrap_or(styles.len());
             if listed_index.is_none() {
                 styles.push(style);
@@ -128,13 +123,7 @@ impl Drawing {
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
              width=\"{width}\" height=\"{height}\">\n<style>\n"
         );
-        for (class_index, Style { colour, has_edge }) in styles.into_iter().enumerate() {
-            // Without an edge, a thin stroke in the polygon's own colour closes the seams between neighbours.
-            let (stroke, stroke_width) = match has_edge {
-                true => ("#333", 5),
-                false => (&**colour, 4),
-            };
-            let style = format!("fill:{colour};stroke:{stroke};stroke-width:{stroke_width}");
+        for (class_index, style) in styles.into_iter().enumerate() {
             let _ = writeln!(svg, ".c{class_index}{{{style}}}");
         }
         let _ = writeln!(

@@ -26,7 +26,7 @@ pub fn format_name(body: &Body, parts: &[Part]) -> Option<String> {
         Kind::ServoScrew | Kind::Servo | Kind::Horn | Kind::Spring | Kind::Battery => {
             body.kind.word().to_owned()
         }
-        Kind::Fitting(fitting) => fitting.name().to_owned(),
+        Kind::Fitting(fitting) => fitting.spec().name.to_owned(),
         Kind::Printed => {
             let part = parts.iter().find(|part| part.has_body(body))?;
             // The noun ends before the names of servos or legs, as in `link A1 A3`.

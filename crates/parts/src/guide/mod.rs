@@ -3,7 +3,6 @@
 //! In this order, a screwdriver reaches every screw, and the electronics are tested before any part can jam.
 
 pub(crate) mod corner;
-pub(crate) mod documents;
 pub(crate) mod drawing;
 pub(crate) mod html;
 pub(crate) mod legend;
@@ -13,15 +12,16 @@ pub(crate) mod placements;
 use std::fmt::Write;
 
 use lizard_kinematics::Solution;
+use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
 
 use crate::bill::Bill;
 use crate::bodies::assembly::Assembly;
-use crate::bodies::names::servo_and_leg_names;
 use crate::build_error::BuildError;
 use crate::files::OutputFile;
 use crate::guide::drawing::Label;
 use crate::guide::html::markdown_to_html;
 use crate::guide::picture::{PictureBody, View, draw_picture};
+use crate::guide::placements::format_placements;
 use crate::layers::body::{Body, Mount};
 use crate::layers::roof::PRINT_LAYER_MM;
 use crate::order::reach::AccessPose;
@@ -58,11 +58,29 @@ from head to tail. docs/gaits.md has more about pads with a grain.";
 const NOTCH_TEXT: &str =
     " The notches of all four pads, LF, RF, RH and LH, then point straight to the head.";
 
-/// Makes the guide as Markdown and HTML, with pictures of the robot at `pose`, usually neutral.
+/// Makes bill.json and the folder guide/ with pictures at `pose`, usually neutral.
 ///
 /// # Errors
 /// Returns [`BuildError::Blocked`] if a screw cannot be reached.
-pub fn make_guide(
+///
+/// # Panics
+/// Never: texts and numbers can always be converted to JSON.
+pub fn make_documents(
+    assembly: &Assembly,
+    bill: &Bill,
+    pose: &Solution,
+) -> Result<Vec<OutputFile>, BuildError> {
+    let bill_json =
+        serde_json::to_string_pretty(bill).expect("texts and numbers can be converted to JSON");
+    let mut files = vec![OutputFile::new("bill.json", bill_json + "\n")];
+    files.extend(make_guide(assembly, bill, pose)?);
+    let placements = format_placements(assembly, pose);
+    files.push(OutputFile::new("guide/placements.json", placements));
+    Ok(files)
+}
+
+/// Makes the guide as Markdown and HTML, with pictures of the robot at `pose`.
+fn make_guide(
     assembly: &Assembly,
     bill: &Bill,
     pose: &Solution,
@@ -83,13 +101,12 @@ pub fn make_guide(
     }
     let access_poses = assembly.find_access_poses(&steps)?;
     let parts = assembly.collect_parts();
-    let mut files = Vec::new();
     let bodies = assembly.bodies().iter();
     let picture_bodies = bodies.map(|body| PictureBody::without_lift(body, false));
     let picture_bodies: Vec<_> = picture_bodies.collect();
     let labels = legend::make_servo_and_end_labels(assembly, pose);
     let robot_picture = draw_picture(assembly, &picture_bodies, pose, &View::default(), &labels);
-    files.push(OutputFile::from_text("guide/robot.svg", robot_picture));
+    let mut files = vec![OutputFile::new("guide/robot.svg", robot_picture)];
     let mut text = format!(
         "# Building the robot\n\n![The robot](robot.svg)\n\n{INTRODUCTION}\n\n{}\n",
         format_drilling_text(&parts)
@@ -124,14 +141,14 @@ pub fn make_guide(
         for (view_name, caption, drawing) in draw_step(assembly, &parts, pose, step, bodies) {
             let name = format!("step-{number}-{view_name}.svg");
             let _ = writeln!(text, "![{title}, {caption}]({name})");
-            files.push(OutputFile::from_text(format!("guide/{name}"), drawing));
+            files.push(OutputFile::new(format!("guide/{name}"), drawing));
         }
         text.push('\n');
         added_bodies.extend(new_bodies);
     }
     let page = markdown_to_html(&text);
-    files.push(OutputFile::from_text("guide/guide.html", page));
-    files.push(OutputFile::from_text("guide/guide.md", text));
+    files.push(OutputFile::new("guide/guide.html", page));
+    files.push(OutputFile::new("guide/guide.md", text));
     Ok(files)
 }
 
@@ -216,7 +233,7 @@ fn draw_step(
 
 /// True if a body belongs to the corner that close-ups show.
 fn is_at_corner(body: &Body) -> bool {
-    let (name, leg) = servo_and_leg_names(CORNER_SERVO);
+    let (name, leg) = (SERVO_NAMES[CORNER_SERVO], LEG_NAMES[CORNER_SERVO]);
     match body.mount {
         Mount::Chassis | Mount::Sleeve(_) | Mount::Rod(_) => {
             body.name.split(' ').any(|word| word == name || word == leg)
@@ -235,7 +252,7 @@ fn format_turns(assembly: &Assembly, access_pose: &AccessPose, is_at_bench: bool
             true => "counter-clockwise",
             false => "clockwise",
         };
-        let (name, leg) = servo_and_leg_names(servo);
+        let (name, leg) = (SERVO_NAMES[servo], LEG_NAMES[servo]);
         let subject = match is_at_bench {
             true => format!("crank and follower {leg}"),
             false => format!("link {name} with its leg"),
@@ -252,8 +269,7 @@ mod tests {
 
     #[test]
     fn every_body_is_added_in_exactly_one_step() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/paper.toml");
-        let text = std::fs::read_to_string(path).expect("paper.toml is readable");
+        let text = include_str!("../../../../robots/paper.toml");
         for (kind, is_slotted) in [("strut", true), ("rigid", false)] {
             let text = format!("{text}\n[leg.drive]\nkind = \"{kind}\"");
             let robot = lizard_robot::Robot::parse(&text)

@@ -1,10 +1,8 @@
 //! A rigid body of the robot: its layers, its kind, and the mount that it moves with.
 
-use std::borrow::Cow;
-
 use lizard_kinematics::{End, Side, Vector};
-
 use lizard_robot::Robot;
+use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
 
 use crate::layers::fitting::Fitting;
 use crate::layers::shape::Shape;
@@ -58,29 +56,19 @@ impl Prism {
     pub fn at_heights(&self, z: Span) -> Self {
         let [low, high] = self.insets;
         let slope = (high - low) / (self.z[1] - self.z[0]);
-        let insets = match low == high {
-            true => self.insets,
-            false => z.map(|height| low + slope * (height - self.z[0])),
-        };
         Self {
             z,
-            insets,
+            insets: z.map(|height| low + slope * (height - self.z[0])),
             ..self.clone()
         }
     }
 
     /// Returns a layer with vertical walls and the cross-section at a fraction of the height; 0 is the bottom.
-    pub(crate) fn cross_section(&self, fraction: f64) -> Cow<'_, Self> {
-        if self.insets == [0.0; 2] {
-            return Cow::Borrowed(self);
-        }
+    pub(crate) fn cross_section(&self, fraction: f64) -> Self {
         let inset = self.insets[0] + fraction * (self.insets[1] - self.insets[0]);
-        let shrink = |shape: &Shape| Shape {
-            points: shape.points.clone(),
-            radius: shape.radius - inset,
-        };
-        let filled: Vec<Shape> = self.filled_shapes.iter().map(shrink).collect();
-        Cow::Owned(Self::new(filled, self.cut_shapes.clone(), self.z))
+        let shapes = self.filled_shapes.iter();
+        let filled: Vec<Shape> = shapes.map(|shape| shape.grown(-inset)).collect();
+        Self::new(filled, self.cut_shapes.clone(), self.z)
     }
 }
 
@@ -172,13 +160,31 @@ pub enum Mount {
 }
 
 impl Mount {
+    /// Name of the mount and of its printed body; the body of the chassis has another name.
+    pub(crate) fn name(self) -> String {
+        let (kind, owner) = match self {
+            Self::Chassis => return "chassis".to_owned(),
+            Self::Link(servo) => ("link", SERVO_NAMES[servo]),
+            Self::Crank(servo) => ("crank", LEG_NAMES[servo]),
+            Self::Follower(servo) => ("follower", LEG_NAMES[servo]),
+            Self::Foot(servo) => ("leg coupler", LEG_NAMES[servo]),
+            Self::Strut(servo) => ("strut", LEG_NAMES[servo]),
+            Self::Coupler(servo) => ("coupler", SERVO_NAMES[servo]),
+            Self::Sleeve(side) => ("sleeve", side.name()),
+            Self::Rod(side) => ("rod", side.name()),
+        };
+        format!("{kind} {owner}")
+    }
+
     /// Servos that determine the mount's placement, in servo order.
     pub fn servos(self) -> Vec<usize> {
-        match self {
-            Self::Coupler(servo) => sort_pair(End::from_servo(servo).servos()),
-            Self::Sleeve(side) | Self::Rod(side) => sort_pair(side.servos()),
+        let mut servos = match self {
+            Self::Coupler(servo) => End::from_servo(servo).servos().to_vec(),
+            Self::Sleeve(side) | Self::Rod(side) => side.servos().to_vec(),
             _ => self.servo().into_iter().collect(),
-        }
+        };
+        servos.sort_unstable();
+        servos
     }
 
     /// Servo of the mount; `None` for the chassis and the sliders.
@@ -193,10 +199,6 @@ impl Mount {
             Self::Chassis | Self::Sleeve(_) | Self::Rod(_) => None,
         }
     }
-}
-
-fn sort_pair([a, b]: [usize; 2]) -> Vec<usize> {
-    vec![a.min(b), a.max(b)]
 }
 
 /// A rigid body.

@@ -302,20 +302,14 @@ impl Fitting {
         }
     }
 
-    /// Name of the fitting's body.
-    pub fn name(self) -> &'static str {
-        self.spec().name
-    }
-
     /// Formats the row of the bill of materials; empty for a piece of another strip and for an optional part.
     pub fn format_bill_row(self) -> String {
         let FittingSpec { article, size, .. } = self.spec();
         let [x, y, z] = size;
+        let max_size = format!("at most {x} x {y} x {z} mm");
         match self {
             Self::GroundStrip => {
-                format!(
-                    "terminal strip, 12 ways, pitch 8 mm (3 A size), at most {x} x {y} x {z} mm"
-                )
+                format!("terminal strip, 12 ways, pitch 8 mm (3 A size), {max_size}")
             }
             // A second strip is cut into the supply, signal and plus pieces.
             Self::SupplyStrip => Self::GroundStrip.format_bill_row(),
@@ -324,13 +318,9 @@ impl Fitting {
                 article.to_owned()
             }
             Self::Capacitor => format!("{article}, at most {x} mm thick and {y} mm long"),
-            Self::Switch => {
-                format!("switch for {MIN_SWITCH_RATING_A} A {article}, at most {x} x {y} x {z} mm")
-            }
-            Self::Fuse => {
-                format!("fuse of {FUSE_RATING_A} A {article}, at most {x} x {y} x {z} mm")
-            }
-            _ => format!("{article}, at most {x} x {y} x {z} mm"),
+            Self::Switch => format!("switch for {MIN_SWITCH_RATING_A} A {article}, {max_size}"),
+            Self::Fuse => format!("fuse of {FUSE_RATING_A} A {article}, {max_size}"),
+            _ => format!("{article}, {max_size}"),
         }
     }
 

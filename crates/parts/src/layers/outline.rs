@@ -124,10 +124,8 @@ impl Loop {
         }
         let to_segment = |vertex: PlineVertex<f64>| {
             let is_straight = vertex.bulge.abs() < 1e-9;
-            Segment {
-                from: Vector::new(vertex.x, vertex.y),
-                bulge: if is_straight { 0.0 } else { vertex.bulge },
-            }
+            let bulge = if is_straight { 0.0 } else { vertex.bulge };
+            Segment::new(Vector::new(vertex.x, vertex.y), bulge)
         };
         let sides = line.iter_vertexes().map(to_segment).collect();
         Self { sides }
@@ -196,6 +194,11 @@ impl Loop {
 }
 
 impl Segment {
+    /// Creates a side from its start point and its bulge.
+    pub(crate) const fn new(from: Vector, bulge: f64) -> Self {
+        Self { from, bulge }
+    }
+
     /// Converts the side to a vertex of the library's polylines.
     pub(crate) fn to_vertex(self) -> PlineVertex<f64> {
         PlineVertex::new(self.from.x, self.from.y, self.bulge)
@@ -277,13 +280,10 @@ fn to_polyline(shape: &Shape) -> Polyline<f64> {
         line.add(points[0].x + radius, points[0].y, 1.0);
         return line;
     }
-    let direction_between = |from: Vector, to: Vector| (to - from) * (1.0 / (to - from).length());
     for i in 0..n {
         let (previous, corner, next) = (points[(i + n - 1) % n], points[i], points[(i + 1) % n]);
-        let (incoming, outgoing) = (
-            direction_between(previous, corner),
-            direction_between(corner, next),
-        );
+        let [incoming, outgoing] =
+            [corner - previous, next - corner].map(|side| side * (1.0 / side.length()));
         if *radius == 0.0 {
             line.add(corner.x, corner.y, 0.0);
             continue;
@@ -320,10 +320,7 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
-
-    fn vector(x: f64, y: f64) -> Vector {
-        Vector::new(x, y)
-    }
+    use crate::layers::shape::vector;
 
     fn build_outline(filled: Vec<Shape>, cut: Vec<Shape>) -> Outline {
         Outline::from_prism(&Prism::new(filled, cut, [0.0, 1.0]))

@@ -11,12 +11,16 @@ pub struct Placement<T = f64> {
     pub x_axis: Vector<T>,
 }
 
+impl<T> Placement<T> {
+    /// Creates a placement from the frame's origin and the unit vector along its x axis.
+    pub const fn new(origin: Vector<T>, x_axis: Vector<T>) -> Self {
+        Self { origin, x_axis }
+    }
+}
+
 impl Placement {
     /// The chassis frame itself.
-    pub const CHASSIS: Self = Self {
-        origin: Vector::new(0.0, 0.0),
-        x_axis: Vector::new(1.0, 0.0),
-    };
+    pub const CHASSIS: Self = Self::new(Vector::new(0.0, 0.0), Vector::new(1.0, 0.0));
 
     /// Converts a point from this placement's outer frame to the body's frame, mm.
     pub fn unmap(&self, point: Vector) -> Vector {
@@ -34,9 +38,6 @@ impl<T: Real> Placement<T> {
     /// Converts this placement from the chassis frame to another body's frame, itself placed in the chassis frame.
     pub fn relative_to(&self, frame: &Self) -> Self {
         let to_frame = |v: Vector<T>| Vector::new(v.dot(frame.x_axis), frame.x_axis.cross(v));
-        Self {
-            origin: to_frame(self.origin - frame.origin),
-            x_axis: to_frame(self.x_axis),
-        }
+        Self::new(to_frame(self.origin - frame.origin), to_frame(self.x_axis))
     }
 }

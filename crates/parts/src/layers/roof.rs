@@ -20,27 +20,18 @@ const SAME_HEIGHT_MM: f64 = 1e-6;
 /// Bridges each hole that would begin in mid-air with one printed layer. Also returns the number of these holes.
 pub fn bridge_unsupported_holes(prisms: &[Prism]) -> (Vec<Prism>, usize) {
     let mut layers = prisms.to_vec();
-    let mut count = 0;
-    for (index, pair) in prisms.windows(2).enumerate() {
-        let outline_below = Outline::from_prism(&pair[0]);
-        let layer_above = &prisms[index + 1];
-        let low = layer_above.z[0];
-        let high = compute_layer_top(low);
-        for hole in &layer_above.cut_shapes {
-            if !begins_in_mid_air(hole, layer_above, &outline_below) {
-                continue;
-            }
-            count += 1;
-            let split_layers = layers.iter().flat_map(|layer| split_at(layer, high));
-            layers = split_layers.collect();
-            for layer in &mut layers {
-                if layer.z[0] > low - SAME_HEIGHT_MM && layer.z[1] < high + SAME_HEIGHT_MM {
-                    layer.cut_shapes.retain(|cut| cut != hole);
-                }
+    let unsupported_holes = find_unsupported_holes(prisms);
+    for (hole, low) in &unsupported_holes {
+        let high = compute_layer_top(*low);
+        let split_layers = layers.iter().flat_map(|layer| split_at(layer, high));
+        layers = split_layers.collect();
+        for layer in &mut layers {
+            if layer.z[0] > low - SAME_HEIGHT_MM && layer.z[1] < high + SAME_HEIGHT_MM {
+                layer.cut_shapes.retain(|cut| cut != *hole);
             }
         }
     }
-    (layers, count)
+    (layers, unsupported_holes.len())
 }
 
 /// Computes the top of the first printed layer above a height. A slicer samples each layer in the layer's middle.
@@ -62,27 +53,24 @@ fn split_at(layer: &Prism, height: f64) -> Vec<Prism> {
     }
 }
 
-/// Finds the centres of the holes that begin in mid-air.
-pub fn find_unsupported_holes(prisms: &[Prism]) -> Vec<Vector> {
-    let mut centres = Vec::new();
+/// Finds the holes that begin in mid-air, each with the height at which it begins, mm.
+pub fn find_unsupported_holes(prisms: &[Prism]) -> Vec<(&Shape, f64)> {
+    let mut unsupported_holes = Vec::new();
     for pair in prisms.windows(2) {
-        let outline_below = Outline::from_prism(&pair[0]);
-        let holes = pair[1].cut_shapes.iter();
-        let unsupported_holes =
-            holes.filter(|hole| begins_in_mid_air(hole, &pair[1], &outline_below));
-        centres.extend(unsupported_holes.map(Shape::middle));
+        let [outline_below, outline] = [0, 1].map(|i| Outline::from_prism(&pair[i]));
+        for hole in &pair[1].cut_shapes {
+            if begins_in_mid_air(hole, &outline, &outline_below) {
+                unsupported_holes.push((hole, pair[1].z[0]));
+            }
+        }
     }
-    centres
+    unsupported_holes
 }
 
-/// True if material surrounds a hole, without material below it.
-fn begins_in_mid_air(hole: &Shape, prism: &Prism, outline_below: &Outline) -> bool {
-    let outline = Outline::from_prism(prism);
-    let widened_hole = Shape {
-        points: hole.points.clone(),
-        radius: hole.radius + SUPPORT_DISTANCE_MM,
-    };
-    let hole_surround = Outline::from_prism(&Prism::solid([widened_hole], prism.z));
+/// True if material surrounds a hole in a layer with this outline, without material below it.
+fn begins_in_mid_air(hole: &Shape, outline: &Outline, outline_below: &Outline) -> bool {
+    let widened_hole = hole.grown(SUPPORT_DISTANCE_MM);
+    let hole_surround = Outline::from_prism(&Prism::solid([widened_hole], [0.0, 1.0]));
     let mut points = hole_surround.loops().flat_map(Loop::sides_with_end_points);
     let is_in_mid_air = |point: Vector| outline.contains(point) && !outline_below.contains(point);
     points.all(|(side, to)| is_in_mid_air(side.from) && is_in_mid_air(side.midpoint(to)))

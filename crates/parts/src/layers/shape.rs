@@ -8,6 +8,11 @@ use lizard_kinematics::Vector;
 
 use crate::layers::placement::Placement;
 
+/// Creates a vector from its two components.
+pub(crate) const fn vector(x: f64, y: f64) -> Vector {
+    Vector::new(x, y)
+}
+
 /// The convex hull of some points, grown by a radius.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
@@ -20,10 +25,8 @@ pub struct Shape {
 impl Shape {
     /// Creates a disc about a centre.
     pub fn disc(centre: Vector, radius: f64) -> Self {
-        Self {
-            points: vec![centre],
-            radius,
-        }
+        let points = vec![centre];
+        Self { points, radius }
     }
 
     /// Creates a bar with round ends about two points.
@@ -31,10 +34,8 @@ impl Shape {
         if from == to {
             return Self::disc(from, radius);
         }
-        Self {
-            points: vec![from, to],
-            radius,
-        }
+        let points = vec![from, to];
+        Self { points, radius }
     }
 
     /// Creates a rectangle with rounded corners from its middle and its size.
@@ -70,15 +71,20 @@ impl Shape {
             }
             chain
         };
-        let mut chain = build_half_chain(&mut sorted_points.iter());
+        let mut points = build_half_chain(&mut sorted_points.iter());
         let upper = build_half_chain(&mut sorted_points.iter().rev());
         if sorted_points.len() > 1 {
-            chain.pop();
-            chain.extend(&upper[..upper.len() - 1]);
+            points.pop();
+            points.extend(&upper[..upper.len() - 1]);
         }
+        Self { points, radius }
+    }
+
+    /// Returns the shape with its radius changed by `margin`, mm.
+    pub(crate) fn grown(&self, margin: f64) -> Self {
         Self {
-            points: chain,
-            radius,
+            radius: self.radius + margin,
+            ..self.clone()
         }
     }
 
@@ -104,19 +110,15 @@ impl Shape {
     /// Converts the shape from the body's frame to the placement's outer frame.
     pub fn placed(&self, placement: &Placement) -> Self {
         let points = self.points.iter();
-        Self {
-            points: points.map(|&point| placement.map(point)).collect(),
-            radius: self.radius,
-        }
+        let points = points.map(|&point| placement.map(point)).collect();
+        Self { points, ..*self }
     }
 
     /// Returns the mirror image about the x axis.
     pub fn mirrored(&self) -> Self {
         let points = self.points.iter().rev();
-        Self {
-            points: points.map(|point| point.mirrored_in_x_axis()).collect(),
-            radius: self.radius,
-        }
+        let points = points.map(|point| point.mirrored_in_x_axis()).collect();
+        Self { points, ..*self }
     }
 
     /// Computes the distance to another shape, mm: 0 if the shapes touch; if they overlap, minus the length of the
@@ -136,10 +138,9 @@ impl Shape {
             let own_separation = self.max_side_separation(other);
             let separation = own_separation.max(other.max_side_separation(self));
             // Two discs have no sides.
-            distance = match separation.is_finite() {
-                true => separation.min(0.0),
-                false => 0.0,
-            };
+            if separation.is_finite() {
+                distance = separation.min(0.0);
+            }
         }
         distance - self.radius - other.radius
     }
@@ -148,8 +149,8 @@ impl Shape {
     /// all displacements of the points by up to `max_displacement` along x and y.
     pub fn depth_in(&self, hole: &Self, max_displacement: Vector) -> f64 {
         let sharp_hole = Self {
-            points: hole.points.clone(),
             radius: 0.0,
+            ..hole.clone()
         };
         let clearance = hole.radius - self.radius;
         let outside_distance = |point: &Vector| Self::disc(*point, 0.0).distance(&sharp_hole);
@@ -234,10 +235,6 @@ fn segment_point_distance(point: Vector, from: Vector, to: Vector) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn vector(x: f64, y: f64) -> Vector {
-        Vector::new(x, y)
-    }
 
     #[test]
     fn the_distance_between_disc_and_bar_is_that_of_their_middles_minus_both_radii() {

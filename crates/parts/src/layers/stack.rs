@@ -10,6 +10,11 @@ use lizard_robot::Parts;
 /// Heights of a layer's bottom and top, mm above the chassis plate's top.
 pub type Span = [f64; 2];
 
+/// Orders two heights, lower before upper.
+pub(crate) fn order_heights(a: f64, b: f64) -> Span {
+    [a.min(b), a.max(b)]
+}
+
 /// Common screw lengths, mm. ISO 7380 and ISO 4017 define more lengths, but few shops stock the others.
 pub const SCREW_LENGTHS: [f64; 6] = [6.0, 8.0, 10.0, 12.0, 16.0, 20.0];
 
@@ -122,10 +127,8 @@ impl Stack {
         let (thickness, gap, screw) = (parts.thickness, parts.gap, &parts.screw);
         let span_above =
             |lower_span: Span, height: f64| [lower_span[1] + gap, lower_span[1] + gap + height];
-        let plate = [-parts.plate, 0.0];
         let seat = [0.0, SEAT_HEIGHT];
         let crank = [gap, gap + thickness.max(screw.nut_height + CRANK_NUT_COVER)];
-        let bearing = [crank[1], crank[0] + BEARING_HEIGHT];
         let strut_bottom = crank[1] + CRANK_STRUT_GAP;
         let strut_floor = [strut_bottom, strut_bottom + STRUT_FLOOR_THICKNESS];
         let coil_middle = strut_floor[1] + SPRING_FLOOR_GAP + parts.spring.outer_diameter / 2.0;
@@ -140,7 +143,6 @@ impl Stack {
         let link_bottom = arm_bottom - HORN_FLOOR_THICKNESS;
         let link = [link_bottom, link_bottom + thickness];
         let lower_coupler = span_above(link, thickness);
-        let upper_coupler = span_above(lower_coupler, thickness);
         let bore_bottom = lower_coupler[0] + SLEEVE_WALL_THICKNESS;
         let bore = [bore_bottom, bore_bottom + thickness + 2.0 * parts.fit];
         let rod = [bore[0] + parts.fit, bore[1] - parts.fit];
@@ -150,7 +152,6 @@ impl Stack {
             .into_iter()
             .find(|length| *length >= slider_top + gap)
             .unwrap_or(slider_top + gap);
-        let leg_coupler = [-thickness - gap, 0.0];
         let pad = [-parts.height, parts.pad.height - parts.height];
         let leaf_bottom = pad[1] + MAX_FOOT_RAISE;
         let leaf_top = leaf_bottom + LEAF_THICKNESS;
@@ -159,12 +160,12 @@ impl Stack {
             pad,
             leaf: [leaf_bottom, leaf_top],
             foot_boss: [leaf_top, leaf_bottom + screw.nut_height + FOOT_NUT_COVER],
-            leg_coupler,
-            plate,
+            leg_coupler: [-thickness - gap, 0.0],
+            plate: [-parts.plate, 0.0],
             seat,
             servo_bottom: seat[1] - parts.servo.flange_height,
             crank,
-            bearing,
+            bearing: [crank[1], crank[0] + BEARING_HEIGHT],
             anchor: [crank[1], strut_floor[0] - HEAD_CLEARANCE],
             strut_floor,
             strut_wall: [strut_floor[1], wall_top],
@@ -176,7 +177,7 @@ impl Stack {
             horn_pocket: [arm_bottom, link[1]],
             counterbore: [link[1] - screw.head_height - HEAD_CLEARANCE, link[1]],
             lower_coupler,
-            upper_coupler,
+            upper_coupler: span_above(lower_coupler, thickness),
             sleeve: [lower_coupler[0], bore[1] + SLEEVE_WALL_THICKNESS],
             bore,
             rod,

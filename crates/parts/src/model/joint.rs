@@ -5,7 +5,6 @@ use lizard_robot::SLOT_LENGTH;
 use lizard_robot::servo::SERVO_NAMES;
 
 use crate::layers::body::Mount;
-use crate::model::cut_joints::CutJoint;
 use crate::model::node::Node;
 use crate::model::scene::StrutSpring;
 use crate::model::text::{MILLI, round};
@@ -15,13 +14,6 @@ impl Node {
     /// Name of the node without spaces, as ROS requires.
     pub(super) fn identifier(self) -> String {
         self.name().replace(' ', "_")
-    }
-}
-
-impl CutJoint {
-    /// Name of the joint without spaces.
-    pub(super) fn identifier(&self) -> String {
-        self.name.replace(' ', "_")
     }
 }
 
@@ -81,13 +73,12 @@ impl Writer<'_> {
     /// Damping (N m s or N s/m) and dry friction (N m or N) of a body's joint.
     pub(super) fn damping_and_friction(&self, node: Node) -> [f64; 2] {
         let motors = &self.scene.motors;
+        let friction = motors.joint_friction;
         let values = match (self.driving_servo(node), node) {
-            (Some(servo), _) => [
-                motors.per_servo[servo].damping(),
-                motors.joint_friction.pin_torque,
-            ]
-            .map(|value| value * MILLI),
-            (None, Node::OnMount(Mount::Rod(_))) => [0.0, motors.joint_friction.slider_force],
+            (Some(servo), _) => {
+                [motors.per_servo[servo].damping(), friction.pin_torque].map(|value| value * MILLI)
+            }
+            (None, Node::OnMount(Mount::Rod(_))) => [0.0, friction.slider_force],
             (None, Node::Pad(_)) => [self.leaf_damping(), 0.0],
             // Grease damps a link that moves freely within its play.
             (None, Node::OnMount(Mount::Link(_))) => [1e-5, 0.0],

@@ -32,26 +32,11 @@ mod writer;
 use lizard_kinematics::Solution;
 
 use crate::bodies::assembly::Assembly;
-use crate::build_error::BuildError;
-use crate::files::OutputFile;
 pub use floor::{Block, Floor};
-use node::Node;
-use pieces::{Piece, compute_pieces};
+use pieces::Piece;
 pub use scene::{Pads, Scene, StrutSpring, Trajectory};
 use text::XmlWriter;
 use writer::Writer;
-
-/// Formats a scene as an MJCF file for MuJoCo.
-///
-/// # Errors
-/// Returns [`BuildError::OpenSurface`] if the layers of a part do not form a closed surface.
-pub fn format_mjcf(
-    assembly: &Assembly,
-    neutral: &Solution,
-    scene: &Scene,
-) -> Result<String, BuildError> {
-    Ok(Pieces::compute(assembly, scene)?.format_mjcf(neutral, scene))
-}
 
 /// The shapes and masses of a robot. Model files share them because they take far longer to compute than the rest.
 pub struct Pieces<'a> {
@@ -59,56 +44,33 @@ pub struct Pieces<'a> {
     pieces: Vec<Piece>,
 }
 
-impl<'a> Pieces<'a> {
-    /// Computes the shapes and masses for a scene.
-    ///
-    /// # Errors
-    /// Returns [`BuildError::OpenSurface`] if the layers of a part do not form a closed surface.
-    pub fn compute(assembly: &'a Assembly, scene: &Scene) -> Result<Self, BuildError> {
-        let pieces = compute_pieces(assembly, scene)?;
-        Ok(Self { assembly, pieces })
-    }
-
+impl Pieces<'_> {
     /// Formats a scene as an MJCF file for MuJoCo. Its struts and play must equal those in [`Pieces::compute`].
     #[must_use]
     pub fn format_mjcf(&self, neutral: &Solution, scene: &Scene) -> String {
-        self.write_with(neutral, scene, |writer| writer.write_mjcf())
+        self.writer(neutral, scene).write_mjcf()
     }
 
     /// Formats the robot of a scene as URDF, with the condition of [`Pieces::format_mjcf`]. The file refers to meshes
     /// ([`Pieces::make_meshes`]) in `folder`: a path or a URL that ends with a slash.
     #[must_use]
     pub fn format_urdf(&self, neutral: &Solution, scene: &Scene, folder: &str) -> String {
-        self.write_with(neutral, scene, |writer| writer.write_urdf(folder))
+        self.writer(neutral, scene).write_urdf(folder)
     }
 
     /// Formats the robot of a scene as SDF, with `scene` and `folder` as in [`Pieces::format_urdf`].
     #[must_use]
     pub fn format_sdf(&self, neutral: &Solution, scene: &Scene, folder: &str) -> String {
-        self.write_with(neutral, scene, |writer| writer.write_sdf(folder))
+        self.writer(neutral, scene).write_sdf(folder)
     }
 
-    /// Makes the meshes for URDF and SDF, each with its file name in the mesh folder.
-    #[must_use]
-    pub fn make_meshes(&self, scene: &Scene) -> Vec<OutputFile> {
-        let nodes = Node::all(scene.strut_spring.is_some(), scene.play > 0.0);
-        meshes::make_mesh_files(&self.pieces, &nodes)
-    }
-
-    fn write_with(
-        &self,
-        neutral: &Solution,
-        scene: &Scene,
-        write: impl FnOnce(&mut Writer<'_>),
-    ) -> String {
-        let mut writer = Writer {
+    fn writer<'b>(&'b self, neutral: &'b Solution, scene: &'b Scene) -> Writer<'b> {
+        Writer {
             assembly: self.assembly,
             neutral,
             scene,
             pieces: &self.pieces,
             xml: XmlWriter::default(),
-        };
-        write(&mut writer);
-        writer.xml.finish()
+        }
     }
 }

@@ -63,21 +63,18 @@ impl Node {
 
     /// Parent of the node; `None` for the chassis.
     pub fn parent(self, has_play: bool) -> Option<Self> {
-        let chassis = Self::OnMount(Mount::Chassis);
-        Some(match self {
+        let mount = match self {
             Self::OnMount(Mount::Chassis) => return None,
-            Self::OnMount(Mount::Link(servo)) if has_play => Self::Horn(servo),
-            Self::Horn(_)
-            | Self::OnMount(Mount::Link(_) | Mount::Crank(_) | Mount::Follower(_)) => chassis,
-            Self::OnMount(Mount::Foot(servo)) => Self::OnMount(Mount::Crank(servo)),
-            Self::OnMount(Mount::Strut(servo) | Mount::Coupler(servo)) => {
-                Self::OnMount(Mount::Link(servo))
-            }
-            Self::OnMount(Mount::Sleeve(side)) => Self::OnMount(Mount::Link(side.servos()[1])),
-            Self::OnMount(Mount::Rod(side)) => Self::OnMount(Mount::Sleeve(side)),
-            Self::Pad(servo) => Self::OnMount(Mount::Foot(servo)),
-            Self::SlotPin(servo) => Self::OnMount(Mount::Strut(servo)),
-        })
+            Self::OnMount(Mount::Link(servo)) if has_play => return Some(Self::Horn(servo)),
+            Self::Horn(_) => Mount::Chassis,
+            Self::OnMount(Mount::Link(_) | Mount::Crank(_) | Mount::Follower(_)) => Mount::Chassis,
+            Self::OnMount(Mount::Foot(servo)) => Mount::Crank(servo),
+            Self::OnMount(Mount::Strut(servo) | Mount::Coupler(servo)) => Mount::Link(servo),
+            Self::OnMount(Mount::Sleeve(side)) => Mount::Link(side.servos()[1]),
+            Self::OnMount(Mount::Rod(side)) => Mount::Sleeve(side),
+            Self::Pad(_) | Self::SlotPin(_) => self.frame_mount(),
+        };
+        Some(Self::OnMount(mount))
     }
 
     /// Freedom of the node on its parent.
@@ -102,20 +99,11 @@ impl Node {
 
     /// Name of the node, which is also the name of its joint to the parent.
     pub fn name(self) -> String {
-        let format_name = |kind: &str, name: &str| format!("{kind} {name}");
         match self {
-            Self::OnMount(Mount::Chassis) => "chassis".to_owned(),
-            Self::OnMount(Mount::Link(servo)) => format_name("link", SERVO_NAMES[servo]),
-            Self::OnMount(Mount::Coupler(servo)) => format_name("coupler", SERVO_NAMES[servo]),
-            Self::OnMount(Mount::Crank(servo)) => format_name("crank", LEG_NAMES[servo]),
-            Self::OnMount(Mount::Follower(servo)) => format_name("follower", LEG_NAMES[servo]),
-            Self::OnMount(Mount::Foot(servo)) => format_name("leg coupler", LEG_NAMES[servo]),
-            Self::OnMount(Mount::Strut(servo)) => format_name("strut", LEG_NAMES[servo]),
-            Self::OnMount(Mount::Sleeve(side)) => format_name("sleeve", side.name()),
-            Self::OnMount(Mount::Rod(side)) => format_name("rod", side.name()),
-            Self::Horn(servo) => format_name("horn", SERVO_NAMES[servo]),
-            Self::Pad(servo) => format_name("foot", LEG_NAMES[servo]),
-            Self::SlotPin(servo) => format_name("slot", LEG_NAMES[servo]),
+            Self::OnMount(mount) => mount.name(),
+            Self::Horn(servo) => format!("horn {}", SERVO_NAMES[servo]),
+            Self::Pad(servo) => format!("foot {}", LEG_NAMES[servo]),
+            Self::SlotPin(servo) => format!("slot {}", LEG_NAMES[servo]),
         }
     }
 }

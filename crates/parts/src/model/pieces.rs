@@ -3,6 +3,7 @@
 use lizard_kinematics::Vector;
 use lizard_robot::servo::LEG_NAMES;
 
+use super::Pieces;
 use super::inertia::Inertia;
 use super::node::Node;
 use super::scene::Scene;
@@ -33,44 +34,43 @@ pub(super) struct Piece {
     pub inertia: Inertia,
 }
 
-/// Computes the pieces of all parts, with the scene's kind of struts.
-pub(super) fn compute_pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<Piece>, BuildError> {
-    let has_slotted_struts = scene.strut_spring.is_some();
-    let is_strut = |body: &&Body| matches!(body.mount, Mount::Strut(_));
-    let has_spring = |bodies: &[Body]| bodies.iter().any(|body| body.kind == Kind::Spring);
-    // The scene's kind of struts may differ from the assembly's.
-    let swaps_struts = has_spring(assembly.bodies()) != has_slotted_struts;
-    let all_bodies = assembly.bodies().iter();
-    let kept_bodies = all_bodies.filter(|body| !(swaps_struts && is_strut(body)));
-    let replacement_bodies = assembly.alternatives().iter().filter(|_| swaps_struts);
-    let missing_springs = (0..4).filter(|_| swaps_struts && has_slotted_struts);
-    let mut pieces: Vec<Piece> = missing_springs
-        .map(|servo| make_spring_piece(assembly, servo))
-        .collect();
-    for body in kept_bodies.chain(replacement_bodies) {
-        let grams = bill::body_grams(body, assembly);
-        let volume = compute_volume(&body.prisms);
-        for (node, prisms) in split_by_node(assembly, scene, body) {
-            let name = match node {
-                Node::OnMount(_) => body.name.clone(),
-                node if body.kind == Kind::Printed => format!("{} of {}", node.name(), body.name),
-                _ => body.name.clone(),
-            };
-            let solid = Solid::from_prisms(&prisms);
-            let mesh = Mesh::from_solid(&solid);
-            if !solid.is_closed() || !mesh.is_closed() {
-                return Err(BuildError::OpenSurface(name));
+impl<'a> Pieces<'a> {
+    /// Computes the shapes and masses for a scene, with the scene's kind of struts.
+    ///
+    /// # Errors
+    /// Returns [`BuildError::OpenSurface`] if the layers of a part do not form a closed surface.
+    pub fn compute(assembly: &'a Assembly, scene: &Scene) -> Result<Self, BuildError> {
+        let has_slotted_struts = scene.strut_spring.is_some();
+        let mut bodies: Vec<&Body> = assembly.bodies().iter().collect();
+        let mut pieces = Vec::new();
+        // The scene's kind of struts may differ from the assembly's.
+        if bodies.iter().any(|body| body.kind == Kind::Spring) != has_slotted_struts {
+            bodies.retain(|body| !matches!(body.mount, Mount::Strut(_)));
+            bodies.extend(assembly.alternatives());
+            if has_slotted_struts {
+                pieces.extend((0..4).map(|servo| make_spring_piece(assembly, servo)));
             }
-            pieces.push(Piece {
-                name,
-                node,
-                kind: body.kind,
-                inertia: Inertia::from_mesh(&mesh).scaled(grams / volume),
-                mesh,
-            });
         }
+        for body in bodies {
+            let density = bill::body_grams(body, assembly) / compute_volume(&body.prisms);
+            for (node, prisms) in split_by_node(assembly, scene, body) {
+                let is_on_mount = matches!(node, Node::OnMount(_));
+                let name = match body.kind {
+                    Kind::Printed if !is_on_mount => format!("{} of {}", node.name(), body.name),
+                    _ => body.name.clone(),
+                };
+                let mesh = Mesh::from_prisms(&name, &prisms)?;
+                pieces.push(Piece {
+                    name,
+                    node,
+                    kind: body.kind,
+                    inertia: Inertia::from_mesh(&mesh).scaled(density),
+                    mesh,
+                });
+            }
+        }
+        Ok(Self { assembly, pieces })
     }
-    Ok(pieces)
 }
 
 /// Makes the spring of a slotted strut if the assembly has rigid struts: a bar as wide as the coil, from screw to

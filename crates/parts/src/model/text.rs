@@ -21,63 +21,36 @@ pub(super) fn join_numbers(numbers: impl IntoIterator<Item = impl ToString>) -> 
     numbers.collect::<Vec<_>>().join(" ")
 }
 
-/// Escapes a text for use as an attribute's value.
+/// Escapes a text for use as an attribute's value, within one line.
 pub(super) fn escape_attribute(value: &str) -> String {
     let value = value.replace('&', "&amp;").replace('<', "&lt;");
-    value.replace('"', "&quot;")
+    value.replace('"', "&quot;").replace('\n', "&#10;")
 }
 
-/// A writer of XML text, one element per line. An element is passed as its name and attributes.
+/// A writer of XML text, one element per line, each indented by its depth.
 #[derive(Default)]
 pub(super) struct XmlWriter {
-    text: String,
-    /// Names of the open elements, outermost first.
-    open_elements: Vec<String>,
+    /// Lines written so far.
+    pub text: String,
+    /// Number of open elements.
+    depth: usize,
 }
 
 impl XmlWriter {
-    fn write_line(&mut self, text: impl Display) {
-        let indent = self.open_elements.len();
-        let _ = writeln!(self.text, "{:indent$}{text}", "");
-    }
-
-    /// Writes the XML declaration, a document's first line.
-    pub fn write_declaration(&mut self) {
-        self.write_line(r#"<?xml version="1.0"?>"#);
-    }
-
-    /// Writes an element without children.
-    pub fn write_empty(&mut self, element: impl Display) {
-        self.write_line(format_args!("<{element}/>"));
-    }
-
-    /// Writes an element with a value.
-    pub fn write_value(&mut self, element: impl Display, value: impl Display) {
-        let element = element.to_string();
-        let name = element.split(' ').next().unwrap_or_default();
-        self.write_line(format_args!("<{element}>{value}</{name}>"));
-    }
-
-    /// Opens an element with children.
-    pub fn open(&mut self, element: impl Display) {
-        let element = element.to_string();
-        self.write_line(format_args!("<{element}>"));
-        let name = element.split(' ').next().unwrap_or_default();
-        self.open_elements.push(name.to_owned());
-    }
-
-    /// Closes the innermost open element.
-    pub fn close(&mut self) {
-        if let Some(name) = self.open_elements.pop() {
-            self.write_line(format_args!("</{name}>"));
+    /// Writes lines, each with an element, or with the opening or closing tag of an element with children. Their own
+    /// indentation has no effect.
+    pub fn write(&mut self, lines: impl Display) {
+        let lines = lines.to_string();
+        for line in lines.lines().map(str::trim_start) {
+            if line.starts_with("</") {
+                self.depth -= 1;
+            }
+            let indent = self.depth;
+            let _ = writeln!(self.text, "{:indent$}{line}", "");
+            let is_complete = line.contains("</") || line.ends_with("/>") || line.ends_with("?>");
+            if !is_complete {
+                self.depth += 1;
+            }
         }
-    }
-
-    /// Closes all open elements and returns the text.
-    pub fn finish(mut self) -> String {
-        while !self.open_elements.is_empty() {
-            self.close();
-        }
-        self.text
     }
 }

@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 use lizard_robot::servo::SERVO_NAMES;
 
 use crate::layers::body::Mount;
-use crate::model::cut_joints::{CutJoint, list_cut_joints};
+use crate::model::cut_joints::CutJoint;
 use crate::model::material::Material;
 use crate::model::meshes;
 use crate::model::node::{Freedom, Node};
@@ -21,118 +21,114 @@ const BASE_LINK: &str = "base_link";
 
 impl Writer<'_> {
     /// Writes the whole file. `folder` is the path or URL of the meshes.
-    pub(super) fn write_urdf(&mut self, folder: &str) {
+    pub(super) fn write_urdf(mut self, folder: &str) -> String {
         let name = escape_attribute(&self.scene.name);
-        self.xml.write_declaration();
-        self.xml.open(format!(r#"robot name="{name}""#));
+        self.xml.write(format_args!(
+            r#"<?xml version="1.0"?>
+            <robot name="{name}">"#
+        ));
         for Material { name, colour } in Material::ALL {
-            self.xml.open(format!(r#"material name="{name}""#));
-            self.xml.write_empty(format!(r#"color rgba="{colour}""#));
-            self.xml.close();
+            self.xml.write(format_args!(
+                r#"<material name="{name}">
+                    <color rgba="{colour}"/>
+                </material>"#
+            ));
         }
-        self.xml.write_empty(format!(r#"link name="{BASE_LINK}""#));
+        self.xml
+            .write(format_args!(r#"<link name="{BASE_LINK}"/>"#));
         for node in self.nodes() {
             self.write_urdf_link(node, folder);
             self.write_urdf_joint(node);
         }
-        for cut_joint in list_cut_joints(self.assembly, self.scene.strut_spring.is_some()) {
+        for cut_joint in self.list_cut_joints() {
             self.write_coinciding_frames(&cut_joint);
         }
+        self.xml.write("</robot>");
+        self.xml.text
     }
 
     fn write_urdf_link(&mut self, node: Node, folder: &str) {
-        self.xml
-            .open(format!(r#"link name="{}""#, node.identifier()));
-        let inertia = self.compute_inertia(node);
+        let (name, inertia) = (node.identifier(), self.compute_inertia(node));
+        let centre = format_metres(inertia.centre_of_mass());
+        let kilograms = round(inertia.mass * MILLI);
         let [xx, yy, zz, xy, xz, yz] = inertia.format_tensor();
-        self.xml.open("inertial");
-        self.write_origin(inertia.centre_of_mass(), 0.0);
-        self.xml
-            .write_empty(format!(r#"mass value="{}""#, round(inertia.mass * MILLI)));
-        self.xml.write_empty(format!(
-            r#"inertia ixx="{xx}" iyy="{yy}" izz="{zz}" ixy="{xy}" ixz="{xz}" iyz="{yz}""#
+        self.xml.write(format_args!(
+            r#"<link name="{name}">
+                <inertial>
+                    <origin xyz="{centre}" rpy="0 0 0"/>
+                    <mass value="{kilograms}"/>
+                    <inertia ixx="{xx}" iyy="{yy}" izz="{zz}" ixy="{xy}" ixz="{xz}" iyz="{yz}"/>
+                </inertial>"#
         ));
-        self.xml.close();
         for material in meshes::list_materials(self.visible_pieces(), node) {
-            self.xml.open("visual");
-            self.xml.open("geometry");
-            let mesh_name = meshes::format_mesh_name(node, material);
-            let file = escape_attribute(&format!("{folder}{mesh_name}"));
-            self.xml.write_empty(format!(
-                r#"mesh filename="{file}" scale="0.001 0.001 0.001""#
+            let file = format!("{folder}{}", meshes::format_mesh_name(node, material));
+            let (file, name) = (escape_attribute(&file), material.name);
+            self.xml.write(format_args!(
+                r#"<visual>
+                    <geometry>
+                        <mesh filename="{file}" scale="0.001 0.001 0.001"/>
+                    </geometry>
+                    <material name="{name}"/>
+                </visual>"#
             ));
-            self.xml.close();
-            self.xml
-                .write_empty(format!(r#"material name="{}""#, material.name));
-            self.xml.close();
         }
         if let Node::Pad(servo) = node {
-            self.xml.open("collision");
-            self.write_origin(self.dome_centre(servo), 0.0);
-            self.xml.open("geometry");
+            let centre = format_metres(self.dome_centre(servo));
             let radius = round(self.assembly.robot().parts().pad.radius * MILLI);
-            self.xml.write_empty(format!(r#"sphere radius="{radius}""#));
-            self.xml.close();
-            self.xml.close();
+            self.xml.write(format_args!(
+                r#"<collision>
+                    <origin xyz="{centre}" rpy="0 0 0"/>
+                    <geometry>
+                        <sphere radius="{radius}"/>
+                    </geometry>
+                </collision>"#
+            ));
         }
-        self.xml.close();
+        self.xml.write("</link>");
     }
 
     fn write_urdf_joint(&mut self, node: Node) {
         let range = self.joint_range(node);
-        let kind = match (node.freedom(), range) {
+        let (kind, axis) = match (node.freedom(), range) {
             // URDF has no springs, so the feet are fixed to their leaves.
-            (Freedom::Free | Freedom::SlidesVertically, _) => "fixed",
-            (Freedom::TurnsAboutZ, Some(_)) => "revolute",
-            (Freedom::TurnsAboutZ, None) => "continuous",
-            (Freedom::SlidesAlongX, _) => "prismatic",
+            (Freedom::Free | Freedom::SlidesVertically, _) => ("fixed", None),
+            (Freedom::TurnsAboutZ, Some(_)) => ("revolute", Some("0 0 1")),
+            (Freedom::TurnsAboutZ, None) => ("continuous", Some("0 0 1")),
+            (Freedom::SlidesAlongX, _) => ("prismatic", Some("1 0 0")),
         };
-        let placement = self.placement_on_parent(node);
-        let (parent, height, base_yaw) = match self.parent(node) {
-            Some(parent) => (parent.identifier(), 0.0, 0.0),
-            None => (BASE_LINK.to_owned(), self.chassis_height(), -FRAC_PI_2),
+        let (position, yaw) = self.position_and_yaw(node);
+        let (parent, yaw) = match self.parent(node) {
+            Some(parent) => (parent.identifier(), yaw),
+            None => (BASE_LINK.to_owned(), yaw - FRAC_PI_2),
         };
-        let yaw = placement.x_axis.angle().to_radians() + base_yaw;
-        let name = self.joint_name(node);
-        self.write_urdf_connection(&name, kind, &parent, &node.identifier());
-        self.write_origin([placement.origin.x, placement.origin.y, height], yaw);
-        if kind != "fixed" {
-            let axis = match node.freedom() {
-                Freedom::SlidesAlongX => "1 0 0",
-                _ => "0 0 1",
-            };
-            self.xml.write_empty(format!(r#"axis xyz="{axis}""#));
+        let (position, yaw) = (format_metres(position), round(yaw));
+        let (name, child) = (self.joint_name(node), node.identifier());
+        self.xml.write(format_args!(
+            r#"<joint name="{name}" type="{kind}">
+                <parent link="{parent}"/>
+                <child link="{child}"/>
+                <origin xyz="{position}" rpy="0 0 {yaw}"/>"#
+        ));
+        if let Some(axis) = axis {
+            self.xml.write(format_args!(r#"<axis xyz="{axis}"/>"#));
             if let Some([min, max]) = range {
                 let [effort, velocity] = self.effort_and_velocity(node).unwrap_or_default();
-                self.xml.write_empty(format!(
-                    r#"limit lower="{min}" upper="{max}" effort="{effort}" velocity="{velocity}""#
+                self.xml.write(format_args!(
+                    r#"<limit lower="{min}" upper="{max}" effort="{effort}" velocity="{velocity}"/>"#
                 ));
             }
             let [damping, friction] = self.damping_and_friction(node);
-            self.xml.write_empty(format!(
-                r#"dynamics damping="{damping}" friction="{friction}""#
+            self.xml.write(format_args!(
+                r#"<dynamics damping="{damping}" friction="{friction}"/>"#
             ));
         }
         if let Some((servo, factor)) = mimicked_servo(node) {
             let servo = SERVO_NAMES[servo];
-            self.xml
-                .write_empty(format!(r#"mimic joint="{servo}" multiplier="{factor}""#));
+            self.xml.write(format_args!(
+                r#"<mimic joint="{servo}" multiplier="{factor}"/>"#
+            ));
         }
-        self.xml.close();
-    }
-
-    /// Opens a joint's element and writes the joint's parent and child. The caller closes the element.
-    fn write_urdf_connection(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
-        self.xml
-            .open(format!(r#"joint name="{name}" type="{kind}""#));
-        self.xml.write_empty(format!(r#"parent link="{parent}""#));
-        self.xml.write_empty(format!(r#"child link="{child}""#));
-    }
-
-    fn write_origin(&mut self, position: [f64; 3], yaw: f64) {
-        let (position, yaw) = (format_metres(position), round(yaw));
-        self.xml
-            .write_empty(format!(r#"origin xyz="{position}" rpy="0 0 {yaw}""#));
+        self.xml.write("</joint>");
     }
 
     /// Writes the two frames of a cut joint, one on each body.
@@ -143,11 +139,16 @@ impl Writer<'_> {
         let halves = [(first, cut_joint.point), (second, point_on_second)];
         for (number, (node, position)) in (1..).zip(halves) {
             let frame = format!("closing_{}_{number}", cut_joint.identifier());
-            self.xml.write_empty(format!(r#"link name="{frame}""#));
-            let joint = format!("{frame}_joint");
-            self.write_urdf_connection(&joint, "fixed", &node.identifier(), &frame);
-            self.write_origin([position.x, position.y, 0.0], 0.0);
-            self.xml.close();
+            let parent = node.identifier();
+            let position = format_metres([position.x, position.y, 0.0]);
+            self.xml.write(format_args!(
+                r#"<link name="{frame}"/>
+                <joint name="{frame}_joint" type="fixed">
+                    <parent link="{parent}"/>
+                    <child link="{frame}"/>
+                    <origin xyz="{position}" rpy="0 0 0"/>
+                </joint>"#
+            ));
         }
     }
 }

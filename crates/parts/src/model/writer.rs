@@ -53,17 +53,16 @@ impl<'a> Writer<'a> {
         self.assembly.placement(node.frame_mount(), self.neutral)
     }
 
-    /// Placement of a body on its parent.
-    pub(super) fn placement_on_parent(&self, node: Node) -> Placement {
-        match self.parent(node) {
-            Some(parent) => self.placement(node).relative_to(&self.placement(parent)),
-            None => Placement::CHASSIS,
-        }
-    }
-
-    /// Height of the chassis frame, mm, at which the pad of the longest foot touches the floor.
-    pub(super) fn chassis_height(&self) -> f64 {
-        self.scene.excess_lengths.into_iter().fold(0.0, f64::max) - self.assembly.stack().floor
+    /// Position (mm) and rotation (rad) of a body on its parent, or of the chassis on the floor.
+    pub(super) fn position_and_yaw(&self, node: Node) -> ([f64; 3], f64) {
+        let Some(parent) = self.parent(node) else {
+            // At this height, the pad of the longest foot touches the floor.
+            let excess_length = self.scene.excess_lengths.into_iter().fold(0.0, f64::max);
+            return ([0.0, 0.0, excess_length - self.assembly.stack().floor], 0.0);
+        };
+        let placement = self.placement(node).relative_to(&self.placement(parent));
+        let Placement { origin, x_axis } = placement;
+        ([origin.x, origin.y, 0.0], x_axis.angle().to_radians())
     }
 
     /// Computes mass and inertia of a body.

@@ -20,6 +20,7 @@ use lizard_kinematics::{Pose, Solution, Vector};
 use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Kind, Prism};
 use crate::layers::shape::Shape;
+use crate::layers::stack::order_heights;
 use crate::order::steps::{Step, TurningPlace};
 
 /// Radius of a screwdriver or hex key, mm.
@@ -111,10 +112,8 @@ impl ScrewAxis {
     /// Makes a cylinder about the axis from a height up, or down if `length` is negative.
     fn cylinder(&self, radius: f64, from: f64, length: f64) -> FreeSpace {
         let to = from + length;
-        FreeSpace {
-            shape: Shape::disc(self.position, radius),
-            z: [from.min(to), from.max(to)],
-        }
+        let (shape, z) = (Shape::disc(self.position, radius), order_heights(from, to));
+        FreeSpace { shape, z }
     }
 }
 
@@ -134,18 +133,17 @@ impl PosedAssembly<'_> {
             Kind::ServoScrew => SERVO_SCREW_LENGTH,
             _ => return None,
         };
-        let layer_diameter = |i: usize| body.prisms[i].filled_shapes[0].diameter();
-        let last_index = body.prisms.len().checked_sub(1)?;
+        let diameter = |layer: &Prism| layer.filled_shapes[0].diameter();
+        let layers = body.prisms.iter();
         // A screw's head is its widest layer.
-        let head_index =
-            (0..=last_index).max_by(|a, b| layer_diameter(*a).total_cmp(&layer_diameter(*b)))?;
-        let (is_above, prism) = (head_index == last_index, &body.prisms[head_index]);
+        let head = layers.max_by(|a, b| diameter(a).total_cmp(&diameter(b)))?;
+        let is_above = body.prisms.last() == Some(head);
         let placement = self.assembly.placement(body.mount, self.pose);
         Some(ScrewAxis {
-            position: placement.map(prism.filled_shapes[0].middle()),
-            head_radius: prism.filled_shapes[0].diameter() / 2.0,
+            position: placement.map(head.filled_shapes[0].middle()),
+            head_radius: diameter(head) / 2.0,
             length,
-            head_face_z: prism.z[usize::from(is_above)],
+            head_face_z: head.z[usize::from(is_above)],
             direction: if is_above { 1.0 } else { -1.0 },
         })
     }
@@ -222,8 +220,6 @@ impl PosedAssembly<'_> {
         };
         let nut = self.assembly.body(&screw.name.replacen("screw", "nut", 1));
         let nut = nut.filter(|nut| nut.kind == Kind::Nut);
-        let is_screw_or_its_nut =
-            |name: &str| name == screw.name || nut.is_some_and(|nut| nut.name == name);
         let is_in =
             |list: &[&Body], body: &Body| list.iter().any(|listed| listed.name == body.name);
         let new_nut = nut.filter(|nut| is_in(new_bodies, nut));
@@ -232,10 +228,9 @@ impl PosedAssembly<'_> {
         let is_new = is_in(new_bodies, screw);
         let leg_of_pad = screw.name.strip_prefix("screw height ");
         let pad = leg_of_pad.and_then(|leg| self.assembly.body(&format!("pad {leg}")));
-        let is_pad = |body: &Body| pad.is_some_and(|pad| pad.name == body.name);
-        let is_other = |body: &&Body| !is_screw_or_its_nut(&body.name) && !is_pad(body);
-        let other_bodies = surrounding_bodies.iter().copied();
-        let other_bodies: Vec<&Body> = other_bodies.filter(is_other).collect();
+        let own_bodies: Vec<&Body> = [Some(screw), nut, pad].into_iter().flatten().collect();
+        let mut other_bodies = surrounding_bodies.to_vec();
+        other_bodies.retain(|body| !is_in(&own_bodies, body));
         let make_space_above_head = |radius: f64, length: f64| {
             axis.cylinder(radius, axis.head_face_z, axis.direction * length)
         };

@@ -26,17 +26,11 @@ pub fn compute_bounding_rectangles(assembly: &Assembly, guard: &Guard) -> Vec<Re
             continue;
         }
         mounts.push(body.mount);
-        let mut bounding = MountBounding {
-            assembly,
-            guard,
-            mount: body.mount,
-            rectangles: &mut rectangles,
-        };
         match body.mount.servos()[..] {
-            [] => bounding.run([]),
-            [a] => bounding.run([a]),
-            [a, b] => bounding.run([a, b]),
-            _ => bounding.run([0, 1, 2, 3]),
+            [] => extend_rectangles(assembly, guard, body.mount, [], &mut rectangles),
+            [a] => extend_rectangles(assembly, guard, body.mount, [a], &mut rectangles),
+            [a, b] => extend_rectangles(assembly, guard, body.mount, [a, b], &mut rectangles),
+            _ => extend_rectangles(assembly, guard, body.mount, [0, 1, 2, 3], &mut rectangles),
         }
     }
     rectangles
@@ -48,46 +42,33 @@ pub fn are_apart(a: &Rectangle, b: &Rectangle, min_mm: f64) -> bool {
     sides.any(|(a, b)| a.low - b.high >= min_mm || b.low - a.high >= min_mm)
 }
 
-/// The computation of the rectangles of the bodies on one mount.
-struct MountBounding<'a> {
-    assembly: &'a Assembly,
-    guard: &'a Guard<'a>,
+/// Extends the rectangles of the bodies on a mount that depends on these servos to enclose the bounds of their points.
+fn extend_rectangles<const N: usize>(
+    assembly: &Assembly,
+    guard: &Guard,
     mount: Mount,
-    rectangles: &'a mut [Rectangle],
-}
-
-impl MountBounding<'_> {
-    fn run<const N: usize>(&mut self, servos: [usize; N]) {
-        let ranges = servos.map(|servo| self.guard.ranges[servo]);
-        let mut regions = vec![Region::from_bounds(ranges)];
-        while let Some(region) = regions.pop() {
-            let Some((bounds, _)) = self.guard.bound_cranks(&servos, &region) else {
-                continue;
-            };
-            let widest_index =
-                (0..N).max_by(|a, b| region.half_widths[*a].total_cmp(&region.half_widths[*b]));
-            match widest_index {
-                Some(index) if region.half_widths[index] > MIN_HALF_WIDTH_DEG => {
-                    regions.extend(region.halves(index));
-                }
-                _ => {
-                    let placement = self.assembly.placement_for_cranks(self.mount, &bounds);
-                    self.extend_rectangles(|point| {
-                        let position = placement.map(point);
-                        [position.x.value, position.y.value]
-                    });
-                }
-            }
+    servos: [usize; N],
+    rectangles: &mut [Rectangle],
+) {
+    let ranges = servos.map(|servo| guard.ranges[servo]);
+    let mut regions = vec![Region::from_bounds(ranges)];
+    while let Some(region) = regions.pop() {
+        let Some((bounds, _)) = guard.bound_cranks(&servos, &region) else {
+            continue;
+        };
+        if let Some(index) = region.widest_servo()
+            && region.half_widths[index] > MIN_HALF_WIDTH_DEG
+        {
+            regions.extend(region.halves(index));
+            continue;
         }
-    }
-
-    /// Extends the rectangle of each body on the mount to enclose the bounds of the body's points.
-    fn extend_rectangles(&mut self, bound_point: impl Fn(Vector) -> Rectangle) {
-        let bodies = self.assembly.bodies().iter();
-        let bodies = bodies.zip(self.rectangles.iter_mut());
-        for (body, rectangle) in bodies.filter(|(body, _)| body.mount == self.mount) {
+        let placement = assembly.placement_for_cranks(mount, &bounds);
+        let bodies = assembly.bodies().iter().zip(rectangles.iter_mut());
+        for (body, rectangle) in bodies.filter(|(body, _)| body.mount == mount) {
             for (point, radius) in list_points(body) {
-                for (side, bounds) in rectangle.iter_mut().zip(bound_point(point)) {
+                let position = placement.map(point);
+                let coordinates = [position.x.value, position.y.value];
+                for (side, bounds) in rectangle.iter_mut().zip(coordinates) {
                     side.low = side.low.min(bounds.low - radius);
                     side.high = side.high.max(bounds.high + radius);
                 }

@@ -59,6 +59,11 @@ impl<const N: usize> Region<N> {
         })
     }
 
+    /// Index of the servo with the widest range; `None` for a region without servos.
+    pub fn widest_servo(&self) -> Option<usize> {
+        (0..N).max_by(|a, b| self.half_widths[*a].total_cmp(&self.half_widths[*b]))
+    }
+
     /// Bounds of one servo's angle, slightly widened so that halves overlap.
     pub fn bounds(&self, servo: usize) -> Interval {
         let (middle, half_width) = (self.middle[servo], self.half_widths[servo] + 1e-10);
@@ -117,7 +122,7 @@ impl<'a> Guard<'a> {
             for pair in end_pairs.chain(Side::ALL.map(|side| side.servos())) {
                 for index in 0..2 {
                     let [low, high] =
-                        [false, true].map(|is_high| guard.find_range_end(pair, index, is_high));
+                        [1.0, -1.0].map(|sign| guard.find_range_end(pair, index, sign));
                     guard.ranges[pair[index]] = Interval::new(low, high);
                 }
             }
@@ -125,17 +130,16 @@ impl<'a> Guard<'a> {
         guard
     }
 
-    /// Finds the upper or lower bound of the angle of one servo of a pair. Beyond this bound, no pose is accepted at
-    /// any angle of the other servo.
-    fn find_range_end(&self, pair: [usize; 2], index: usize, is_high: bool) -> f64 {
-        let sign = if is_high { -1.0 } else { 1.0 };
+    /// Finds the lower (if `sign` is 1) or upper (if `sign` is -1) bound of the angle of one servo of a pair. Beyond
+    /// this bound, no pose is accepted at any angle of the other servo.
+    fn find_range_end(&self, pair: [usize; 2], index: usize, sign: f64) -> f64 {
         let region_end =
             |region: &Region<2>| region.middle[index] - sign * region.half_widths[index];
         let whole_region = Region::from_bounds(pair.map(|servo| self.ranges[servo]));
         // The outermost region comes first; of equally far regions, the one found first.
         let (mut regions, mut insertion_index) = (BTreeMap::from([((0, 0), whole_region)]), 0);
         while let Some((_, region)) = regions.pop_first() {
-            if self.refuses(&pair, &region) {
+            if self.bound_cranks(&pair, &region).is_none() {
                 continue;
             }
             let mut resolution = [PARTNER_RESOLUTION_DEG; 2];
@@ -152,11 +156,6 @@ impl<'a> Guard<'a> {
         }
         // The guard refuses every pose, which is impossible if the neutral pose is safe.
         region_end(&whole_region)
-    }
-
-    /// True if the conditions that depend only on these servos exclude every pose of a region.
-    pub fn refuses<const N: usize>(&self, servos: &[usize; N], region: &Region<N>) -> bool {
-        self.bound_cranks(servos, region).is_none()
     }
 
     /// Computes the cranks of some servos within a region and at its middle; `None` if the conditions that depend only
@@ -209,8 +208,8 @@ impl<'a> Guard<'a> {
             Check::UncrossedHead | Check::UncrossedTail => LENGTH_RELAXATION_MM,
             _ => 0.0,
         };
-        let violation = self.limits.violation(check, value + shift)?;
-        Some(violation.limit)
+        let violation = self.limits.violation(check, value + shift);
+        violation.map(|violation| violation.limit)
     }
 
     /// Finds a pose with the given angles of some servos that the guard accepts with its unrelaxed limits; `None` if
@@ -232,12 +231,8 @@ impl<'a> Guard<'a> {
             if let Some(pose) = self.robot.solve_if_allowed(region.middle) {
                 return Some(pose);
             }
-            if !self.refuses(&ALL_SERVOS, &region) {
-                let by_width = |a: &usize, b: &usize| {
-                    region.half_widths[*a].total_cmp(&region.half_widths[*b])
-                };
-                let widest = ALL_SERVOS.into_iter().max_by(by_width)?;
-                regions.extend(region.halves(widest));
+            if self.bound_cranks(&ALL_SERVOS, &region).is_some() {
+                regions.extend(region.halves(region.widest_servo()?));
             }
         }
         None
@@ -259,14 +254,13 @@ mod tests {
         let path = format!("{}/../../robots/{file}.toml", env!("CARGO_MANIFEST_DIR"));
         let mut text = std::fs::read_to_string(&path).expect(&path);
         if file != name {
-            for (from, to) in [
-                ("type1 = 0.3 ", "type1 = 0.0 "),
-                ("leg = 0.3 ", "leg = 0.0 "),
-                ("stroke_min = -15.0", "stroke_min = -80.0"),
-                ("stroke_max = 45.0", "stroke_max = 150.0"),
+            for (key, limit) in [
+                ("limits.type1", 0.0),
+                ("limits.leg", 0.0),
+                ("limits.stroke_min", -80.0),
+                ("limits.stroke_max", 150.0),
             ] {
-                assert!(text.contains(from), "{from} is missing in {file}");
-                text = text.replacen(from, to, 1);
+                text = lizard_robot::edit::with_number(&text, key, limit).expect(file);
             }
         }
         Robot::parse(&text).expect(name)
@@ -354,8 +348,8 @@ mod tests {
                         middle,
                         half_widths: [1e-7; 4],
                     };
-                    let is_refused = guard.refuses(&ALL_SERVOS, &region);
-                    assert!(!is_refused, "{name}: {middle:?}");
+                    let is_accepted = guard.bound_cranks(&ALL_SERVOS, &region).is_some();
+                    assert!(is_accepted, "{name}: {middle:?}");
                     reached_checks.extend(violated_check_at(angles_at(refused_deg)).flatten());
                 }
             }

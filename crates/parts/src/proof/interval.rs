@@ -87,9 +87,8 @@ operators! {
     Add add(self, other: Self) { Self::round_outward(self.low + other.low, self.high + other.high) }
     Sub sub(self, other: Self) { self + -other }
     Mul mul(self, other: Self) {
-        let low = [self.low * other.low, self.low * other.high];
-        let high = [self.high * other.low, self.high * other.high];
-        let ([a, b], [c, d]) = (low, high);
+        let [a, b] = [other.low, other.high].map(|factor| self.low * factor);
+        let [c, d] = [other.low, other.high].map(|factor| self.high * factor);
         // 0 times infinity is NaN, which min and max would hide.
         if (a + b + c + d).is_nan() {
             return Self::ALL;

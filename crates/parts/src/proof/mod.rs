@@ -31,7 +31,6 @@ use crate::layers::body::Body;
 use crate::proof::clearance::Clearance;
 use guard::Guard;
 pub use search::FAR_MM;
-use search::{NearestPose, SearchResult};
 use shape_pairs::Task;
 
 /// Smallest allowed distance between parts that are not designed to touch, mm: more than a printer's error.
@@ -140,13 +139,12 @@ impl Proof {
     /// # Errors
     /// Returns the worst pair: parts that overlap, come closer than [`MIN_GAP_MM`], or have no proof of this distance.
     pub fn check(&self) -> Result<(), Clash> {
-        let find_clash =
-            |pair: &NearestPair, min_mm: f64| Some((pair.clash(min_mm)?, pair.min_distance()));
         let separate_pairs = self.separate_pairs.iter();
-        let separate_clashes = separate_pairs.filter_map(|pair| find_clash(pair, MIN_GAP_MM));
         let touching_pairs = self.touching_pairs.iter();
-        let touching_clashes = touching_pairs.filter_map(|pair| find_clash(pair, -TOUCH_OVERLAP));
-        let clashes = separate_clashes.chain(touching_clashes);
+        let pairs = separate_pairs.map(|pair| (pair, MIN_GAP_MM));
+        let pairs = pairs.chain(touching_pairs.map(|pair| (pair, -TOUCH_OVERLAP)));
+        let clashes =
+            pairs.filter_map(|(pair, min_mm)| Some((pair.clash(min_mm)?, pair.min_distance())));
         let worst_clash = clashes.min_by(|(_, a), (_, b)| a.total_cmp(b));
         worst_clash.map_or(Ok(()), |(clash, _)| Err(clash))
     }
@@ -205,11 +203,8 @@ impl<'a> ProofTasks<'a> {
             true => assembly.remove_pinned_pairs(&mut task, &self.joint_poses),
             false => None,
         };
-        let nearest = (!task.shape_pairs.is_empty()).then(|| {
-            let nearest = search::find_min_distance(assembly, &self.guard, &task, max_regions);
-            let region_count = nearest.region_count;
-            (assembly.to_nearest_pair(nearest), region_count)
-        });
+        let nearest = (!task.shape_pairs.is_empty())
+            .then(|| search::find_nearest_pair(assembly, &self.guard, &task, max_regions));
         TaskResult { pinned, nearest }
     }
 
@@ -300,33 +295,34 @@ impl Assembly {
         });
         let pinned_pairs = pinned_pairs.into_iter();
         let (mm, bodies) = pinned_pairs.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
-        Some(self.to_nearest_pair(SearchResult {
-            lower_bound: mm,
-            bodies,
-            nearest: Some(NearestPose { pose, mm }),
-            unproved_angles: None,
-            region_count: 0,
-        }))
+        Some(self.make_nearest_pair(bodies, mm, Some((pose, mm)), None))
     }
 
-    /// Converts a search result to names and angles; angles without effect on the result are neutral.
-    fn to_nearest_pair(&self, result: SearchResult) -> NearestPair {
-        let [first, second] = result.bodies.map(|body| self.bodies()[body].name.clone());
+    /// Names two bodies with a lower bound of their distance, mm: an accepted pose with its distance, and the angles of
+    /// some servos near which no larger distance could be proved. Angles without effect on the distance are neutral.
+    fn make_nearest_pair(
+        &self,
+        bodies: [usize; 2],
+        lower_bound: f64,
+        nearest: Option<(Solution, f64)>,
+        unproved_angles: Option<[Option<f64>; 4]>,
+    ) -> NearestPair {
+        let [first, second] = bodies.map(|body| self.bodies()[body].name.clone());
         let neutral = self.robot().servos().each_ref().map(|servo| servo.neutral);
         let fill_angles = |optional_angles: [Option<f64>; 4]| {
             std::array::from_fn(|i| optional_angles[i].unwrap_or(neutral[i]))
         };
         NearestPair {
-            witness: result.nearest.map(|NearestPose { pose, mm }| Clearance {
+            witness: nearest.map(|(pose, mm)| Clearance {
                 first: first.clone(),
                 second: second.clone(),
                 pose: pose.pose.into(),
                 mm,
             }),
-            unproved_angles: result.unproved_angles.map(fill_angles),
+            unproved_angles: unproved_angles.map(fill_angles),
             first,
             second,
-            lower_bound: result.lower_bound,
+            lower_bound,
         }
     }
 }

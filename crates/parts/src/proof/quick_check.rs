@@ -34,9 +34,9 @@ pub fn find_worst_tasks(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>
     let worst_tasks = measured_tasks.filter(|(mm, task)| *mm < task.min_distance());
     let mut worst_tasks: Vec<_> = worst_tasks.collect();
     worst_tasks.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-    let worst_tasks = worst_tasks.into_iter().take(MAX_WORST_TASKS);
-    let worst_tasks: Vec<_> = worst_tasks.map(|(_, task)| task.clone()).collect();
-    (!worst_tasks.is_empty()).then_some(worst_tasks)
+    worst_tasks.truncate(MAX_WORST_TASKS);
+    let to_task = |(_, task): (f64, &Task)| task.clone();
+    (!worst_tasks.is_empty()).then(|| worst_tasks.into_iter().map(to_task).collect())
 }
 
 /// Computes the smallest distance between a task's parts at a pose, mm; infinite if they are certainly far enough

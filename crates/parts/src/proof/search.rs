@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use lizard_kinematics::{Solution, Vector};
 
+use super::NearestPair;
 use super::guard::{Guard, Region, total_order_key};
 use super::interval_dual::IntervalDual;
 use super::shape_pairs::Task;
@@ -31,29 +32,13 @@ pub const MAX_REGIONS: u64 = 100_000;
 /// Largest number of regions to check once an overlap is found, whose exact depth does not matter.
 const MAX_REGIONS_OVERLAPPING: u64 = 1_000;
 
-/// The result of a search for the smallest distance.
-#[derive(Clone, Debug)]
-pub struct SearchResult {
-    /// Lower bound of the distance, mm; at most [`FAR_MM`].
-    pub lower_bound: f64,
-    /// The two nearest bodies, as indices in [`Assembly::bodies`].
-    pub bodies: [usize; 2],
-    /// Accepted pose with the smallest distance found; `None` if no distance below [`FAR_MM`] is found.
-    pub nearest: Option<NearestPose>,
-    /// Angles of some servos near which no larger distance could be proved, deg; `None` if the bound is close to the
-    /// distance in `nearest`.
-    pub unproved_angles: Option<[Option<f64>; 4]>,
-    /// Number of checked regions.
-    pub region_count: u64,
-}
-
-/// A pose, and the distance between the nearest two shapes at this pose.
-#[derive(Clone, Debug)]
-pub struct NearestPose {
-    /// Pose that the guard accepts.
-    pub pose: Solution,
+/// A pose that the guard accepts, and the nearest two shapes at this pose.
+struct NearestPose {
+    pose: Solution,
     /// Distance between the two shapes, mm.
-    pub mm: f64,
+    mm: f64,
+    /// Index of the pair of shapes.
+    shape_pair: u32,
 }
 
 /// A region, and the pairs of shapes that may be near each other in it.
@@ -69,14 +54,14 @@ struct BoundedRegion<const N: usize> {
     candidate_pairs: Vec<u32>,
 }
 
-/// Finds the smallest distance between a task's pairs of shapes over all poses that the guard accepts. Stops after
-/// `max_regions` regions.
-pub fn find_min_distance(
+/// Finds the nearest bodies of a task over all poses that the guard accepts, and the number of checked regions. Stops
+/// after `max_regions` regions.
+pub fn find_nearest_pair(
     assembly: &Assembly,
     guard: &Guard,
     task: &Task,
     max_regions: u64,
-) -> SearchResult {
+) -> (NearestPair, u64) {
     match task.servos()[..] {
         [] => search(assembly, guard, task, [], max_regions),
         [a] => search(assembly, guard, task, [a], max_regions),
@@ -86,23 +71,59 @@ pub fn find_min_distance(
     }
 }
 
+/// Finds the nearest bodies over all poses of `servos`.
 fn search<const N: usize>(
     assembly: &Assembly,
     guard: &Guard,
     task: &Task,
     servos: [usize; N],
     max_regions: u64,
-) -> SearchResult {
-    let search = Search {
+) -> (NearestPair, u64) {
+    let mut search = Search {
         assembly,
         guard,
         task,
         servos,
         nearest: None,
-        nearest_pair_index: 0,
         region_count: 0,
     };
-    search.run(max_regions)
+    let all_poses = Region::from_bounds(servos.map(|servo| guard.ranges[servo]));
+    let all_pairs: Vec<u32> = (0..task.shape_pairs.len() as u32).collect();
+    let relative_tolerance = match task.may_touch {
+        true => TOUCHING_RELATIVE_TOLERANCE,
+        false => RELATIVE_TOLERANCE,
+    };
+    // The region with the smallest bound comes first. Regions with equal bounds are ordered by their middles, so the
+    // order is deterministic.
+    let with_order_key = |bounded_region: BoundedRegion<N>| {
+        let bound_key = total_order_key(bounded_region.lower_bound);
+        let middle_key = bounded_region.region.middle.map(total_order_key);
+        ((bound_key, middle_key), bounded_region)
+    };
+    let first_region = search.bound_region(all_poses, &all_pairs);
+    let mut open_regions = BTreeMap::from_iter(first_region.map(with_order_key));
+    while let Some((_, bounded_region)) = open_regions.pop_first() {
+        let upper_bound = search.upper_bound();
+        let tolerance = relative_tolerance * upper_bound.abs();
+        if bounded_region.lower_bound >= upper_bound - TOLERANCE_MM - tolerance {
+            return search.into_result(bounded_region.lower_bound.min(upper_bound), None);
+        }
+        let max_regions = match upper_bound < 0.0 {
+            true => MAX_REGIONS_OVERLAPPING,
+            false => max_regions,
+        };
+        let mut half_widths = bounded_region.region.half_widths.iter();
+        let is_small = half_widths.all(|half_width| *half_width < MIN_HALF_WIDTH_DEG);
+        if is_small || search.region_count >= max_regions {
+            return search.into_result(bounded_region.lower_bound, Some(&bounded_region));
+        }
+        for half_region in bounded_region.region.halves(bounded_region.split_servo) {
+            let bounded_half = search.bound_region(half_region, &bounded_region.candidate_pairs);
+            open_regions.extend(bounded_half.map(with_order_key));
+        }
+    }
+    let upper_bound = search.upper_bound();
+    search.into_result(upper_bound, None)
 }
 
 /// A search over the angles of `N` servos.
@@ -113,8 +134,6 @@ struct Search<'a, const N: usize> {
     servos: [usize; N],
     /// Accepted pose with the smallest distance found.
     nearest: Option<NearestPose>,
-    /// Index of the pair of shapes with the distance in `nearest`.
-    nearest_pair_index: u32,
     /// Number of regions checked so far.
     region_count: u64,
 }
@@ -126,62 +145,25 @@ impl<const N: usize> Search<'_, N> {
         nearest.map_or(FAR_MM, |nearest| nearest.mm.min(FAR_MM))
     }
 
-    fn run(mut self, max_regions: u64) -> SearchResult {
-        let all_poses = Region::from_bounds(self.servos.map(|servo| self.guard.ranges[servo]));
-        let all_pairs: Vec<u32> = (0..self.task.shape_pairs.len() as u32).collect();
-        let relative_tolerance = match self.task.may_touch {
-            true => TOUCHING_RELATIVE_TOLERANCE,
-            false => RELATIVE_TOLERANCE,
-        };
-        // The region with the smallest bound comes first. Regions with equal bounds are ordered by their middles, so
-        // the order is deterministic.
-        let with_order_key = |bounded_region: BoundedRegion<N>| {
-            let bound_key = total_order_key(bounded_region.lower_bound);
-            let middle_key = bounded_region.region.middle.map(total_order_key);
-            ((bound_key, middle_key), bounded_region)
-        };
-        let first_region = self.bound_region(all_poses, &all_pairs);
-        let mut open_regions = BTreeMap::from_iter(first_region.map(with_order_key));
-        while let Some((_, bounded_region)) = open_regions.pop_first() {
-            let upper_bound = self.upper_bound();
-            let tolerance = relative_tolerance * upper_bound.abs();
-            if bounded_region.lower_bound >= upper_bound - TOLERANCE_MM - tolerance {
-                return self.into_result(bounded_region.lower_bound.min(upper_bound), None);
-            }
-            let max_regions = match upper_bound < 0.0 {
-                true => MAX_REGIONS_OVERLAPPING,
-                false => max_regions,
-            };
-            let mut half_widths = bounded_region.region.half_widths.iter();
-            let is_small = half_widths.all(|half_width| *half_width < MIN_HALF_WIDTH_DEG);
-            if is_small || self.region_count >= max_regions {
-                return self.into_result(bounded_region.lower_bound, Some(&bounded_region));
-            }
-            for half_region in bounded_region.region.halves(bounded_region.split_servo) {
-                let bounded_half = self.bound_region(half_region, &bounded_region.candidate_pairs);
-                open_regions.extend(bounded_half.map(with_order_key));
-            }
-        }
-        let upper_bound = self.upper_bound();
-        self.into_result(upper_bound, None)
-    }
-
     /// Converts the search to its result. In `unproved_region`, no larger distance could be proved.
     fn into_result(
         self,
         lower_bound: f64,
         unproved_region: Option<&BoundedRegion<N>>,
-    ) -> SearchResult {
-        let region_without_pose = unproved_region.filter(|_| self.nearest.is_none());
-        let pair_index =
-            region_without_pose.map_or(self.nearest_pair_index, |region| region.bounding_pair);
-        SearchResult {
-            lower_bound: lower_bound - ROUNDING_MM,
-            bodies: self.task.shape_pairs[pair_index as usize].bodies,
-            unproved_angles: unproved_region.map(|bounded| self.angles(&bounded.region)),
-            nearest: self.nearest,
-            region_count: self.region_count,
-        }
+    ) -> (NearestPair, u64) {
+        let nearest = self.nearest.as_ref();
+        let shape_pair = match (nearest, unproved_region) {
+            (Some(nearest), _) => nearest.shape_pair,
+            (None, Some(region)) => region.bounding_pair,
+            (None, None) => 0,
+        };
+        let nearest_pair = self.assembly.make_nearest_pair(
+            self.task.shape_pairs[shape_pair as usize].bodies,
+            lower_bound - ROUNDING_MM,
+            nearest.map(|nearest| (nearest.pose, nearest.mm)),
+            unproved_region.map(|bounded| self.angles(&bounded.region)),
+        );
+        (nearest_pair, self.region_count)
     }
 
     /// Angles at the middle of a region, deg, servo order.
@@ -256,8 +238,8 @@ impl<const N: usize> Search<'_, N> {
             self.nearest = Some(NearestPose {
                 pose,
                 mm: min_distance,
+                shape_pair: nearest_pair,
             });
-            self.nearest_pair_index = nearest_pair;
         }
         (!bounded_region.candidate_pairs.is_empty()).then_some(bounded_region)
     }

@@ -1,6 +1,8 @@
 //! Tests of the geometry in the files: distances between holes, positions of feet, cuts; and of identical bytes on
 //! every run.
 
+use std::collections::BTreeSet;
+
 use lizard_kinematics::Vector;
 use lizard_parts::{Assembly, Body, Loop, Mount, Outline, draw_sheets, make_part_files};
 
@@ -11,13 +13,13 @@ fn build_assembly(name: &str) -> Assembly {
 }
 
 /// Finds the centres, seen from above, of a body's clearance holes for M3 screws.
-fn find_clearance_holes(body: &Body) -> Vec<(f64, f64)> {
-    let mut holes: Vec<(f64, f64)> = Vec::new();
+fn find_clearance_holes(body: &Body) -> Vec<Vector> {
+    let mut holes: Vec<Vector> = Vec::new();
     for prism in &body.prisms {
         for (middle, radius) in Outline::from_prism(prism).loops().filter_map(Loop::circle) {
-            let is_same_hole = |&(x, y): &(f64, f64)| (x - middle.x).hypot(y - middle.y) < 1e-6;
+            let is_same_hole = |hole: &Vector| (*hole - middle).length() < 1e-6;
             if (radius - 1.6).abs() < 1e-6 && !holes.iter().any(is_same_hole) {
-                holes.push((middle.x, middle.y));
+                holes.push(middle);
             }
         }
     }
@@ -28,8 +30,7 @@ fn find_clearance_holes(body: &Body) -> Vec<(f64, f64)> {
 #[track_caller]
 fn assert_hole_distance(assembly: &Assembly, name: &str, mm: f64) {
     let holes = find_clearance_holes(find_body(assembly, name));
-    let distance_error =
-        |(ax, ay): &(f64, f64), (bx, by): &(f64, f64)| ((ax - bx).hypot(ay - by) - mm).abs();
+    let distance_error = |a: &Vector, b: &Vector| ((*a - *b).length() - mm).abs();
     let is_in_pair = |a| holes.iter().any(|b| distance_error(a, b) < 1e-9);
     let has_pair = holes.iter().any(is_in_pair);
     assert!(has_pair, "{name}: no two of {holes:?} are {mm} mm apart");
@@ -41,26 +42,19 @@ fn the_distance_between_two_holes_is_the_length_of_the_link() {
         let assembly = build_assembly(name);
         let links = assembly.robot().lizard().links;
         let leg = assembly.robot().lizard().leg;
-        for (coupler, length) in [
-            ("A1", links.l2),
-            ("A2", links.l3),
-            ("A3", links.l8),
-            ("A4", links.l7),
+        for (servo, coupler, crank, arm) in [
+            ("A1", links.l2, links.l1, links.l14),
+            ("A2", links.l3, links.l4, links.l19),
+            ("A3", links.l8, links.l9, links.l16),
+            ("A4", links.l7, links.l6, links.l11),
         ] {
-            assert_hole_distance(&assembly, &format!("coupler {coupler}"), length);
-        }
-        // Crank and arm form a right angle at the shaft.
-        for (link, crank, arm) in [
-            ("A1", links.l1, links.l14),
-            ("A2", links.l4, links.l19),
-            ("A3", links.l9, links.l16),
-            ("A4", links.l6, links.l11),
-        ] {
-            let link = format!("link {link}");
+            assert_hole_distance(&assembly, &format!("coupler {servo}"), coupler);
+            // Crank and arm form a right angle at the shaft.
+            let link = format!("link {servo}");
             assert_hole_distance(&assembly, &link, crank.hypot(arm));
-            let holes = find_clearance_holes(assembly.body(&link).expect("each servo has a link"));
+            let holes = find_clearance_holes(find_body(&assembly, &link));
             for length in [crank, arm] {
-                let is_at_distance = |(x, y): &(f64, f64)| (x.hypot(*y) - length).abs() < 1e-9;
+                let is_at_distance = |hole: &Vector| (hole.length() - length).abs() < 1e-9;
                 assert!(holes.iter().any(is_at_distance), "{name} {link} {length}");
             }
         }
@@ -78,7 +72,7 @@ fn a_rigid_strut_has_the_length_of_a_slotted_strut_and_lies_within_it() {
     for name in ["paper", "large", "unequal"] {
         let assembly = build_assembly(name);
         for (leg, rigid) in assembly.layout().legs.iter().zip(assembly.alternatives()) {
-            let expected = [(0.0, 0.0), (leg.strut_length, 0.0)];
+            let expected = [Vector::default(), Vector::new(leg.strut_length, 0.0)];
             let holes = find_clearance_holes(rigid);
             assert_eq!(holes, expected, "{name}: {}", rigid.name);
             let slotted_name = rigid.name.trim_start_matches("rigid ");
@@ -103,7 +97,7 @@ fn the_pivots_of_the_plate_match_the_kinematics() {
     let holes = find_clearance_holes(find_body(&assembly, "plate"));
     for leg in &assembly.layout().legs {
         for pivot in [leg.crank_pivot, leg.follower_pivot] {
-            let is_at_pivot = |&(x, y): &(f64, f64)| (x - pivot.x).hypot(y - pivot.y) < 1e-9;
+            let is_at_pivot = |hole: &Vector| (*hole - pivot).length() < 1e-9;
             assert!(holes.iter().any(is_at_pivot), "{pivot:?}");
         }
     }
@@ -153,9 +147,7 @@ fn all_files_are_identical_in_every_run() {
     let (first, second) = (make_files(), make_files());
     assert!(first.len() > 50);
     assert!(first == second);
-    let mut paths: Vec<_> = first.iter().map(|file| &file.path).collect();
-    paths.sort();
-    paths.dedup();
+    let paths: BTreeSet<_> = first.iter().map(|file| &file.path).collect();
     assert_eq!(paths.len(), first.len(), "two files have the same path");
 }
 

@@ -1,15 +1,8 @@
 //! Tests on a grid of poses: no parts collide unless they are designed to touch, and wrong dimensions are detected.
 
-use lizard_parts::Clearance;
+use std::collections::BTreeSet;
 
 use crate::{ROBOTS, build_assembly, build_slotted_assembly, find_body};
-
-/// Finds the closest pair of parts of the paper's robot with changed dimensions; `None` if no parts are within 1 mm.
-fn find_closest_pair(toml: &str) -> Option<Clearance> {
-    let assembly = build_slotted_assembly("paper", toml);
-    let close_pairs = assembly.find_close_pairs(assembly.grid_poses(9), 1.0);
-    close_pairs.into_iter().next()
-}
 
 #[test]
 fn every_robot_has_gaps_between_its_parts() {
@@ -32,7 +25,11 @@ fn a_wrong_dimension_makes_parts_overlap() {
         ("[parts]\nanchor = [12.0, 5.0]", "servo", "strut"),
         (large_head_toml, "link", "screw"),
     ] {
-        let pair = find_closest_pair(toml).unwrap_or_else(|| panic!("{toml}: no parts are close"));
+        let assembly = build_slotted_assembly("paper", toml);
+        let close_pairs = assembly.find_close_pairs(assembly.grid_poses(9), 1.0);
+        let Some(pair) = close_pairs.first() else {
+            panic!("{toml}: no parts are close")
+        };
         assert!(pair.mm < 0.0, "{toml}: {pair}");
         let is_expected_pair = pair.first.contains(first) && pair.second.contains(second);
         assert!(is_expected_pair, "{toml}: {pair}");
@@ -42,12 +39,10 @@ fn a_wrong_dimension_makes_parts_overlap() {
 #[test]
 fn bodies_have_unique_names_adjoining_layers_and_known_contacts() {
     let assembly = build_assembly("unequal", "");
-    let mut names: Vec<_> = assembly.bodies().iter().map(|body| &body.name).collect();
-    names.sort();
-    let body_count = names.len();
-    names.dedup();
-    assert_eq!(names.len(), body_count, "two bodies have the same name");
-    for body in assembly.bodies() {
+    let bodies = assembly.bodies();
+    let names: BTreeSet<_> = bodies.iter().map(|body| &body.name).collect();
+    assert_eq!(names.len(), bodies.len(), "two bodies have the same name");
+    for body in bodies {
         for pair in body.prisms.windows(2) {
             assert_eq!(pair[0].z[1], pair[1].z[0], "{}", body.name);
         }
@@ -80,11 +75,8 @@ fn screws_are_centred_in_the_holes_of_the_parts_that_they_hold() {
                     let holes = cuts.filter(|cut| cut.radius >= shank.radius - 0.3);
                     let errors = holes.map(|hole| (frame.map(hole.points[0]) - centre).length());
                     let error_mm = errors.fold(f64::INFINITY, f64::min);
-                    let (screw, held) = (&screw.name, &held.name);
-                    assert!(
-                        error_mm < 1e-9,
-                        "{name}: {screw} in {held} is off by {error_mm} mm"
-                    );
+                    let label = format!("{name}: {} in {}", screw.name, held.name);
+                    assert!(error_mm < 1e-9, "{label} is off by {error_mm} mm");
                     hole_count += 1;
                 }
             }

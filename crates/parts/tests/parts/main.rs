@@ -46,14 +46,23 @@ fn build_slotted_assembly(name: &str, more_toml: &str) -> Assembly {
     build_assembly(name, &format!("{SLOTTED_STRUTS_TOML}\n{more_toml}"))
 }
 
+/// Builds the paper's robot with slotted struts and changes its body with this name.
+fn build_assembly_with_changed_body(name: &str, change: impl FnOnce(&mut Body)) -> Assembly {
+    build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
+        let body = bodies.iter_mut().find(|body| body.name == name);
+        change(body.expect(name));
+    })
+}
+
 /// Solves the robot's linkages at neutral.
-fn solve_at_neutral(assembly: &Assembly) -> Solution {
-    mjcf_reader::solve_at_neutral(assembly.robot())
+fn solve_at_neutral(robot: &Robot) -> Solution {
+    let solution = robot.lizard().solve(&robot.neutral_pose());
+    solution.expect("the linkages close at neutral")
 }
 
 /// Computes the bill of a robot, with its centre of mass at neutral.
 fn compute_bill(assembly: &Assembly) -> Bill {
-    let (parts, pose) = (assembly.collect_parts(), solve_at_neutral(assembly));
+    let (parts, pose) = (assembly.collect_parts(), solve_at_neutral(assembly.robot()));
     Bill::compute(assembly, &parts, &pose)
 }
 

@@ -2,24 +2,24 @@
 
 use std::collections::BTreeMap;
 
-use lizard_kinematics::Solution;
-use lizard_parts::{Assembly, Scene, StrutSpring, format_mjcf};
+use lizard_parts::{Assembly, Pieces, Scene, StrutSpring};
 use lizard_robot::Robot;
 use roxmltree::{Document, Node};
 
-/// Solves the robot's linkages at neutral.
-pub fn solve_at_neutral(robot: &Robot) -> Solution {
-    let solution = robot.lizard().solve(&robot.neutral_pose());
-    solution.expect("the linkages close at neutral")
-}
+use crate::solve_at_neutral;
 
 /// Makes the MuJoCo file of a robot, with the scene that `change` alters.
 pub fn make_mjcf(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
     let assembly = Assembly::new(robot);
     let mut scene = Scene::for_assembly(&assembly);
     change(&mut scene);
-    let text = format_mjcf(&assembly, &solve_at_neutral(robot), &scene);
-    text.expect("every part has a closed surface")
+    let pieces = Pieces::compute(&assembly, &scene).expect("every part has a closed surface");
+    pieces.format_mjcf(&solve_at_neutral(robot), &scene)
+}
+
+/// Parses the text of a model file.
+pub fn parse_xml(text: &str) -> Document<'_> {
+    Document::parse(text).expect("the file is well-formed XML")
 }
 
 /// Reads the numbers in an attribute, separated by spaces.

@@ -10,10 +10,10 @@ use lizard_robot::servo::SERVO_NAMES;
 use roxmltree::{Document, Node};
 
 use crate::mjcf_reader::{
-    Placement, STRUT_SPRING, WORLD, first_child, make_mjcf, parse_numbers, read_bodies,
-    read_numbers, solve_at_neutral,
+    Placement, STRUT_SPRING, WORLD, first_child, make_mjcf, parse_numbers, parse_xml, read_bodies,
+    read_numbers,
 };
-use crate::{ROBOTS, read_robot_with};
+use crate::{ROBOTS, read_robot_with, solve_at_neutral};
 
 /// Makes the URDF and the SDF file of a robot, with the scene that `change` alters, and the paths of their mesh files.
 fn make_urdf_sdf_and_mesh_paths(
@@ -137,11 +137,10 @@ fn the_bodies_of_urdf_and_sdf_match_the_mujoco_file() {
             let change =
                 |scene: &mut Scene| (scene.strut_spring, scene.play) = (strut_spring, play);
             let text = make_mjcf(&robot, change);
-            let document = Document::parse(&text).expect("the file is well-formed XML");
+            let document = parse_xml(&text);
             let expected = read_bodies(&document);
-            let ([urdf, sdf], _) = make_urdf_sdf_and_mesh_paths(&robot, change);
-            let [urdf, sdf] = [&urdf, &sdf]
-                .map(|text| Document::parse(text).expect("the file is well-formed XML"));
+            let (texts, _) = make_urdf_sdf_and_mesh_paths(&robot, change);
+            let [urdf, sdf] = texts.each_ref().map(|text| parse_xml(text));
             for bodies in [read_urdf(&urdf), read_sdf(&sdf)] {
                 assert_eq!(bodies.len(), expected.len());
                 for (name, (expected_placement, body)) in &expected {
@@ -169,9 +168,9 @@ fn the_bodies_of_urdf_and_sdf_match_the_mujoco_file() {
 fn the_two_halves_of_each_cut_urdf_joint_coincide() {
     for name in ROBOTS {
         let ([urdf, _], _) = make_urdf_sdf_and_mesh_paths(&read_robot_with(name, ""), |_| {});
-        let document = Document::parse(&urdf).expect("the file is well-formed XML");
-        let links = read_urdf(&document);
-        let joints = elements_by_name(document.root_element(), "joint");
+        let urdf = parse_xml(&urdf);
+        let links = read_urdf(&urdf);
+        let joints = elements_by_name(urdf.root_element(), "joint");
         let locate_half = |name: &str| {
             let joint = joints[&format!("{name}_joint")];
             assert_eq!(joint.attribute("type"), Some("fixed"));
@@ -198,9 +197,8 @@ fn the_two_halves_of_each_cut_urdf_joint_coincide() {
 #[test]
 fn urdf_and_sdf_have_the_names_and_limits_of_the_servos() {
     let robot = read_robot_with("unequal", "");
-    let ([urdf, sdf], _) = make_urdf_sdf_and_mesh_paths(&robot, |_| {});
-    let [urdf, sdf] =
-        [&urdf, &sdf].map(|text| Document::parse(text).expect("the file is well-formed XML"));
+    let (texts, _) = make_urdf_sdf_and_mesh_paths(&robot, |_| {});
+    let [urdf, sdf] = texts.each_ref().map(|text| parse_xml(text));
     let model = first_child(sdf.root_element(), "model");
     let urdf_joints = elements_by_name(urdf.root_element(), "joint");
     let sdf_joints = elements_by_name(model, "joint");
@@ -231,9 +229,10 @@ fn urdf_and_sdf_have_the_names_and_limits_of_the_servos() {
 
 #[test]
 fn the_meshes_match_the_references_in_urdf_and_sdf() {
-    let (texts, mesh_paths) = make_urdf_sdf_and_mesh_paths(&read_robot_with("paper", ""), |_| {});
+    let robot = read_robot_with("paper", "");
+    let (texts, mesh_paths) = make_urdf_sdf_and_mesh_paths(&robot, |_| {});
     for text in &texts {
-        let document = Document::parse(text).expect("the file is well-formed XML");
+        let document = parse_xml(text);
         let nodes = document.descendants();
         let urdf_references = nodes.clone().filter_map(|node| node.attribute("filename"));
         let uri_nodes = nodes.filter(|node| node.has_tag_name("uri"));
@@ -242,8 +241,6 @@ fn the_meshes_match_the_references_in_urdf_and_sdf() {
         let referenced_paths: BTreeSet<_> = paths.map(str::to_owned).collect();
         assert_eq!(referenced_paths, mesh_paths);
     }
-    let (texts, _) = make_urdf_sdf_and_mesh_paths(&read_robot_with("paper", ""), |scene| {
-        scene.has_shapes = false
-    });
+    let (texts, _) = make_urdf_sdf_and_mesh_paths(&robot, |scene| scene.has_shapes = false);
     assert!(texts.iter().all(|text| !text.contains("mesh")));
 }

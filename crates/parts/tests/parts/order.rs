@@ -6,7 +6,10 @@ use lizard_parts::{
     TurningPlace, build_steps,
 };
 
-use crate::{ROBOTS, build_assembly, build_slotted_assembly, solve_at_neutral};
+use crate::{
+    ROBOTS, build_assembly, build_assembly_with_changed_body, build_slotted_assembly,
+    solve_at_neutral,
+};
 
 /// Builds the steps of the guide for a robot's kind of struts.
 fn build_guide_steps(assembly: &Assembly) -> Vec<Step> {
@@ -37,19 +40,16 @@ fn every_screw_of_every_robot_can_be_reached() {
     }
 }
 
-/// Finds the blocked screws of the paper's robot with changed steps, each with the body in its way. The screws of the
-/// feet, which are blocked at neutral in any order, are omitted.
-fn find_blocked_screws(
-    change: impl FnOnce(&mut Vec<Step>),
-) -> Vec<(String, ScrewOperation, String)> {
+/// Finds the blocked screws of the paper's robot with changed steps. The screws of the feet, which are blocked at
+/// neutral in any order, are omitted.
+fn find_blocked_screws(change: impl FnOnce(&mut Vec<Step>)) -> Vec<BlockedScrew> {
     let assembly = build_slotted_assembly("paper", "");
     let mut steps = build_guide_steps(&assembly);
     change(&mut steps);
-    let mut blocked_screws = assembly.find_blocked_screws(&steps, &solve_at_neutral(&assembly));
+    let pose = solve_at_neutral(assembly.robot());
+    let mut blocked_screws = assembly.find_blocked_screws(&steps, &pose);
     blocked_screws.retain(|blocked| !blocked.screw.starts_with("screw foot"));
-    let blocked_screws = blocked_screws.into_iter();
-    let to_tuple = |blocked: BlockedScrew| (blocked.screw, blocked.operation, blocked.obstacle);
-    blocked_screws.map(to_tuple).collect()
+    blocked_screws
 }
 
 #[test]
@@ -65,8 +65,8 @@ fn a_wrong_order_is_detected() {
             turns_again: |_| false,
         });
     });
-    let mut operations = blocked_screws.iter().map(|(_, operation, _)| operation);
-    let is_detected = operations.any(|operation| *operation == ScrewOperation::Push);
+    let is_push = |blocked: &BlockedScrew| blocked.operation == ScrewOperation::Push;
+    let is_detected = blocked_screws.iter().any(is_push);
     assert!(is_detected, "{blocked_screws:?}");
 }
 
@@ -83,19 +83,15 @@ fn assert_turn_is_blocked(assembly: &Assembly, screw: &str, obstacle: &str) {
 
 #[test]
 fn a_pad_without_a_hole_for_the_key_is_detected() {
-    let glued_assembly = build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
-        let is_pad = |body: &&mut Body| body.name == "pad LF";
-        for body in bodies.iter_mut().filter(is_pad) {
-            body.prisms[0].cut_shapes.clear();
-        }
-    });
+    let remove_hole = |pad: &mut Body| pad.prisms[0].cut_shapes.clear();
+    let glued_assembly = build_assembly_with_changed_body("pad LF", remove_hole);
     assert_turn_is_blocked(&glued_assembly, "screw height LF", "pad LF");
     // The check finds the pad both in the step that mounts it and in the step that levels the feet.
     let steps = build_guide_steps(&glued_assembly);
     let level_step = steps.iter().position(|step| step.title == "Level the feet");
     let level_step = 1 + level_step.expect("a step levels the feet");
-    let blocked_screws =
-        glued_assembly.find_blocked_screws(&steps, &solve_at_neutral(&glued_assembly));
+    let pose = solve_at_neutral(glued_assembly.robot());
+    let blocked_screws = glued_assembly.find_blocked_screws(&steps, &pose);
     for step in [7, level_step] {
         let is_pad = |blocked: &BlockedScrew| blocked.step == step && blocked.obstacle == "pad LF";
         let is_found = blocked_screws.iter().any(is_pad);
@@ -144,12 +140,9 @@ fn parts_that_move_together_do_not_overlap() {
         assert_eq!(result, Ok(()), "{name}");
     }
     // The head of a standoff's screw overlaps the boss of the board's screw.
-    let altered_assembly = build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
-        let is_screw = |body: &&mut Body| body.name == "screw standoff 1 above";
-        for body in bodies.iter_mut().filter(is_screw) {
-            for prism in &mut body.prisms {
-                prism.filled_shapes[0].points[0].y -= 1.0;
-            }
+    let altered_assembly = build_assembly_with_changed_body("screw standoff 1 above", |screw| {
+        for prism in &mut screw.prisms {
+            prism.filled_shapes[0].points[0].y -= 1.0;
         }
     });
     let result = altered_assembly.check_dimensions();
@@ -165,14 +158,15 @@ fn parts_that_move_together_do_not_overlap() {
 fn no_body_is_above_a_screw_head_that_can_be_reached() {
     for name in ["paper", "unequal"] {
         let assembly = build_slotted_assembly(name, "");
-        let pose = solve_at_neutral(&assembly);
+        let pose = solve_at_neutral(assembly.robot());
         let steps = build_guide_steps(&assembly);
         let blocked_screws = assembly.find_blocked_screws(&steps, &pose);
         let find_step = |body: &Body| steps.iter().position(|step| step.adds(body));
-        let compute_outlines = |body: &Body| body.prisms.iter().map(Outline::from_prism).collect();
-        let bodies = assembly.bodies().iter();
-        let outlines: Vec<(&Body, Vec<_>)> =
-            bodies.map(|body| (body, compute_outlines(body))).collect();
+        let mut layers = Vec::new();
+        for body in assembly.bodies() {
+            let prisms = body.prisms.iter();
+            layers.extend(prisms.map(|prism| (body, prism.z, Outline::from_prism(prism))));
+        }
         let mut checked_count = 0;
         for screw in assembly.bodies() {
             let screw_step = find_step(screw);
@@ -192,24 +186,23 @@ fn no_body_is_above_a_screw_head_that_can_be_reached() {
             }
             let placement = assembly.placement(screw.mount, &pose);
             let head = placement.map(high.filled_shapes[0].middle());
-            for direction in 0..12 {
-                let rim = head + Vector::from_angle(30.0 * f64::from(direction)) * 1.99;
-                for height_step in 1..60 {
-                    let z = high.z[1] + 0.5 * f64::from(height_step);
-                    for (body, layers) in &outlines {
-                        let is_ignored = body.name == screw.name || body.name.starts_with("board");
-                        if find_step(body) > screw_step || is_ignored {
-                            continue;
-                        }
-                        let point = assembly.placement(body.mount, &pose).unmap(rim);
-                        for (prism, outline) in body.prisms.iter().zip(layers) {
-                            let is_at_height = prism.z[0] < z && z < prism.z[1];
-                            checked_count += usize::from(is_at_height);
-                            let (screw, body) = (&screw.name, &body.name);
-                            let is_free = !is_at_height || !outline.contains(point);
-                            assert!(is_free, "{name}: {body} covers {screw}");
-                        }
-                    }
+            let may_cover = |body: &Body| {
+                let is_ignored = body.name == screw.name || body.name.starts_with("board");
+                find_step(body) <= screw_step && !is_ignored
+            };
+            let covering_layers = layers.iter().filter(|(body, ..)| may_cover(body));
+            for (body, [bottom, top], outline) in covering_layers {
+                let heights = (1..60).map(|step| high.z[1] + 0.5 * f64::from(step));
+                let height_count = heights.filter(|z| bottom < z && z < top).count();
+                if height_count == 0 {
+                    continue;
+                }
+                let placement = assembly.placement(body.mount, &pose);
+                for direction in 0..12 {
+                    let rim = head + Vector::from_angle(30.0 * f64::from(direction)) * 1.99;
+                    let is_free = !outline.contains(placement.unmap(rim));
+                    assert!(is_free, "{name}: {} covers {}", body.name, screw.name);
+                    checked_count += height_count;
                 }
             }
         }

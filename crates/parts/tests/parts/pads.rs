@@ -106,7 +106,7 @@ fn a_strip_that_does_not_fit_its_pad_is_rejected() {
 fn bill_and_guide_mention_strips_only_for_a_robot_with_strips() {
     for (name, has_strip) in [("paper", false), (GRAIN_ROBOT, true)] {
         let assembly = build_assembly(name, "");
-        let pose = solve_at_neutral(&assembly);
+        let pose = solve_at_neutral(assembly.robot());
         let (bill, strip_name) = (compute_bill(&assembly), "strip with a grain, 8 x 30 mm");
         let inputs = bill.inputs.iter();
         let strips = inputs.filter(|item| item.name.starts_with(strip_name));

@@ -7,7 +7,10 @@ use lizard_kinematics::{Side, Solution, Vector};
 use lizard_parts::{Assembly, Body, Clash, FAR_MM, MIN_GAP_MM, Mount, Shape};
 use lizard_robot::Robot;
 
-use crate::{GRAIN_ROBOT, ROBOTS, build_assembly, build_slotted_assembly, find_body};
+use crate::{
+    GRAIN_ROBOT, ROBOTS, build_assembly, build_assembly_with_changed_body, build_slotted_assembly,
+    find_body,
+};
 
 /// A generator of pseudo-random numbers between 0 and 1, the same in every run.
 struct Random(u64);
@@ -189,32 +192,21 @@ fn a_large_overlap_is_detected_early() {
     assert!(region_count < 10_000, "{region_count} regions");
 }
 
-/// Builds the paper's robot with one screw that is longer by `extra_mm`.
-fn build_assembly_with_longer_screw(name: &str, extra_mm: f64, extends_down: bool) -> Assembly {
-    build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
-        let mut bodies = bodies.iter_mut();
-        let screw = bodies.find(|body| body.name == name).expect(name);
-        let diameter = |i: usize| screw.prisms[i].filled_shapes[0].diameter();
-        let shank = usize::from(diameter(1) < diameter(0));
-        let z = &mut screw.prisms[shank].z;
-        if extends_down {
-            z[0] -= extra_mm;
-        } else {
-            z[1] += extra_mm;
-        }
-    })
-}
-
 #[test]
 fn a_screw_that_is_too_long_is_detected() {
-    for (name, extra_mm, extends_down, obstacle) in [
-        ("screw tip A1", 8.0, true, "strut LF"),
-        ("screw foot LF 2", 3.0, false, "follower LF"),
-        ("screw crank pivot LF", 6.5, false, "screw arm A1"),
-        ("screw height LF", 26.0, false, "crank LF"),
-        ("screw leg anchor LF", 5.0, false, "link A1"),
+    for (name, [extra_below_mm, extra_above_mm], obstacle) in [
+        ("screw tip A1", [8.0, 0.0], "strut LF"),
+        ("screw foot LF 2", [0.0, 3.0], "follower LF"),
+        ("screw crank pivot LF", [0.0, 6.5], "screw arm A1"),
+        ("screw height LF", [0.0, 26.0], "crank LF"),
+        ("screw leg anchor LF", [0.0, 5.0], "link A1"),
     ] {
-        let altered_assembly = build_assembly_with_longer_screw(name, extra_mm, extends_down);
+        let altered_assembly = build_assembly_with_changed_body(name, |screw| {
+            let diameter = |i: usize| screw.prisms[i].filled_shapes[0].diameter();
+            let shank = usize::from(diameter(1) < diameter(0));
+            let [low, high] = screw.prisms[shank].z;
+            screw.prisms[shank].z = [low - extra_below_mm, high + extra_above_mm];
+        });
         let clash = find_clash(&altered_assembly, |body| body.name == name);
         assert_overlap(clash, name, obstacle);
     }
@@ -239,12 +231,10 @@ fn swapped_layers_are_detected() {
 
 #[test]
 fn a_hole_that_is_displaced_from_its_pin_is_detected() {
-    let altered_assembly = build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
-        for body in bodies.iter_mut().filter(|body| body.name == "coupler A4") {
-            for cut in &mut body.prisms[0].cut_shapes {
-                for point in &mut cut.points {
-                    *point = *point + Vector::new(0.0, 0.3);
-                }
+    let altered_assembly = build_assembly_with_changed_body("coupler A4", |coupler| {
+        for cut in &mut coupler.prisms[0].cut_shapes {
+            for point in &mut cut.points {
+                *point = *point + Vector::new(0.0, 0.3);
             }
         }
     });

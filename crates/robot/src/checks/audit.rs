@@ -12,6 +12,7 @@ use lizard_kinematics::{Check, Solution, Violation};
 use crate::checks::accuracy::{self, PHASE_COUNT};
 use crate::config::servo::SERVO_NAMES;
 use crate::config::{RobotConfig, describe_open_loop, describe_violation};
+use crate::file::{Error, ReadResult};
 use crate::gaits::Gait;
 use crate::tables::Tables;
 use crate::units::{FRAMES_PER_SECOND, PHASES_PER_CYCLE, STEPS_PER_DEGREE};
@@ -112,14 +113,6 @@ impl MinMargin {
     }
 }
 
-/// The two parts of the message about a limit that a gait violates.
-pub(crate) struct LimitViolation {
-    /// The consequence for the robot, in words without numbers.
-    pub consequence: String,
-    /// The values, and the phase at which they occur.
-    pub problem: String,
-}
-
 /// Checks a gait against the limits of its robot.
 ///
 /// # Errors
@@ -132,7 +125,9 @@ pub(crate) fn check_gait(
     tables: &Tables,
     config: &RobotConfig,
     core_robot: &lizard_core::numbers::robot::Robot<'_>,
-) -> Result<Audit, LimitViolation> {
+) -> ReadResult<Audit> {
+    let violation_error =
+        |consequence: String, problem: String| Error::in_gait(&gait.name, &consequence, problem);
     let mut audit = Audit {
         peak_speed: find_peak_speed(gait),
         ..Audit::EMPTY
@@ -145,66 +140,60 @@ pub(crate) fn check_gait(
         let angles = gait.angles_from_table(sweeps);
         let sweeps = Pose(sweeps.map(Sweep));
         let phase = f64::from(phase) / PHASES_PER_CYCLE;
-        check_travels(config, angles, phase)?;
+        check_travels(gait, config, angles, phase)?;
         if let Some(hazard) = Clearance::measure(core_robot, &sweeps).first_hazard(core_robot) {
             guard_stop.get_or_insert((phase, corresponding_check(&hazard)));
         }
         let solution = config.lizard.solve(&angles.into());
-        let solution = solution.map_err(|infeasible| LimitViolation {
-            consequence: describe_open_loop(infeasible.mechanism),
-            problem: format!("{infeasible} {}", at_phase(phase)),
+        let solution = solution.map_err(|infeasible| {
+            let problem = format!("{infeasible} {}", at_phase(phase));
+            violation_error(describe_open_loop(infeasible.mechanism), problem)
         })?;
         for violation in config.limits.violations(&solution) {
-            worst_violation = Some(match worst_violation {
-                Some((earlier_phase, earlier)) if !is_worse_violation(violation, earlier) => {
-                    (earlier_phase, earlier)
-                }
-                _ => (phase, violation),
-            });
+            if worst_violation.is_none_or(|(_, earlier)| is_worse_violation(violation, earlier)) {
+                worst_violation = Some((phase, violation));
+            }
         }
         audit.add(&solution, phase);
     }
     if let Some((phase, violation)) = worst_violation {
-        return Err(LimitViolation {
-            consequence: describe_violation(violation.check),
-            problem: format!("{violation} {}", at_phase(phase)),
-        });
+        let problem = format!("{violation} {}", at_phase(phase));
+        return Err(violation_error(
+            describe_violation(violation.check),
+            problem,
+        ));
     }
     if let Some((phase, stopping_check)) = guard_stop {
-        return Err(LimitViolation {
-            consequence: describe_violation(stopping_check),
-            problem: format!(
-                "margin or travel {stopping_check} is so close to its limit {} that the firmware's integers place it beyond the limit; leave more room",
-                at_phase(phase)
-            ),
-        });
+        let problem = format!(
+            "margin or travel {stopping_check} is so close to its limit {} that the firmware's integers place it beyond the limit; leave more room",
+            at_phase(phase)
+        );
+        return Err(violation_error(describe_violation(stopping_check), problem));
     }
     let peak = audit.peak_speed;
     let limit = config.speed_limits.gait_slew;
     if peak.speed > limit {
         let name = SERVO_NAMES[peak.servo];
-        return Err(LimitViolation {
-            consequence: format!("servo {name} would have to turn too fast"),
-            problem: format!(
+        return Err(violation_error(
+            format!("servo {name} would have to turn too fast"),
+            format!(
                 "{:.1} deg/s {}; limits.gait_slew is {limit:.1} deg/s",
                 peak.speed,
                 at_phase(peak.phase)
             ),
-        });
+        ));
     }
     let error = accuracy::compute_table_error(gait, index, tables, CHECKED_PHASE_COUNT);
     if error.max > MAX_TABLE_ERROR_DEG {
-        return Err(LimitViolation {
-            consequence: format!(
-                "servo {} would have to turn too sharply",
-                SERVO_NAMES[error.servo]
-            ),
-            problem: format!(
+        let name = SERVO_NAMES[error.servo];
+        return Err(violation_error(
+            format!("servo {name} would have to turn too sharply"),
+            format!(
                 "the firmware's table of {SAMPLES_PER_WAVE} samples is {:.3} deg off {}; at most {MAX_TABLE_ERROR_DEG:.2} deg is allowed",
                 error.max,
                 at_phase(error.phase)
             ),
-        });
+        ));
     }
     Ok(audit)
 }
@@ -243,7 +232,12 @@ fn list_phases(table: &TableGait) -> Vec<u16> {
 }
 
 /// Rejects angles outside a servo's travel.
-fn check_travels(config: &RobotConfig, angles: [f64; 4], phase: f64) -> Result<(), LimitViolation> {
+fn check_travels(
+    gait: &Gait,
+    config: &RobotConfig,
+    angles: [f64; 4],
+    phase: f64,
+) -> ReadResult<()> {
     // Both the travel's limits and the sample are rounded to an angle step.
     const STEP_DEG: f64 = 1.0 / STEPS_PER_DEGREE;
     for ((servo, angle), name) in config.servos.iter().zip(angles).zip(SERVO_NAMES) {
@@ -251,12 +245,11 @@ fn check_travels(config: &RobotConfig, angles: [f64; 4], phase: f64) -> Result<(
         let sweep = angle - servo.neutral;
         if sweep < min - STEP_DEG || sweep > max + STEP_DEG {
             let (min, max) = (servo.neutral + min, servo.neutral + max);
-            return Err(LimitViolation {
-                consequence: format!("servo {name} would have to turn farther than it can"),
-                problem: format!(
-                    "{angle:.2} deg at phase {phase:.4} is outside its travel of {min:.2} to {max:.2} deg"
-                ),
-            });
+            let consequence = format!("servo {name} would have to turn farther than it can");
+            let problem = format!(
+                "{angle:.2} deg at phase {phase:.4} is outside its travel of {min:.2} to {max:.2} deg"
+            );
+            return Err(Error::in_gait(&gait.name, &consequence, problem));
         }
     }
     Ok(())

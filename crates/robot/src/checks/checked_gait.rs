@@ -11,7 +11,7 @@ use crate::checks::accuracy::{self, TableError};
 use crate::checks::audit::{self, Audit};
 use crate::config::RobotConfig;
 use crate::config::servo::FORWARD_TURN_SIGN;
-use crate::file::{ReadResult, UnlocatedError};
+use crate::file::ReadResult;
 use crate::gaits::{Bars, Gait, Stride, to_command};
 use crate::tables::Tables;
 use crate::units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
@@ -36,12 +36,7 @@ impl CheckedGait {
         config: &RobotConfig,
         core_robot: &lizard_core::numbers::robot::Robot,
     ) -> ReadResult<Self> {
-        let audit = audit::check_gait(&gait, index, tables, config, core_robot);
-        let audit = audit.map_err(|violation| {
-            let name = &gait.name;
-            UnlocatedError::with_own_subject(format!("gait.{name}"), violation.problem)
-                .with_consequence(format!("in \"{name}\" {}", violation.consequence))
-        })?;
+        let audit = audit::check_gait(&gait, index, tables, config, core_robot)?;
         Ok(Self {
             gait,
             index,

@@ -67,6 +67,7 @@ impl Coil {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::assert_near;
 
     #[test]
     fn rate_initial_tension_and_stress_agree_with_the_handbook() {
@@ -76,17 +77,14 @@ mod tests {
             outer_diameter: 11.0,
             free_length: 2.0 * 9.0 + 21.0,
         };
-        assert!((coil.active_coil_count() - 20.0).abs() < 1e-9);
-        assert!((coil.rate() - 0.495_625).abs() < 1e-6);
+        assert_near(coil.active_coil_count(), 20.0, 1e-9);
+        assert_near(coil.rate(), 0.495_625, 1e-6);
         // C = 10: the stress is 231 / e^1.05 = 80.8 MPa, and the force pi d^3 / (8 D) = pi / 80 times as many N.
-        assert!(
-            (coil.initial_tension() - 3.174).abs() < 0.01,
-            "{}",
-            coil.initial_tension()
-        );
-        assert!((coil.initial_tension() / coil.force_at_stress(1.0) - 80.8).abs() < 0.1);
+        assert_near(coil.initial_tension(), 3.174, 0.01);
+        let initial_stress = coil.initial_tension() / coil.force_at_stress(1.0);
+        assert_near(initial_stress, 80.8, 0.1);
         let force_change = coil.force(coil.free_length + 4.0) - coil.force(coil.free_length);
-        assert!((force_change - 4.0 * 0.495_625).abs() < 1e-9);
+        assert_near(force_change, 4.0 * 0.495_625, 1e-9);
         assert_eq!(coil.force(0.0), coil.initial_tension());
     }
 }

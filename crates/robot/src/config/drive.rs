@@ -7,8 +7,6 @@ use crate::config::parts::Parts;
 use crate::config::strut;
 use crate::file::{ReadResult, Section, suggest};
 
-/// The key of the table in `[leg]`.
-const DRIVE_KEY: &str = "drive";
 /// The keys of all kinds of drive.
 const KEYS: [&str; 4] = ["kind", "play", "force", "rate"];
 /// The kinds of drive, each with its keys in addition to `kind` and `play`.
@@ -25,14 +23,8 @@ pub(crate) fn read(
     neutral_angles: [f64; 4],
     parts: &Parts,
 ) -> ReadResult<Drive> {
-    if !leg_section.has_key(DRIVE_KEY) {
-        return Ok(Drive::RIGID);
-    }
-    let section = leg_section.open(DRIVE_KEY)?;
-    let kind_name = match section.has_key("kind") {
-        true => section.text("kind")?,
-        false => KINDS[0].0,
-    };
+    let section = leg_section.open_optional("drive")?;
+    let kind_name = section.text_or("kind", KINDS[0].0)?;
     if kind_name == "spring" {
         let message = "is \"spring\", which is no longer supported; write \"strut\" with the force and rate of its spring, or \"rigid\"";
         return Err(section.error("kind", message));
@@ -53,13 +45,13 @@ pub(crate) fn read(
             let coil_strut = strut::strut_with_coil(legs, neutral_angles, parts, &parts.spring);
             let (force, rate) = (coil_strut.preload, coil_strut.spring_rate);
             DriveKind::Strut(Strut {
-                preload: section.number_or("force", force, 0.01, 100.0, "N")?,
-                spring_rate: section.number_or("rate", rate, 0.0, 100.0, "N/mm")?,
+                preload: section.number_or("force", force, (0.01, 100.0), "N")?,
+                spring_rate: section.number_or("rate", rate, (0.0, 100.0), "N/mm")?,
                 ..coil_strut
             })
         }
         _ => DriveKind::Rigid,
     };
-    let play = section.number_or("play", 0.0, 0.0, 20.0, "deg")?;
+    let play = section.number_or("play", 0.0, (0.0, 20.0), "deg")?;
     Ok(Drive { kind, play })
 }

@@ -14,8 +14,8 @@ pub(crate) fn read(root: &Section, feet: Feet, drive: Drive) -> ReadResult<Groun
         feet,
         body: read_body(root, &feet)?,
         stance: read_stance(root)?,
-        friction_coefficient: section.number_or("friction", DEFAULT_FRICTION, 0.05, 5.0, unit)?,
-        friction_ratio: section.number(RATIO_KEY, 0.1, 10.0, "(a ratio)")?,
+        friction_coefficient: section.number_or("friction", DEFAULT_FRICTION, (0.05, 5.0), unit)?,
+        friction_ratio: section.number(RATIO_KEY, (0.1, 10.0), "(a ratio)")?,
         drive,
     })
 }
@@ -28,11 +28,13 @@ fn read_body(root: &Section, feet: &Feet) -> ReadResult<Body> {
     }
     let section = root.section("body", &["mass", "centre"])?;
     let body = Body {
-        mass: section.number_or("mass", Body::DEFAULT.mass, 10.0, 10_000.0, "g")?,
-        centre_of_mass: match section.has_key("centre") {
-            true => section.numbers("centre", -500.0, 500.0, "mm")?,
-            false => Body::DEFAULT.centre_of_mass,
-        },
+        mass: section.number_or("mass", Body::DEFAULT.mass, (10.0, 10_000.0), "g")?,
+        centre_of_mass: section.numbers_or(
+            "centre",
+            Body::DEFAULT.centre_of_mass,
+            (-500.0, 500.0),
+            "mm",
+        )?,
     };
     let loads = Stance::LEVEL.relative_loads(&body, feet.positions([0.0; 4]));
     match loads.iter().position(|load| *load <= 0.0) {
@@ -50,13 +52,10 @@ fn read_body(root: &Section, feet: &Feet) -> ReadResult<Body> {
 /// Reads `[feet]`; every key is optional.
 fn read_stance(root: &Section) -> ReadResult<Stance> {
     let default = Stance::DEFAULT;
-    if !root.has_key("feet") {
-        return Ok(default);
-    }
-    let section = root.section("feet", &["stiffness", "twist", "level"])?;
+    let section = root.optional_section("feet", &["stiffness", "twist", "level"])?;
     Ok(Stance {
-        stiffness: section.number_or("stiffness", default.stiffness, 0.01, 1000.0, "N/mm")?,
-        twist: section.number_or("twist", default.twist, -20.0, 20.0, "mm")?,
-        twist_error: section.number_or("level", default.twist_error, 0.0, 20.0, "mm")?,
+        stiffness: section.number_or("stiffness", default.stiffness, (0.01, 1000.0), "N/mm")?,
+        twist: section.number_or("twist", default.twist, (-20.0, 20.0), "mm")?,
+        twist_error: section.number_or("level", default.twist_error, (0.0, 20.0), "mm")?,
     })
 }

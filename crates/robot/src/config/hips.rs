@@ -10,7 +10,7 @@ use lizard_kinematics::{End, Lizard, Vector};
 
 use crate::config::legs::chassis_offset;
 use crate::config::parts::Parts;
-use crate::file::{ReadResult, Section, UnlocatedError};
+use crate::file::{Error, ReadResult, Section};
 
 /// The default position of the foot on its coupler, mm, as in [`Parts::foot`]. With the pivots of the paper's robot,
 /// the hips are 55 mm forward and 35 mm to the side.
@@ -37,8 +37,8 @@ pub(crate) struct Hips {
 impl Hips {
     /// Reads the hips from `[leg]`.
     pub fn read(leg: &Section) -> ReadResult<Self> {
-        let read_mm = |name, (min, max)| match leg.has_key(name) {
-            true => leg.number(name, min, max, "mm").map(Some),
+        let read_mm = |name, range| match leg.has_key(name) {
+            true => leg.number(name, range, "mm").map(Some),
             false => Ok(None),
         };
         Ok(Self {
@@ -76,7 +76,7 @@ impl Hips {
                     "is left out; links, parts.pivot and parts.foot put it at {computed_mm:.2} mm, but it must be between {min} and {max} mm"
                 ),
             };
-            Err(UnlocatedError::new(format!("leg.{key}"), problem))
+            Err(Error::new(format!("leg.{key}"), problem))
         };
         let resolve_side =
             |hip: Vector| resolve_distance(self.side, hip.x, SIDE_KEY, HIP_SIDE_RANGE);

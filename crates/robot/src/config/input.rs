@@ -2,8 +2,7 @@
 
 use lizard_core::numbers::gaits::Input;
 
-use crate::config::servo::{self, Servo, read_pin};
-use crate::config::supply::Supplies;
+use crate::config::servo::{UsedPins, claim_pin, read_pin};
 use crate::file::{ReadResult, Section};
 
 /// The names of the inputs in robot.toml, in the order of the fields of [`Inputs`].
@@ -20,34 +19,15 @@ pub struct Inputs {
 
 impl Inputs {
     /// Reads `[input]`; every input is optional.
-    pub(crate) fn read(
-        root: &Section,
-        servos: &[Servo; 4],
-        supplies: &Supplies,
-    ) -> ReadResult<Self> {
-        if !root.has_key("input") {
-            return Ok(Self::default());
-        }
-        let section = root.section("input", &INPUT_NAMES)?;
-        let pins = servos.map(|servo| servo.pin);
-        let named_pins = pins.into_iter().zip(servo::SERVO_NAMES);
-        let mut used_pins: Vec<(u8, String)> = named_pins
-            .map(|(pin, name)| (pin, format!("servo.{name}")))
-            .collect();
-        let rail_pin = supplies.rail.map(|rail| rail.pin);
-        used_pins.extend(rail_pin.map(|pin| (pin, "supply.rail".to_string())));
+    pub(crate) fn read(root: &Section, used_pins: &mut UsedPins) -> ReadResult<Self> {
+        let section = root.optional_section("input", &INPUT_NAMES)?;
         let mut read_input = |name: &str| -> ReadResult<Option<u8>> {
             if !section.has_key(name) {
                 return Ok(None);
             }
             let input_section = section.section(name, &["pin"])?;
             let pin = read_pin(&input_section)?;
-            if let Some((_, owner)) = used_pins.iter().find(|(used_pin, _)| *used_pin == pin) {
-                let pin_name = input_section.text("pin")?;
-                let message = format!("is \"{pin_name}\", which {owner} already uses");
-                return Err(input_section.error("pin", message));
-            }
-            used_pins.push((pin, format!("input.{name}")));
+            claim_pin(&input_section, pin, used_pins)?;
             Ok(Some(pin))
         };
         let [button, nose] = INPUT_NAMES;

@@ -6,6 +6,8 @@ use crate::config::scale::MAX_LINK_LENGTH_MM;
 use crate::config::servo::SpeedLimits;
 use crate::file::{ReadResult, Section};
 
+/// Range of a slider's stroke limits, mm.
+const STROKE_RANGE_MM: (f64, f64) = (-MAX_LINK_LENGTH_MM, MAX_LINK_LENGTH_MM);
 /// The lowest speed limit allowed, deg/s: a slower move would overflow the firmware's frame count.
 const MIN_SPEED_DEG_S: f64 = 10.0;
 
@@ -25,15 +27,15 @@ pub(crate) fn read(root: &Section) -> ReadResult<(Limits, SpeedLimits)> {
     )?;
     let limits = Limits {
         // The core's coupler tables end at a margin of 0.1.
-        type2: section.number("type2", 0.1, 0.95, "(a sine)")?,
-        type1: section.number("type1", 0.0, 0.95, "(a sine)")?,
-        leg: section.number("leg", 0.0, 0.95, "(a sine)")?,
-        stroke_min: section.number("stroke_min", -MAX_LINK_LENGTH_MM, MAX_LINK_LENGTH_MM, "mm")?,
-        stroke_max: section.number("stroke_max", -MAX_LINK_LENGTH_MM, MAX_LINK_LENGTH_MM, "mm")?,
+        type2: section.number("type2", (0.1, 0.95), "(a sine)")?,
+        type1: section.number("type1", (0.0, 0.95), "(a sine)")?,
+        leg: section.number("leg", (0.0, 0.95), "(a sine)")?,
+        stroke_min: section.number("stroke_min", STROKE_RANGE_MM, "mm")?,
+        stroke_max: section.number("stroke_max", STROKE_RANGE_MM, "mm")?,
     };
     let (min, max) = (limits.stroke_min, limits.stroke_max);
     section.require_less("stroke_min", min, "stroke_max", max)?;
-    let read_speed = |name| section.number(name, MIN_SPEED_DEG_S, 1000.0, "deg/s");
+    let read_speed = |name| section.number(name, (MIN_SPEED_DEG_S, 1000.0), "deg/s");
     let speed_limits = SpeedLimits {
         slew: read_speed("slew")?,
         gait_slew: read_speed("gait_slew")?,

@@ -38,7 +38,7 @@ use lizard_contact::{GroundContact, JointFriction};
 use lizard_core::numbers::link_lengths::MIN_COUPLER_STEPS;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 
-use crate::file::{ReadResult, Section, UnlocatedError};
+use crate::file::{Error, ReadResult, Section};
 use hips::Hips;
 use scale::MAX_LINK_LENGTH_MM;
 
@@ -87,7 +87,8 @@ impl RobotConfig {
     pub fn read(root: &Section) -> ReadResult<Self> {
         let links = read_links(root)?;
         let (leg, hips, mount_angle) = read_leg(root)?;
-        let servos = servo::read(root)?;
+        let mut used_pins = servo::UsedPins::new();
+        let servos = servo::read(root, &mut used_pins)?;
         let (limits, speed_limits) = limits::read(root)?;
         let parts = Parts::read(root)?;
         let lizard = Lizard { links, leg };
@@ -97,16 +98,15 @@ impl RobotConfig {
             LegPlan::new(servo, neutral_angles[servo], &lizard, &parts, &feet)
         });
         let drive = drive::read(&root.open("leg")?, &legs, neutral_angles, &parts)?;
-        let supplies = Supplies::read(root, &servos)?;
         let config = Self {
-            inputs: Inputs::read(root, &servos, &supplies)?,
+            supplies: Supplies::read(root, &mut used_pins)?,
+            inputs: Inputs::read(root, &mut used_pins)?,
             servos,
             servo_type: ServoType::read(root)?,
             joint_friction: motor::read_joints(root, &lizard, &servos)?,
             limits,
             speed_limits,
             ground: ground::read(root, feet, drive)?,
-            supplies,
             legs,
             lizard,
             parts,
@@ -139,7 +139,7 @@ impl RobotConfig {
                     let message = format!(
                         "is {value} mm, which is too short relative to the rest of its loop; the firmware's 16-bit lengths require at least {min_mm:.1} mm, or shorter cranks and a shorter base"
                     );
-                    return Err(UnlocatedError::new(key, message));
+                    return Err(Error::new(key, message));
                 }
             }
         }
@@ -152,8 +152,7 @@ impl RobotConfig {
             let (min, max) = (-min_nominal_length, MAX_LINK_LENGTH_MM);
             if !(min..=max).contains(&value) {
                 let unit = "mm, so that the slider's length stays positive";
-                let key = key.to_string();
-                return Err(UnlocatedError::out_of_range(key, value, (min, max), unit));
+                return Err(Error::out_of_range(key, value, (min, max), unit));
             }
         }
         Ok(())
@@ -161,21 +160,23 @@ impl RobotConfig {
 
     /// Rejects a robot whose neutral pose violates a limit.
     fn check_neutral(&self) -> ReadResult<()> {
-        let reject = |consequence: String, problem: String| {
+        let neutral_error = |consequence: String, problem: String| {
             let consequence = format!("in the neutral pose {consequence}");
-            Err(UnlocatedError::with_own_subject("servo", problem).with_consequence(consequence))
+            Error::with_consequence("servo", consequence, problem)
         };
-        match self.lizard.solve(&self.neutral_angles().into()) {
-            Err(infeasible) => reject(
+        let solution = self.lizard.solve(&self.neutral_angles().into());
+        let solution = solution.map_err(|infeasible| {
+            neutral_error(
                 describe_open_loop(infeasible.mechanism),
                 infeasible.to_string(),
-            ),
-            Ok(solution) => match self.limits.violations(&solution).next() {
-                Some(violation) => {
-                    reject(describe_violation(violation.check), violation.to_string())
-                }
-                None => Ok(()),
-            },
+            )
+        })?;
+        match self.limits.violations(&solution).next() {
+            Some(violation) => {
+                let consequence = describe_violation(violation.check);
+                Err(neutral_error(consequence, violation.to_string()))
+            }
+            None => Ok(()),
         }
     }
 }
@@ -185,7 +186,7 @@ fn read_links(root: &Section) -> ReadResult<Links> {
     let section = root.section("links", &LINK_NAMES)?;
     let mut lengths = [0.0; 20];
     for (length, name) in lengths.iter_mut().zip(LINK_NAMES) {
-        *length = section.number(name, LENGTH_RANGE_MM.0, LENGTH_RANGE_MM.1, "mm")?;
+        *length = section.number(name, LENGTH_RANGE_MM, "mm")?;
     }
     let links = Links::from(lengths);
     let reason = "the chassis is a rectangle, so its two sides are equally long";
@@ -208,7 +209,7 @@ fn read_leg(root: &Section) -> ReadResult<(Leg, Hips, f64)> {
     let section = root.open("leg")?;
     section.reject_removed_keys(&["spring", "preload"], SPRING_REPLACEMENT)?;
     let section = section.require_known_keys(&keys)?;
-    let read_length = |name| section.number(name, LENGTH_RANGE_MM.0, LENGTH_RANGE_MM.1, "mm");
+    let read_length = |name| section.number(name, LENGTH_RANGE_MM, "mm");
     let leg = Leg {
         ground: read_length("ground")?,
         crank: read_length("crank")?,
@@ -219,7 +220,7 @@ fn read_leg(root: &Section) -> ReadResult<(Leg, Hips, f64)> {
     require_equal("leg.coupler", leg.coupler, "leg.ground", leg.ground, reason)?;
     require_equal("leg.follower", leg.follower, "leg.crank", leg.crank, reason)?;
     let hips = Hips::read(&section)?;
-    let mount_angle = section.number("mount", -90.0, 90.0, "deg")?;
+    let mount_angle = section.number("mount", (-90.0, 90.0), "deg")?;
     Ok((leg, hips, mount_angle))
 }
 
@@ -235,5 +236,5 @@ fn require_equal(
         return Ok(());
     }
     let message = format!("is {value}, but {other_key} is {other_value}; {reason}");
-    Err(UnlocatedError::new(key, message))
+    Err(Error::new(key, message))
 }

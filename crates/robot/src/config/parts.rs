@@ -58,8 +58,11 @@ pub struct Parts {
     pub head: f64,
 }
 
+/// Range of a part's lengths, mm.
+const LENGTH_RANGE: (f64, f64) = (0.1, 200.0);
+
 /// Defines the dimensions of a part: a struct of lengths with their defaults, and the reader of its table. Each length
-/// must be between 0.1 and 200 mm; every key is optional.
+/// must be in [`LENGTH_RANGE`]; every key is optional.
 macro_rules! dimensions {
     ($($(#[$type_doc:meta])* $type:ident in $table:literal {
         $($(#[$key_doc:meta])* $key:ident: $default:literal,)*
@@ -75,12 +78,9 @@ macro_rules! dimensions {
 
             fn read(parts: &Section) -> ReadResult<Self> {
                 let default = Self::DEFAULT;
-                if !parts.has_key($table) {
-                    return Ok(default);
-                }
-                let section = parts.section($table, &[$(stringify!($key)),*])?;
+                let section = parts.optional_section($table, &[$(stringify!($key)),*])?;
                 Ok(Self {
-                    $($key: section.number_or(stringify!($key), default.$key, 0.1, 200.0, "mm")?,)*
+                    $($key: section.number_or(stringify!($key), default.$key, LENGTH_RANGE, "mm")?,)*
                 })
             }
         }
@@ -210,13 +210,10 @@ const KEYS: [&str; 20] = [
     "head",
 ];
 
-/// Reads the struts' spring. Its lengths have the same range as the other parts' lengths: 0.1 to 200 mm.
+/// Reads the struts' spring. Its lengths have the same range as the other parts' lengths.
 fn read_coil(parts: &Section, default: Coil) -> ReadResult<Coil> {
-    if !parts.has_key("spring") {
-        return Ok(default);
-    }
-    let section = parts.section("spring", &["wire", "outer", "length"])?;
-    let read_mm = |name, default| section.number_or(name, default, 0.1, 200.0, "mm");
+    let section = parts.optional_section("spring", &["wire", "outer", "length"])?;
+    let read_mm = |name, default| section.number_or(name, default, LENGTH_RANGE, "mm");
     Ok(Coil {
         wire_diameter: read_mm("wire", default.wire_diameter)?,
         outer_diameter: read_mm("outer", default.outer_diameter)?,
@@ -231,25 +228,18 @@ impl Parts {
     /// Reads `[parts]`; every key is optional.
     pub(crate) fn read(root: &Section) -> ReadResult<Self> {
         let defaults = Self::default();
-        if !root.has_key("parts") {
-            return Ok(defaults);
-        }
-        let section = root.open("parts")?;
+        let section = root.open_optional("parts")?;
         section.reject_removed_keys(&["strut"], STRUT_REPLACEMENT)?;
         let section = section.require_known_keys(&KEYS)?;
-        let read_mm = |name, default, min, max| section.number_or(name, default, min, max, "mm");
-        let read_pair = |name, default: [f64; 2], min, max| match section.has_key(name) {
-            true => section.numbers(name, min, max, "(mm; an angle in deg)"),
-            false => Ok(default),
+        let read_mm = |name, default, min, max| section.number_or(name, default, (min, max), "mm");
+        let read_pair = |name, default: [f64; 2], min, max| {
+            section.numbers_or(name, default, (min, max), "(mm; an angle in deg)")
         };
         let foot = match section.has_key("foot") {
             true => Some(read_pair("foot", [0.0; 2], -500.0, 500.0)?),
             false => None,
         };
-        let battery = match section.has_key("battery") {
-            true => section.numbers("battery", 1.0, 500.0, "mm")?,
-            false => defaults.battery,
-        };
+        let battery = section.numbers_or("battery", defaults.battery, (1.0, 500.0), "mm")?;
         Ok(Self {
             fit: read_mm("fit", defaults.fit, 0.0, 1.0)?,
             wall: read_mm("wall", defaults.wall, 0.4, 10.0)?,

@@ -54,12 +54,10 @@ mod tests {
 
     /// True if a five-bar fits at a scale of this number of bits, according to the core's bound of 127 x 256 steps.
     fn five_bar_fits(five_bar: &FiveBar, bits: u16) -> bool {
-        let to_steps = |mm: f64| mm * f64::from(1u32 << bits);
-        let base_and_cranks =
-            five_bar.base + five_bar.left_crank_length + five_bar.right_crank_length;
-        to_steps(base_and_cranks) < 127.0 * 256.0
-            && to_steps(five_bar.left_coupler_length) < 127.0 * 256.0
-            && to_steps(five_bar.right_coupler_length) < 127.0 * 256.0
+        let max_mm = 127.0 * 256.0 / f64::from(1u32 << bits);
+        five_bar.base + five_bar.left_crank_length + five_bar.right_crank_length < max_mm
+            && five_bar.left_coupler_length < max_mm
+            && five_bar.right_coupler_length < max_mm
     }
 
     /// True if a slider fits at a scale of this number of bits, according to the core's bounds of 127 x 256 and 255 x

@@ -1,9 +1,11 @@
 //! The four servos, in the order of every array of this project: A1, A2, A3, A4.
 
+use std::collections::BTreeMap;
+
 pub use lizard_contact::FORWARD_TURN_SIGN;
 use lizard_kinematics::{Side, wrap};
 
-use crate::file::{ReadResult, Section, format_number};
+use crate::file::{ReadResult, Section, format_number, read_for_each};
 use crate::units::STEPS_PER_DEGREE;
 
 /// The servos' names.
@@ -112,6 +114,20 @@ pub(crate) fn read_pin(section: &Section) -> ReadResult<u8> {
     })
 }
 
+/// The pins in use: the Arduino number of each pin, and the table that names it.
+pub(crate) type UsedPins = BTreeMap<u8, String>;
+
+/// Adds the pin that a table names to the pins in use; rejects a pin that an earlier table uses.
+pub(crate) fn claim_pin(section: &Section, pin: u8, used_pins: &mut UsedPins) -> ReadResult<()> {
+    match used_pins.insert(pin, section.key.clone()) {
+        Some(owner) => {
+            let name = section.text("pin")?;
+            Err(section.error("pin", format!("is \"{name}\", which {owner} already uses")))
+        }
+        None => Ok(()),
+    }
+}
+
 /// The keys of `[servo]` that describe the motors of all four servos.
 const MOTOR_KEYS: [&str; 8] = [
     "model",
@@ -124,40 +140,33 @@ const MOTOR_KEYS: [&str; 8] = [
     "full_torque_deg",
 ];
 
+/// The keys of one servo's table.
+const SERVO_KEYS: [&str; 6] = [
+    "pin",
+    "neutral",
+    "neutral_us",
+    "us_per_degree",
+    "min_us",
+    "max_us",
+];
+
 /// Reads `[servo.A1]` to `[servo.A4]`.
-pub(crate) fn read(root: &Section) -> ReadResult<[Servo; 4]> {
+pub(crate) fn read(root: &Section, used_pins: &mut UsedPins) -> ReadResult<[Servo; 4]> {
     let keys: Vec<&str> = SERVO_NAMES.into_iter().chain(MOTOR_KEYS).collect();
     let section = root.section("servo", &keys)?;
-    let mut servos: Vec<Servo> = Vec::with_capacity(4);
-    for name in SERVO_NAMES {
-        let servo_section = section.section(
-            name,
-            &[
-                "pin",
-                "neutral",
-                "neutral_us",
-                "us_per_degree",
-                "min_us",
-                "max_us",
-            ],
-        )?;
+    read_for_each(SERVO_NAMES, |name| {
+        let servo_section = section.section(name, &SERVO_KEYS)?;
         let servo = read_servo(&servo_section)?;
-        let mut earlier_servos = servos.iter().zip(SERVO_NAMES);
-        if let Some((_, owner)) = earlier_servos.find(|(earlier, _)| earlier.pin == servo.pin) {
-            let pin = servo_section.text("pin")?;
-            let message = format!("is \"{pin}\", which servo.{owner} already uses");
-            return Err(servo_section.error("pin", message));
-        }
-        servos.push(servo);
-    }
-    Ok([servos[0], servos[1], servos[2], servos[3]])
+        claim_pin(&servo_section, servo.pin, used_pins)?;
+        Ok(servo)
+    })
 }
 
 /// Reads the table of one servo.
 fn read_servo(section: &Section) -> ReadResult<Servo> {
-    let read_width = |name| section.number(name, PULSE_RANGE_US.0, PULSE_RANGE_US.1, "us");
+    let read_width = |name| section.number(name, PULSE_RANGE_US, "us");
     let pin = read_pin(section)?;
-    let us_per_degree = section.number("us_per_degree", -f64::MAX, f64::MAX, "us")?;
+    let us_per_degree = section.number("us_per_degree", (-f64::MAX, f64::MAX), "us")?;
     let (min, max) = GAIN_RANGE_US_PER_DEGREE;
     if !(min..=max).contains(&us_per_degree.abs()) {
         let message = format!(
@@ -168,7 +177,7 @@ fn read_servo(section: &Section) -> ReadResult<Servo> {
     }
     let servo = Servo {
         pin,
-        neutral: section.number("neutral", 0.0, 360.0, "deg")?,
+        neutral: section.number("neutral", (0.0, 360.0), "deg")?,
         neutral_us: read_width("neutral_us")?,
         us_per_degree,
         min_us: read_width("min_us")?,

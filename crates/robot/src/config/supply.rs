@@ -3,7 +3,7 @@
 
 use lizard_core::numbers::supplies::{Supplies as CoreSupplies, Thresholds};
 
-use crate::config::servo::{SERVO_NAMES, Servo, parse_pin};
+use crate::config::servo::{UsedPins, claim_pin, parse_pin};
 use crate::file::{ReadResult, Section};
 
 /// The nominal voltage reference of an ATmega328P, V: data sheet, section 29.8.
@@ -88,16 +88,18 @@ impl Supplies {
     }
 
     /// Reads `[supply]`; every key is optional.
-    pub(crate) fn read(root: &Section, servos: &[Servo; 4]) -> ReadResult<Self> {
-        if !root.has_key("supply") {
-            return Ok(Self::default());
-        }
-        let section = root.section("supply", &["reference", "slow", "stop", "rest", "rail"])?;
-        let (min, max) = REFERENCE_RANGE;
+    pub(crate) fn read(root: &Section, used_pins: &mut UsedPins) -> ReadResult<Self> {
+        let keys = ["reference", "slow", "stop", "rest", "rail"];
+        let section = root.optional_section("supply", &keys)?;
         Ok(Self {
-            reference_volts: section.number_or("reference", NOMINAL_REFERENCE, min, max, "V")?,
+            reference_volts: section.number_or(
+                "reference",
+                NOMINAL_REFERENCE,
+                REFERENCE_RANGE,
+                "V",
+            )?,
             board_thresholds: read_thresholds(&section, BOARD_THRESHOLD_RANGE, DEFAULT_THRESHOLDS)?,
-            rail: read_rail(&section, servos)?,
+            rail: read_rail(&section, used_pins)?,
             slow_pace_percent: DEFAULT_SLOW_PACE_PERCENT,
         })
     }
@@ -110,30 +112,11 @@ impl Supplies {
             rail_reference_mv: self.rail.map_or(0, |rail| {
                 to_millivolts(self.reference_volts * rail.divider_ratio)
             }),
-            rail: self
-                .rail
-                .map_or(UNMEASURED_RAIL, |rail| thresholds_to_mv(rail.thresholds)),
+            // The thresholds of a rail that is not measured are 0.
+            rail: thresholds_to_mv(self.rail.map_or([0.0; 3], |rail| rail.thresholds)),
         }
     }
 }
-
-impl Default for Supplies {
-    fn default() -> Self {
-        Self {
-            reference_volts: NOMINAL_REFERENCE,
-            board_thresholds: DEFAULT_THRESHOLDS,
-            rail: None,
-            slow_pace_percent: DEFAULT_SLOW_PACE_PERCENT,
-        }
-    }
-}
-
-/// The thresholds of a rail that is not measured.
-const UNMEASURED_RAIL: Thresholds = Thresholds {
-    slow_mv: 0,
-    stop_mv: 0,
-    rest_mv: 0,
-};
 
 /// The voltage at the pin that measures a healthy servo rail, mV; `None` if no rail is measured. Simulations apply this
 /// voltage, because the firmware would end the pulses at a rail of 0 V. The rail is assumed to be at 5 V, or 0.5 V
@@ -150,22 +133,19 @@ pub fn healthy_rail_mv(supplies: &CoreSupplies) -> Option<f64> {
 }
 
 /// Reads `[supply.rail]`; `None` if the table is missing.
-fn read_rail(supply: &Section, servos: &[Servo; 4]) -> ReadResult<Option<Rail>> {
+fn read_rail(supply: &Section, used_pins: &mut UsedPins) -> ReadResult<Option<Rail>> {
     if !supply.has_key("rail") {
         return Ok(None);
     }
     let section = supply.section("rail", &["pin", "ratio", "slow", "stop", "rest"])?;
     let pin_name = section.text("pin")?;
-    let pin_error = |reason: String| section.error("pin", format!("is \"{pin_name}\"{reason}"));
-    let pin = parse_pin(pin_name)
-        .filter(|pin| ANALOGUE_PINS.contains(pin))
-        .ok_or_else(|| pin_error("; it must be one of A0 to A5".to_string()))?;
-    let mut named_servos = servos.iter().zip(SERVO_NAMES);
-    if let Some((_, owner)) = named_servos.find(|(servo, _)| servo.pin == pin) {
-        return Err(pin_error(format!(", which servo.{owner} already uses")));
-    }
+    let Some(pin) = parse_pin(pin_name).filter(|pin| ANALOGUE_PINS.contains(pin)) else {
+        let message = format!("is \"{pin_name}\"; it must be one of A0 to A5");
+        return Err(section.error("pin", message));
+    };
+    claim_pin(&section, pin, used_pins)?;
     // Covers a battery of two lithium cells, 8.4 V, which needs a ratio of at least 2.
-    let divider_ratio = section.number("ratio", 1.0, 6.0, "(rail voltage / pin voltage)")?;
+    let divider_ratio = section.number("ratio", (1.0, 6.0), "(rail voltage / pin voltage)")?;
     let has_derived_slow_threshold = !section.has_key("slow");
     let mut defaults = DEFAULT_THRESHOLDS;
     if has_derived_slow_threshold && section.has_key("stop") {
@@ -183,16 +163,13 @@ fn read_rail(supply: &Section, servos: &[Servo; 4]) -> ReadResult<Option<Rail>> 
 /// Reads three voltages, each less than the previous one.
 fn read_thresholds(
     section: &Section,
-    (min, max): (f64, f64),
+    range: (f64, f64),
     defaults: [f64; 3],
 ) -> ReadResult<[f64; 3]> {
-    let read_voltage = |name, default| section.number_or(name, default, min, max, "V");
-    let [slow, stop, rest] = defaults;
-    let [slow, stop, rest] = [
-        read_voltage("slow", slow)?,
-        read_voltage("stop", stop)?,
-        read_voltage("rest", rest)?,
-    ];
+    let read_voltage = |name, default| section.number_or(name, default, range, "V");
+    let slow = read_voltage("slow", defaults[0])?;
+    let stop = read_voltage("stop", defaults[1])?;
+    let rest = read_voltage("rest", defaults[2])?;
     section.require_less("rest", rest, "stop", stop)?;
     section.require_less("stop", stop, "slow", slow)?;
     Ok([slow, stop, rest])
@@ -216,7 +193,8 @@ mod tests {
     use lizard_core::numbers::supplies::Thresholds;
 
     use crate::testing::{
-        assert_contains, error_with, paper_with_tables, robot, robot_with, valid_robot_with,
+        assert_contains, assert_near, error_with, paper_with_tables, robot, robot_with,
+        valid_robot_with,
     };
 
     /// The header before which a test inserts its lines.
@@ -275,18 +253,12 @@ mod tests {
         let max_utilisation = find_max_utilisation("0.6", 1.0);
         // On this floor the servos would allow slightly less than stop + 0.25 V, so the minimum gap sets the threshold.
         let expected = (4.8 * max_utilisation / crate::HIGH_UTILISATION).max(4.25);
-        assert!(
-            (sg90_volts - expected).abs() < 0.01,
-            "{sg90_volts} V, expected {expected} V"
-        );
+        assert_near(sg90_volts, expected, 0.01);
         // More friction requires a higher threshold; an explicit threshold is kept.
         let rough_volts = slow_volts_with("", "", "0.8");
         assert!(rough_volts > sg90_volts + 0.1, "{rough_volts} V");
         let max_utilisation = find_max_utilisation("0.8", rough_volts / 4.8);
-        assert!(
-            (max_utilisation - crate::HIGH_UTILISATION).abs() < 0.005,
-            "the utilisation is {max_utilisation}"
-        );
+        assert_near(max_utilisation, crate::HIGH_UTILISATION, 0.005);
         assert_eq!(slow_volts_with("", "slow = 4.3", "0.8"), 4.3);
         // Even if a servo exceeds its torque-speed line at its own supply, the threshold stays below this supply.
         assert_eq!(slow_volts_with("model = \"copy\"", "", "1.2"), 4.55);
@@ -343,8 +315,7 @@ mod tests {
 
     #[test]
     fn a_low_supply_halves_the_pace_if_the_rail_is_not_measured() {
-        let robot = robot("paper");
-        assert_eq!(robot.firmware().slow_pace(), 50);
+        assert_eq!(robot("paper").firmware().slow_pace(), 50);
     }
 
     #[test]

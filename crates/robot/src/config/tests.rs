@@ -23,31 +23,22 @@ fn each_coupler_must_be_long_enough_for_its_own_loop() {
 
 #[test]
 fn a_neutral_pulse_outside_its_servos_range_is_rejected() {
-    for name in ["A1", "A2", "A3", "A4"] {
-        let text = crate::testing::robot_text("unequal");
-        let start = text.find(&format!("[servo.{name}]")).expect(name);
-        let line_range = |key: &str| {
-            let line_start = start + text[start..].find(key).expect(key);
-            let line_end = line_start + text[line_start..].find('\n').expect("the line ends");
-            line_start..line_end
-        };
-        let read_us = |key: &str| -> f64 {
-            let line = &text[line_range(key)];
-            let value = line.split(" = ").nth(1).expect("the line has a value");
-            value.parse().expect("the value is a number")
-        };
-        for (neutral_us, rejected_key) in [
-            (read_us("min_us") - 0.1, "min_us"),
-            (read_us("min_us"), "min_us"),
-            (read_us("max_us"), "neutral_us"),
-            (read_us("max_us") + 0.1, "neutral_us"),
+    for (name, neutral_us, min_us, max_us) in [
+        ("A1", "1470.0", 610.0, 2350.0),
+        ("A2", "1535.0", 560.0, 2420.0),
+        ("A3", "1500.0", 700.0, 2300.0),
+        ("A4", "1440.0", 590.0, 2460.0),
+    ] {
+        let old_line = format!("neutral_us = {neutral_us}");
+        for (rejected_us, rejected_key) in [
+            (min_us - 0.1, "min_us"),
+            (min_us, "min_us"),
+            (max_us, "neutral_us"),
+            (max_us + 0.1, "neutral_us"),
         ] {
-            let line = format!("neutral_us = {neutral_us}");
-            let mut changed = text.clone();
-            changed.replace_range(line_range("neutral_us"), &line);
-            let result = crate::Robot::parse(&changed);
-            let error = result.expect_err("the neutral pulse is out of range");
-            assert_contains(&error.to_string(), &format!("servo.{name}.{rejected_key}"));
+            let new_line = format!("neutral_us = {rejected_us}");
+            let message = error_with("unequal", &[(&old_line, &new_line)]);
+            assert_contains(&message, &format!("servo.{name}.{rejected_key}"));
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Edits of single values in a robot.toml's text. Comments, whitespace and all other lines stay unchanged.
 
+use std::ops::Range;
+
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -65,10 +67,8 @@ pub fn with_numbers(text: &str, key: &str, values: &[f64]) -> Result<String, Key
 /// # Errors
 /// Fails if the text is not TOML, or if the key is missing.
 pub fn with_comment(text: &str, key: &str, word: &str, rest: &str) -> Result<String, KeyError> {
-    let key_error = || KeyError(key.to_string());
-    let document = DeTable::parse(text).map_err(|_| key_error())?;
-    let value = find_value(document.get_ref(), key).ok_or_else(key_error)?;
-    let start = value.span().end;
+    let span = find_span(text, key)?.ok_or_else(|| KeyError(key.to_string()))?;
+    let start = span.end;
     let line = &text[start..find_line_end(text, start)];
     let comment = format!(" # {word} ");
     let kept_line = line.find(&comment).map_or(line, |index| &line[..index]);
@@ -120,8 +120,7 @@ fn with_value(
     // A subtable such as [servo.A1] has its lines elsewhere.
     let direct_values = entries.values().filter(|value| !value.get_ref().is_table());
     let Some(last_end) = direct_values.map(|value| value.span().end).max() else {
-        let line_break = if text.ends_with('\n') { "" } else { "\n" };
-        let new_text = format!("{text}{line_break}\n[{table}]\n{line}\n");
+        let new_text = with_table(text, table, &line);
         let is_toml = DeTable::parse(&new_text).is_ok();
         return is_toml.then_some(new_text).ok_or_else(key_error);
     };
@@ -129,9 +128,8 @@ fn with_value(
     let mut new_text = text.to_string();
     new_text.insert_str(end, &format!("\n{line}"));
     // If the table is written on one line, the new line would belong to another table.
-    let document = DeTable::parse(&new_text).map_err(|_| key_error())?;
-    match find_value(document.get_ref(), key) {
-        Some(added_value) if added_value.span().start > end => Ok(new_text.clone()),
+    match find_span(&new_text, key)? {
+        Some(span) if span.start > end => Ok(new_text),
         _ => Err(key_error()),
     }
 }
@@ -142,15 +140,13 @@ fn with_value(
 /// Fails if the text is not TOML, or if the key is in a table that is written on one line.
 pub fn without_key(text: &str, key: &str) -> Result<String, KeyError> {
     let key_error = || KeyError(key.to_string());
-    let document = DeTable::parse(text).map_err(|_| key_error())?;
     let (_, name) = key.rsplit_once('.').ok_or_else(key_error)?;
-    let Some(value) = find_value(document.get_ref(), key) else {
+    let Some(span) = find_span(text, key)? else {
         return Ok(text.to_string());
     };
-    let start = text[..value.span().start]
-        .rfind('\n')
-        .map_or(0, |line_break| line_break + 1);
-    let end = (find_line_end(text, value.span().end) + 1).min(text.len());
+    let line_break = text[..span.start].rfind('\n');
+    let start = line_break.map_or(0, |line_break| line_break + 1);
+    let end = (find_line_end(text, span.end) + 1).min(text.len());
     if !text[start..end].trim_start().starts_with(name) {
         return Err(key_error());
     }
@@ -175,7 +171,7 @@ pub fn without_gait(text: &str, name: &str) -> String {
 /// Replaces the tables of a gait with `table`. Returns the new text, and true if the gait existed.
 fn replace_gait(text: &str, name: &str, table: &str) -> (String, bool) {
     let (header, subtable_start) = (format!("[gait.{name}]"), format!("[gait.{name}."));
-    let (mut result, mut is_in_gait, mut is_replaced) = (String::new(), false, false);
+    let (mut lines, mut is_in_gait, mut is_replaced) = (Vec::new(), false, false);
     for line in text.lines() {
         let trimmed_line = line.trim_start();
         if trimmed_line.starts_with('[') {
@@ -183,19 +179,16 @@ fn replace_gait(text: &str, name: &str, table: &str) -> (String, bool) {
                 trimmed_line.starts_with(&header) || trimmed_line.starts_with(&subtable_start);
             if is_in_gait && !is_replaced {
                 is_replaced = true;
-                for line in table.lines() {
-                    result += line;
-                    result.push('\n');
-                }
+                lines.extend(table.lines());
             }
         }
         // A comment after the last key may belong to the next table.
         if !is_in_gait || trimmed_line.starts_with('#') {
-            result += line;
-            result.push('\n');
+            lines.push(line);
         }
     }
-    (result, is_replaced)
+    let text = lines.iter().map(|line| format!("{line}\n")).collect();
+    (text, is_replaced)
 }
 
 /// A routine as written in the file, valid or not.
@@ -238,11 +231,9 @@ pub fn read_routines(text: &str) -> Vec<WrittenRoutine> {
 pub fn with_steps(text: &str, name: &str, steps: &[String]) -> String {
     let steps: Vec<_> = steps.iter().map(|step| format!("{step:?}")).collect();
     let steps = format!("[{}]", steps.join(", "));
-    if let Ok(document) = DeTable::parse(text)
-        && let Some(old_value) = find_value(document.get_ref(), &format!("routine.{name}.steps"))
-    {
+    if let Ok(Some(span)) = find_span(text, &format!("routine.{name}.steps")) {
         let mut new_text = text.to_string();
-        new_text.replace_range(old_value.span(), &steps);
+        new_text.replace_range(span, &steps);
         return new_text;
     }
     let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '-';
@@ -251,8 +242,19 @@ pub fn with_steps(text: &str, name: &str, steps: &[String]) -> String {
     } else {
         name.to_string()
     };
+    with_table(text, &format!("routine.{key}"), &format!("steps = {steps}"))
+}
+
+/// Adds a table with one line at the end of a text.
+fn with_table(text: &str, table: &str, line: &str) -> String {
     let line_break = if text.ends_with('\n') { "" } else { "\n" };
-    format!("{text}{line_break}\n[routine.{key}]\nsteps = {steps}\n")
+    format!("{text}{line_break}\n[{table}]\n{line}\n")
+}
+
+/// Finds the byte range of a key's value in a text; `None` if the key is missing. Fails if the text is not TOML.
+fn find_span(text: &str, key: &str) -> Result<Option<Range<usize>>, KeyError> {
+    let document = DeTable::parse(text).map_err(|_| KeyError(key.to_string()))?;
+    Ok(find_value(document.get_ref(), key).map(Spanned::span))
 }
 
 /// Finds the value of a dotted key.

@@ -43,26 +43,16 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// An error at a key whose file and line are not known yet.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct UnlocatedError {
-    /// Full name of the key; empty if the error concerns the whole file.
-    pub key: String,
-    /// See [`Error::consequence`].
-    consequence: Option<String>,
-    /// See [`Error::problem`].
-    problem: String,
-    /// See [`Error::has_own_subject`].
-    has_own_subject: bool,
-}
+/// The result of reading and checking a value. An error has no line until its key is found in the text.
+pub(crate) type ReadResult<T> = Result<T, Error>;
 
-/// The result of reading and checking a value.
-pub(crate) type ReadResult<T> = Result<T, UnlocatedError>;
-
-impl UnlocatedError {
-    /// Creates an error whose message has the key as its subject, such as `servo.A1.pin is 3; it must be ...`.
-    pub fn new(key: impl Into<String>, problem: impl Into<String>) -> Self {
+impl Error {
+    /// Creates an error in robot.toml whose message has the key as its subject, such as `servo.A1.pin is 3; it must be
+    /// ...`. The key is empty if the error concerns the whole file.
+    pub(crate) fn new(key: impl Into<String>, problem: impl Into<String>) -> Self {
         Self {
+            file: "robot.toml".to_string(),
+            line: None,
             key: key.into(),
             consequence: None,
             problem: problem.into(),
@@ -71,40 +61,44 @@ impl UnlocatedError {
     }
 
     /// Creates an error whose message has its own subject, such as `gait.look: the point ...`.
-    pub fn with_own_subject(key: impl Into<String>, problem: impl Into<String>) -> Self {
+    pub(crate) fn with_own_subject(key: impl Into<String>, problem: impl Into<String>) -> Self {
         Self {
             has_own_subject: true,
             ..Self::new(key, problem)
         }
     }
 
-    /// Adds the consequence for the robot, such as `in "walk" the left front leg would lock`.
-    pub fn with_consequence(self, consequence: impl Into<String>) -> Self {
+    /// Creates an error whose message begins with the consequence for the robot, such as `in the neutral pose the left
+    /// front leg would lock`.
+    pub(crate) fn with_consequence(
+        key: impl Into<String>,
+        consequence: String,
+        problem: impl Into<String>,
+    ) -> Self {
         Self {
-            consequence: Some(consequence.into()),
-            ..self
+            consequence: Some(consequence),
+            ..Self::with_own_subject(key, problem)
         }
     }
 
+    /// Creates the error for a gait with a consequence for the robot, such as `the left front leg would lock`.
+    pub(crate) fn in_gait(name: &str, consequence: &str, problem: impl Into<String>) -> Self {
+        let consequence = format!("in \"{name}\" {consequence}");
+        Self::with_consequence(format!("gait.{name}"), consequence, problem)
+    }
+
     /// Creates the error for a number outside its range.
-    pub fn out_of_range(key: String, value: f64, (min, max): (f64, f64), unit: &str) -> Self {
+    pub(crate) fn out_of_range(
+        key: impl Into<String>,
+        value: f64,
+        (min, max): (f64, f64),
+        unit: &str,
+    ) -> Self {
         let value = format_number(value);
         Self::new(
             key,
             format!("is {value}; it must be between {min} and {max} {unit}"),
         )
-    }
-
-    /// Adds the file and the line.
-    pub fn with_location(self, file: String, line: Option<usize>) -> Error {
-        Error {
-            file,
-            line,
-            key: self.key,
-            consequence: self.consequence,
-            problem: self.problem,
-            has_own_subject: self.has_own_subject,
-        }
     }
 }
 

@@ -4,7 +4,7 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::file::error::{Error, ReadResult, UnlocatedError, suggest};
+use crate::file::error::{Error, ReadResult, suggest};
 use crate::file::syntax::explain_mistake;
 
 /// Parses the text of a robot file and reads it with `read`. Skips a byte order mark at the start.
@@ -13,18 +13,32 @@ use crate::file::syntax::explain_mistake;
 /// Returns the first error in the text, with its line.
 pub(crate) fn parse<T>(text: &str, read: impl Fn(&DeTable) -> ReadResult<T>) -> Result<T, Error> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let file = "robot.toml".to_string();
     let line_at = |offset: usize| text[..offset].matches('\n').count() + 1;
     let document = DeTable::parse(text).map_err(|error| {
         let offset = error.span().map(|span| span.start);
         let message = explain_mistake(text, offset.unwrap_or(text.len()), error.message());
-        UnlocatedError::new("", message).with_location(file.clone(), offset.map(line_at))
+        Error {
+            line: offset.map(line_at),
+            ..Error::new("", message)
+        }
     })?;
     let table = document.get_ref();
-    read(table).map_err(|error| {
-        let line = find_key(table, &error.key).map(line_at);
-        error.with_location(file, line)
+    read(table).map_err(|error| Error {
+        line: find_key(table, &error.key).map(line_at),
+        ..error
     })
+}
+
+/// The smallest and the largest value allowed.
+pub(crate) type Range = (f64, f64);
+
+/// Reads a value for each of four servos or legs, by name. Returns the first error.
+pub(crate) fn read_for_each<T>(
+    names: [&'static str; 4],
+    read: impl FnMut(&'static str) -> ReadResult<T>,
+) -> ReadResult<[T; 4]> {
+    let [a, b, c, d] = names.map(read);
+    Ok([a?, b?, c?, d?])
 }
 
 /// Finds the byte offset of a key, or of the innermost table in the key's name that exists; `None` if no table exists.
@@ -63,7 +77,7 @@ pub(crate) enum KeyRead {
     Table,
     /// The key is a number or numbers, with a range, a unit, and a default if it is optional.
     Number {
-        range: (f64, f64),
+        range: Range,
         unit: String,
         default: Option<f64>,
     },
@@ -79,8 +93,8 @@ thread_local! {
 pub(crate) struct Section<'a> {
     /// Full name of the table, such as `servo.A1`; empty for the file itself.
     pub key: String,
-    /// The contents of the table.
-    table: &'a DeTable<'a>,
+    /// The contents of the table; `None` if an optional table is missing.
+    table: Option<&'a DeTable<'a>>,
 }
 
 impl<'a> Section<'a> {
@@ -88,7 +102,7 @@ impl<'a> Section<'a> {
     pub fn root(table: &'a DeTable<'a>, allowed: &[&str]) -> ReadResult<Self> {
         Self {
             key: String::new(),
-            table,
+            table: Some(table),
         }
         .require_known_keys(allowed)
     }
@@ -102,13 +116,26 @@ impl<'a> Section<'a> {
     pub fn open(&self, name: &str) -> ReadResult<Self> {
         #[cfg(test)]
         self.record_read(name, KeyRead::Table);
-        match self.required_value(name, "a table")? {
-            DeValue::Table(table) => Ok(Self {
-                key: self.full_key(name),
-                table,
-            }),
-            value => Err(self.type_error(name, value, "a table")),
+        Ok(Self {
+            key: self.full_key(name),
+            table: Some(self.read_value(name, "a table", DeValue::as_table)?),
+        })
+    }
+
+    /// Opens the table `name`, which may have any keys. A missing table counts as an empty table.
+    pub fn open_optional(&self, name: &str) -> ReadResult<Self> {
+        if self.has_key(name) {
+            return self.open(name);
         }
+        Ok(Self {
+            key: self.full_key(name),
+            table: None,
+        })
+    }
+
+    /// Opens the table `name`, which may have only the keys `allowed`. A missing table counts as an empty table.
+    pub fn optional_section(&self, name: &str, allowed: &[&str]) -> ReadResult<Self> {
+        self.open_optional(name)?.require_known_keys(allowed)
     }
 
     /// Returns the table if all its keys are in `allowed`, otherwise an error.
@@ -140,14 +167,15 @@ impl<'a> Section<'a> {
 
     /// The table's keys in the order of the file.
     pub fn key_names(&self) -> Vec<&'a str> {
-        let mut keys: Vec<_> = self.table.keys().collect();
+        let keys = self.table.into_iter().flat_map(|table| table.keys());
+        let mut keys: Vec<_> = keys.collect();
         keys.sort_by_key(|key| key.span().start);
         keys.into_iter().map(|key| key.get_ref().as_ref()).collect()
     }
 
     /// True if the table has this key.
     pub fn has_key(&self, name: &str) -> bool {
-        self.table.contains_key(name)
+        self.table.is_some_and(|table| table.contains_key(name))
     }
 
     /// The full name of a key in this table.
@@ -160,34 +188,24 @@ impl<'a> Section<'a> {
     }
 
     /// Creates the error for a key in this table.
-    pub fn error(&self, name: &str, problem: impl Into<String>) -> UnlocatedError {
-        UnlocatedError::new(self.full_key(name), problem)
+    pub fn error(&self, name: &str, problem: impl Into<String>) -> Error {
+        Error::new(self.full_key(name), problem)
     }
 
-    /// Reads a number from `min` to `max`, both included.
-    pub fn number(&self, name: &str, min: f64, max: f64, unit: &str) -> ReadResult<f64> {
+    /// Reads a number in a range, both limits included.
+    pub fn number(&self, name: &str, range: Range, unit: &str) -> ReadResult<f64> {
         #[cfg(test)]
-        self.record_number_read(name, (min, max), unit, None);
-        const EXPECTED_TYPE: &str = "a number";
-        let value = self.required_value(name, EXPECTED_TYPE)?;
-        let value =
-            to_decimal_number(value).ok_or_else(|| self.type_error(name, value, EXPECTED_TYPE))?;
-        self.require_in_range(name, value, (min, max), unit)
+        self.record_number_read(name, range, unit, None);
+        let value = self.read_value(name, "a number", to_decimal_number)?;
+        self.require_in_range(name, value, range, unit)
     }
 
     /// Reads a number; returns `default` if the key is missing.
-    pub fn number_or(
-        &self,
-        name: &str,
-        default: f64,
-        min: f64,
-        max: f64,
-        unit: &str,
-    ) -> ReadResult<f64> {
+    pub fn number_or(&self, name: &str, default: f64, range: Range, unit: &str) -> ReadResult<f64> {
         #[cfg(test)]
-        self.record_number_read(name, (min, max), unit, Some(default));
+        self.record_number_read(name, range, unit, Some(default));
         if self.has_key(name) {
-            self.number(name, min, max, unit)
+            self.number(name, range, unit)
         } else {
             Ok(default)
         }
@@ -210,30 +228,32 @@ impl<'a> Section<'a> {
 
     /// Reads a string.
     pub fn text(&self, name: &str) -> ReadResult<&'a str> {
-        const EXPECTED_TYPE: &str = "a string";
-        let value = self.required_value(name, EXPECTED_TYPE)?;
-        let text = value.as_str();
-        text.ok_or_else(|| self.type_error(name, value, EXPECTED_TYPE))
+        self.read_value(name, "a string", DeValue::as_str)
     }
 
-    /// Reads an array of exactly `N` numbers from `min` to `max`.
+    /// Reads a string; returns `default` if the key is missing.
+    pub fn text_or(&self, name: &str, default: &'a str) -> ReadResult<&'a str> {
+        if self.has_key(name) {
+            self.text(name)
+        } else {
+            Ok(default)
+        }
+    }
+
+    /// Reads an array of exactly `N` numbers in a range.
     pub fn numbers<const N: usize>(
         &self,
         name: &str,
-        min: f64,
-        max: f64,
+        range: Range,
         unit: &str,
     ) -> ReadResult<[f64; N]> {
         #[cfg(test)]
-        self.record_number_read(name, (min, max), unit, None);
+        self.record_number_read(name, range, unit, None);
         let expected_type = match N {
             2 => "an array of two numbers",
             _ => "an array of three numbers",
         };
-        let value = self.required_value(name, expected_type)?;
-        let DeValue::Array(array) = value else {
-            return Err(self.type_error(name, value, expected_type));
-        };
+        let array = self.read_value(name, expected_type, DeValue::as_array)?;
         let numbers: Option<Vec<f64>> = array
             .iter()
             .map(|item| to_decimal_number(item.get_ref()))
@@ -243,38 +263,48 @@ impl<'a> Section<'a> {
             return Err(self.error(name, message));
         };
         for value in numbers {
-            self.require_in_range(name, value, (min, max), unit)?;
+            self.require_in_range(name, value, range, unit)?;
         }
         Ok(numbers)
     }
 
+    /// Reads an array of numbers as [`Section::numbers`] does; returns `default` if the key is missing.
+    pub fn numbers_or<const N: usize>(
+        &self,
+        name: &str,
+        default: [f64; N],
+        range: Range,
+        unit: &str,
+    ) -> ReadResult<[f64; N]> {
+        if self.has_key(name) {
+            self.numbers(name, range, unit)
+        } else {
+            Ok(default)
+        }
+    }
+
     /// Reads an array of strings.
     pub fn strings(&self, name: &str) -> ReadResult<Vec<&'a str>> {
-        const EXPECTED_TYPE: &str = "an array of strings";
-        let value = self.required_value(name, EXPECTED_TYPE)?;
-        let strings = value
-            .as_array()
-            .and_then(|array| array.iter().map(|item| item.get_ref().as_str()).collect());
-        strings.ok_or_else(|| self.type_error(name, value, EXPECTED_TYPE))
+        self.read_value(name, "an array of strings", |value| {
+            let items = value.as_array()?.iter();
+            items.map(|item| item.get_ref().as_str()).collect()
+        })
     }
 
     /// Reads an array of tables that may have only the keys `allowed`. The array is empty if the key is missing.
     pub fn sections(&self, name: &str, allowed: &[&str]) -> ReadResult<Vec<Section<'a>>> {
         #[cfg(test)]
         self.record_read(name, KeyRead::Table);
-        const EXPECTED_TYPE: &str = "an array of tables";
         if !self.has_key(name) {
             return Ok(Vec::new());
         }
-        let value = self.required_value(name, EXPECTED_TYPE)?;
-        let items = value.as_array();
-        let items = items.ok_or_else(|| self.type_error(name, value, EXPECTED_TYPE))?;
+        let items = self.read_value(name, "an array of tables", DeValue::as_array)?;
         let read_section = |(i, item): (usize, &'a Spanned<DeValue<'a>>)| {
             let name = format!("{name}[{i}]");
             match item.get_ref() {
                 DeValue::Table(table) => Section {
                     key: self.full_key(&name),
-                    table,
+                    table: Some(table),
                 }
                 .require_known_keys(allowed),
                 value => Err(self.type_error(&name, value, "a table")),
@@ -289,7 +319,7 @@ impl<'a> Section<'a> {
     }
 
     #[cfg(test)]
-    fn record_number_read(&self, name: &str, range: (f64, f64), unit: &str, default: Option<f64>) {
+    fn record_number_read(&self, name: &str, range: Range, unit: &str, default: Option<f64>) {
         let unit = unit.to_owned();
         let read = KeyRead::Number {
             range,
@@ -299,11 +329,18 @@ impl<'a> Section<'a> {
         self.record_read(name, read);
     }
 
-    /// Returns a key's value; a missing key is an error.
-    fn required_value(&self, name: &str, expected_type: &str) -> ReadResult<&'a DeValue<'a>> {
-        let missing_error = || self.error(name, format!("is missing; it must be {expected_type}"));
-        let value = self.table.get(name).map(Spanned::get_ref);
-        value.ok_or_else(missing_error)
+    /// Reads a key's value with `convert`, which returns `None` for a value of the wrong type. A missing key is an error.
+    fn read_value<T>(
+        &self,
+        name: &str,
+        expected_type: &str,
+        convert: impl FnOnce(&'a DeValue<'a>) -> Option<T>,
+    ) -> ReadResult<T> {
+        let Some(value) = self.table.and_then(|table| table.get(name)) else {
+            return Err(self.error(name, format!("is missing; it must be {expected_type}")));
+        };
+        let value = value.get_ref();
+        convert(value).ok_or_else(|| self.type_error(name, value, expected_type))
     }
 
     /// Returns a key's value if it is in a range, both limits included, otherwise an error.
@@ -311,22 +348,20 @@ impl<'a> Section<'a> {
         &self,
         name: &str,
         value: f64,
-        range: (f64, f64),
+        range: Range,
         unit: &str,
     ) -> ReadResult<f64> {
         match (range.0..=range.1).contains(&value) {
             true => Ok(value),
-            false => Err(UnlocatedError::out_of_range(
-                self.full_key(name),
-                value,
-                range,
-                unit,
-            )),
+            false => {
+                let key = self.full_key(name);
+                Err(Error::out_of_range(key, value, range, unit))
+            }
         }
     }
 
     /// Creates the error for a value of the wrong type.
-    fn type_error(&self, name: &str, value: &DeValue, expected_type: &str) -> UnlocatedError {
+    fn type_error(&self, name: &str, value: &DeValue, expected_type: &str) -> Error {
         let found_type = match value {
             DeValue::String(text) => format!("the string \"{text}\""),
             DeValue::Integer(number) => number.to_string(),

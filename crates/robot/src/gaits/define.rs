@@ -10,7 +10,7 @@ use lizard_kinematics::End;
 
 use crate::config::RobotConfig;
 use crate::config::servo::LEG_NAMES;
-use crate::file::{ReadResult, Section, UnlocatedError, suggest};
+use crate::file::{Error, ReadResult, Section, read_for_each, suggest};
 use crate::gaits::gait::{Gait, Stride};
 use crate::gaits::path::{Harmonic, Path};
 use crate::gaits::path_leg::PathLeg;
@@ -31,6 +31,8 @@ const GAIT_KEYS: [&str; 12] = [
     "head",
     "tail",
 ];
+/// Range of a cycle's duration, s.
+const PERIOD_RANGE: (f64, f64) = (0.2, 60.0);
 /// The values of the key `waveform`.
 const WAVEFORM_NAMES: [&str; 3] = ["still", "wave", "held"];
 /// The keys that name another gait, from which the gait is derived.
@@ -46,30 +48,27 @@ pub(crate) fn read_gaits(root: &Section, config: &RobotConfig) -> ReadResult<Vec
     if names.len() > MAX_GAITS {
         let count = names.len();
         let message = format!("has {count} gaits; the firmware supports at most {MAX_GAITS}");
-        return Err(UnlocatedError::new("gait", message));
+        return Err(Error::new("gait", message));
     }
     check_boot_keys(&section, &names)?;
     if names.first() != Some(&"stand") {
         let message =
             "the first gait must be stand, the neutral pose that the robot takes at power-on";
-        return Err(UnlocatedError::with_own_subject("gait", message));
+        return Err(Error::with_own_subject("gait", message));
     }
-    let mut resolver = Resolver {
+    let reader = GaitReader {
         section,
-        names,
+        names: &names,
         config,
-        resolved_gaits: HashMap::new(),
-        reference_chain: Vec::new(),
     };
-    let names = resolver.names.clone().into_iter();
-    let gaits: ReadResult<Vec<_>> = names.map(|name| resolver.resolve(name)).collect();
-    let gaits = gaits?;
+    let gaits = names.iter().map(|name| reader.read(name, &[]));
+    let gaits = gaits.collect::<ReadResult<Vec<_>>>()?;
     let is_still = |stride: &Stride| stride.waveform == Waveform::Still;
     if gaits[0].strides.iter().all(is_still) {
         Ok(gaits)
     } else {
         let message = "must be the neutral pose that the robot takes at power-on: waveform = \"still\" and a period";
-        Err(UnlocatedError::new("gait.stand", message))
+        Err(Error::new("gait.stand", message))
     }
 }
 
@@ -116,67 +115,64 @@ pub(super) fn check_name(name: &str, noun: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Reads gaits by name, each only after the gait to which it refers.
-struct Resolver<'a> {
+/// Reads gaits by name, each together with the gait to which it refers.
+struct GaitReader<'a> {
     /// The table `gait`.
     section: Section<'a>,
     /// The names of all gaits, in the order of the file.
-    names: Vec<&'a str>,
+    names: &'a [&'a str],
     config: &'a RobotConfig,
-    resolved_gaits: HashMap<&'a str, Gait>,
-    /// Names of the gaits that are being read, each of which refers to the next.
-    reference_chain: Vec<&'a str>,
 }
 
-impl<'a> Resolver<'a> {
-    /// Returns the gait with this name, which is read unless it has been read already.
-    fn resolve(&mut self, name: &'a str) -> ReadResult<Gait> {
-        if let Some(gait) = self.resolved_gaits.get(name) {
-            return Ok(gait.clone());
-        }
-        self.reference_chain.push(name);
+impl GaitReader<'_> {
+    /// Reads the gait with this name; `referrers` are the gaits that are being read, each of which refers to the next.
+    fn read(&self, name: &str, referrers: &[&str]) -> ReadResult<Gait> {
         let table = self.section.section(name, &GAIT_KEYS)?;
-        let gait = match definition_key(&table)? {
-            "waveform" => read_waveform(name, &table, self.config)?,
+        let strides = match definition_key(&table)? {
+            "waveform" => read_waveform(&table)?,
             "head or tail" => read_path(name, &table, self.config)?,
-            reference => self.read_derived(name, &table, reference)?,
+            reference => return self.read_derived(name, &table, reference, referrers),
         };
-        self.reference_chain.pop();
-        self.resolved_gaits.insert(name, gait.clone());
-        Ok(gait)
+        let gait = Gait {
+            name: name.to_string(),
+            period: table.number("period", PERIOD_RANGE, "s")?,
+            is_reversed: false,
+            strides,
+            neutral: self.config.neutral_angles(),
+        };
+        Ok(gait.scaled(read_gains(&table)?))
     }
 
     /// Reads a gait that is derived from another gait.
     fn read_derived(
-        &mut self,
-        name: &'a str,
-        table: &Section<'a>,
+        &self,
+        name: &str,
+        table: &Section,
         reference: &'static str,
+        referrers: &[&str],
     ) -> ReadResult<Gait> {
         reject_keys_outside(table, &[reference, "period", "gain"], reference)?;
         let base_name = table.text(reference)?;
         if !self.names.contains(&base_name) {
-            let suggestion = suggest(base_name, &self.names);
+            let suggestion = suggest(base_name, self.names);
             let message =
                 format!("names the gait \"{base_name}\", which does not exist; {suggestion}");
             return Err(table.error(reference, message));
         }
-        if self.reference_chain.contains(&base_name) {
-            let cycle = [self.reference_chain.as_slice(), &[base_name]]
-                .concat()
-                .join(" -> ");
-            let message = format!("circular reference: {cycle}");
+        let chain = [referrers, &[name]].concat();
+        if chain.contains(&base_name) {
+            let message = format!("circular reference: {} -> {base_name}", chain.join(" -> "));
             let key = table.full_key(reference);
-            return Err(UnlocatedError::with_own_subject(key, message));
+            return Err(Error::with_own_subject(key, message));
         }
-        let mut gait = self.resolve(base_name)?;
+        let mut gait = self.read(base_name, &chain)?;
         match reference {
             "reverse" => gait.is_reversed = !gait.is_reversed,
             "mirror" => gait = gait.mirrored(),
             _ => {}
         }
         gait.name = name.to_string();
-        gait.period = read_period(table, Some(gait.period))?;
+        gait.period = table.number_or("period", gait.period, PERIOD_RANGE, "s")?;
         Ok(gait.scaled(read_gains(table)?))
     }
 }
@@ -190,14 +186,11 @@ fn definition_key(table: &Section) -> ReadResult<&'static str> {
         .collect();
     definitions.extend(table.has_key("waveform").then_some("waveform"));
     definitions.extend(has_path.then_some("head or tail"));
-    match definitions.as_slice() {
-        [definition] => Ok(definition),
-        _ => {
-            let message =
-                "needs exactly one of waveform, a path (head, tail), reverse, mirror, like";
-            Err(UnlocatedError::new(table.key.clone(), message))
-        }
-    }
+    let [definition] = definitions[..] else {
+        let message = "needs exactly one of waveform, a path (head, tail), reverse, mirror, like";
+        return Err(Error::new(table.key.clone(), message));
+    };
+    Ok(definition)
 }
 
 /// Rejects keys outside `allowed`, which are meaningless together with `partner`.
@@ -209,50 +202,51 @@ fn reject_keys_outside(table: &Section, allowed: &[&str], partner: &str) -> Read
     }
 }
 
-/// Reads a gait that a waveform defines.
-fn read_waveform(name: &str, table: &Section, config: &RobotConfig) -> ReadResult<Gait> {
+/// Reads the strides of a gait that a waveform defines.
+fn read_waveform(table: &Section) -> ReadResult<[Stride; 4]> {
     let waveform_name = table.text("waveform")?;
     let partner = format!("waveform = \"{waveform_name}\"");
-    let strides = match waveform_name {
+    match waveform_name {
         "still" => {
             reject_keys_outside(table, &["waveform", "period"], &partner)?;
-            [Stride::STILL; 4]
+            Ok([Stride::STILL; 4])
         }
         "wave" => {
             let allowed = ["waveform", "period", "duty", "amplitude", "start", "gain"];
             reject_keys_outside(table, &allowed, &partner)?;
             let waveform = Waveform::Wave {
-                duty: table.number("duty", 0.05, 0.95, "of the cycle")?,
+                duty: table.number("duty", (0.05, 0.95), "of the cycle")?,
             };
             let amplitude = read_amplitude(table)?;
             let section = table.section("start", &LEG_NAMES)?;
-            let starts = read_leg_values(&section, None, 0.0, 1.0, "of the cycle")?;
-            starts.map(|start| Stride {
-                waveform: waveform.clone(),
-                start,
-                amplitude,
+            read_for_each(LEG_NAMES, |leg| {
+                Ok(Stride {
+                    waveform: waveform.clone(),
+                    start: section.number(leg, (0.0, 1.0), "of the cycle")?,
+                    amplitude,
+                })
             })
         }
         "held" => {
             let allowed = ["waveform", "period", "amplitude", "order", "gain"];
             reject_keys_outside(table, &allowed, &partner)?;
             let amplitude = read_amplitude(table)?;
-            read_order(table)?.map(|swing_index| Stride {
+            let to_stride = |swing_index| Stride {
                 waveform: Waveform::Held { swing_index },
                 start: 0.0,
                 amplitude,
-            })
+            };
+            Ok(read_order(table)?.map(to_stride))
         }
         word => {
             let suggestion = suggest(word, &WAVEFORM_NAMES);
-            return Err(table.error("waveform", format!("is \"{word}\"; {suggestion}")));
+            Err(table.error("waveform", format!("is \"{word}\"; {suggestion}")))
         }
-    };
-    build_gait(name, table, config, strides)
+    }
 }
 
-/// Reads a gait that the paths of head and tail define.
-fn read_path(name: &str, table: &Section, config: &RobotConfig) -> ReadResult<Gait> {
+/// Reads the strides of a gait that the paths of head and tail define.
+fn read_path(name: &str, table: &Section, config: &RobotConfig) -> ReadResult<[Stride; 4]> {
     reject_keys_outside(table, &["period", "head", "tail", "gain"], "a path")?;
     let mut strides = [Stride::STILL; 4];
     for end in End::ALL {
@@ -261,15 +255,14 @@ fn read_path(name: &str, table: &Section, config: &RobotConfig) -> ReadResult<Ga
         }
         let section = table.section(end.name(), &["centre", "x", "y"])?;
         let path = Path {
-            centre: section.numbers("centre", -255.0, 255.0, "mm")?,
+            centre: section.numbers("centre", (-255.0, 255.0), "mm")?,
             x: read_harmonics(&section, "x")?,
             y: read_harmonics(&section, "y")?,
         };
         let legs = PathLeg::for_both_servos(config.lizard, config.neutral_angles(), end, &path)
             .map_err(|problem| {
                 let consequence = format!("in \"{name}\" the {end} would not reach its path");
-                UnlocatedError::with_own_subject(section.key.clone(), problem)
-                    .with_consequence(consequence)
+                Error::with_consequence(section.key.clone(), consequence, problem)
             })?;
         for (servo, leg) in legs {
             strides[servo] = Stride {
@@ -279,64 +272,20 @@ fn read_path(name: &str, table: &Section, config: &RobotConfig) -> ReadResult<Ga
             };
         }
     }
-    build_gait(name, table, config, strides)
-}
-
-/// Builds a gait from its strides, with the period and the gains of its table.
-fn build_gait(
-    name: &str,
-    table: &Section,
-    config: &RobotConfig,
-    strides: [Stride; 4],
-) -> ReadResult<Gait> {
-    let gait = Gait {
-        name: name.to_string(),
-        period: read_period(table, None)?,
-        is_reversed: false,
-        strides,
-        neutral: config.neutral_angles(),
-    };
-    Ok(gait.scaled(read_gains(table)?))
-}
-
-/// Reads the duration of a cycle, s. The key is required if there is no default.
-fn read_period(table: &Section, default: Option<f64>) -> ReadResult<f64> {
-    match default {
-        Some(period) => table.number_or("period", period, 0.2, 60.0, "s"),
-        None => table.number("period", 0.2, 60.0, "s"),
-    }
+    Ok(strides)
 }
 
 /// Reads the largest sweep, deg.
 fn read_amplitude(table: &Section) -> ReadResult<f64> {
-    table.number("amplitude", 0.0, 90.0, "deg")
+    table.number("amplitude", (0.0, 90.0), "deg")
 }
 
 /// Reads the legs' gains, in servo order; 1 for a leg without a gain.
 fn read_gains(table: &Section) -> ReadResult<[f64; 4]> {
-    if !table.has_key("gain") {
-        return Ok([1.0; 4]);
-    }
-    let section = table.section("gain", &LEG_NAMES)?;
-    read_leg_values(&section, Some(1.0), -4.0, 4.0, "(a factor)")
-}
-
-/// Reads a number for each leg, in servo order. Every leg needs its number if there is no default.
-fn read_leg_values(
-    section: &Section,
-    default: Option<f64>,
-    min: f64,
-    max: f64,
-    unit: &'static str,
-) -> ReadResult<[f64; 4]> {
-    let mut values = [0.0; 4];
-    for (value, leg) in values.iter_mut().zip(LEG_NAMES) {
-        *value = match default {
-            Some(default) => section.number_or(leg, default, min, max, unit)?,
-            None => section.number(leg, min, max, unit)?,
-        };
-    }
-    Ok(values)
+    let section = table.optional_section("gain", &LEG_NAMES)?;
+    read_for_each(LEG_NAMES, |leg| {
+        section.number_or(leg, 1.0, (-4.0, 4.0), "(a factor)")
+    })
 }
 
 /// Reads the order of the swings. Returns each leg's position in this order, 0 to 3, in servo order.
@@ -346,26 +295,24 @@ fn read_order(table: &Section) -> ReadResult<[usize; 4]> {
     if legs.len() != LEG_NAMES.len() {
         return Err(order_error());
     }
-    let mut swing_indices = [0; 4];
-    for (swing_index, name) in swing_indices.iter_mut().zip(LEG_NAMES) {
+    read_for_each(LEG_NAMES, |name| {
         let position = legs.iter().position(|leg| *leg == name);
-        *swing_index = position.ok_or_else(order_error)?;
-    }
-    Ok(swing_indices)
+        position.ok_or_else(order_error)
+    })
 }
 
 /// Reads the harmonics of one coordinate of a path.
 fn read_harmonics(section: &Section, name: &str) -> ReadResult<Vec<Harmonic>> {
     let harmonics = section.sections(name, &["k", "amplitude", "shift"])?;
     let read_harmonic = |harmonic: Section| {
-        let order = harmonic.number("k", 1.0, 16.0, "periods in a cycle")?;
+        let order = harmonic.number("k", (1.0, 16.0), "periods in a cycle")?;
         if order.fract() != 0.0 {
             return Err(harmonic.error("k", format!("is {order}; it must be a whole number")));
         }
         Ok(Harmonic {
             order,
-            amplitude: harmonic.number("amplitude", -255.0, 255.0, "mm")?,
-            phase_shift: harmonic.number_or("shift", 0.0, -1.0, 1.0, "of its period")?,
+            amplitude: harmonic.number("amplitude", (-255.0, 255.0), "mm")?,
+            phase_shift: harmonic.number_or("shift", 0.0, (-1.0, 1.0), "of its period")?,
         })
     };
     harmonics.into_iter().map(read_harmonic).collect()

@@ -5,7 +5,7 @@ use lizard_core::console::command::MAX_CYCLES;
 use lizard_core::numbers::gaits::{Gait as GaitRecord, MAX_GAITS, Step};
 
 use crate::config::{INPUT_NAMES, Inputs};
-use crate::file::{ReadResult, Section, UnlocatedError, suggest};
+use crate::file::{Error, ReadResult, Section, suggest};
 use crate::gaits::define::{check_boot_keys, check_name};
 use crate::gaits::to_command;
 use crate::units::FRAMES_PER_SECOND;
@@ -88,10 +88,7 @@ pub(crate) fn read_routines(
     gaits: &[&str],
     inputs: &Inputs,
 ) -> ReadResult<Vec<Routine>> {
-    if !root.has_key("routine") {
-        return Ok(Vec::new());
-    }
-    let section = root.open("routine")?;
+    let section = root.open_optional("routine")?;
     let names = section.key_names();
     for name in &names {
         check_name(name, "routine").map_err(|problem| section.error(name, problem))?;
@@ -106,20 +103,26 @@ pub(crate) fn read_routines(
         let message = format!(
             "and gait have {count} entries together; the firmware supports at most {MAX_GAITS}"
         );
-        return Err(UnlocatedError::new("routine", message));
+        return Err(Error::new("routine", message));
     }
-    let read_named_routine = |name: &&str| read_routine(&section, name, gaits, &names, inputs);
+    let known = KnownNames {
+        gaits,
+        routines: &names,
+        inputs,
+    };
+    let read_named_routine = |name: &&str| read_routine(&section, name, &known);
     names.iter().map(read_named_routine).collect()
 }
 
+/// The names of a robot that a step may contain by right or by mistake.
+struct KnownNames<'a> {
+    gaits: &'a [&'a str],
+    routines: &'a [&'a str],
+    inputs: &'a Inputs,
+}
+
 /// Reads the routine with this name.
-fn read_routine(
-    section: &Section,
-    name: &str,
-    gaits: &[&str],
-    routines: &[&str],
-    inputs: &Inputs,
-) -> ReadResult<Routine> {
+fn read_routine(section: &Section, name: &str, known: &KnownNames) -> ReadResult<Routine> {
     let table = section.section(name, &["steps", "repeat", "repeat_from"])?;
     let step_texts = table.strings("steps")?;
     if step_texts.is_empty() || step_texts.len() > MAX_STEPS {
@@ -130,14 +133,15 @@ fn read_routine(
     let parse_step_text = |(index, text): (usize, &&str)| {
         let step_error = |problem| {
             let message = format!("step {}, \"{text}\", {problem}", index + 1);
-            UnlocatedError::with_own_subject(table.full_key("steps"), message)
+            Error::with_own_subject(table.full_key("steps"), message)
         };
-        parse_records(text, name, gaits, routines, inputs).map_err(step_error)
+        parse_records(text, name, known).map_err(step_error)
     };
     let steps = step_texts.iter().enumerate().map(parse_step_text);
     let steps = steps.collect::<ReadResult<Vec<_>>>()?;
     let unit = "(a step)";
-    let first_repeated_step = table.number_or("repeat_from", 1.0, 1.0, steps.len() as f64, unit)?;
+    let first_repeated_step =
+        table.number_or("repeat_from", 1.0, (1.0, steps.len() as f64), unit)?;
     if first_repeated_step.fract() != 0.0 {
         let message = format!("is {first_repeated_step}; it must be the number of a step");
         return Err(table.error("repeat_from", message));
@@ -157,7 +161,7 @@ fn read_round_count(table: &Section) -> ReadResult<u16> {
     }
     let max = f64::from(MAX_CYCLES);
     let unit = format!("or \"{FOR_EVER}\"");
-    let round_count = table.number_or("repeat", 1.0, 1.0, max, &unit)?;
+    let round_count = table.number_or("repeat", 1.0, (1.0, max), &unit)?;
     if round_count.fract() != 0.0 {
         let message = format!("is {round_count}; it must be a whole number {unit}");
         return Err(table.error("repeat", message));
@@ -166,23 +170,15 @@ fn read_round_count(table: &Section) -> ReadResult<u16> {
 }
 
 /// Parses a step with its input, such as `wait button` or `walk 10 until nose`, as one or two records.
-fn parse_records(
-    text: &str,
-    own_name: &str,
-    gaits: &[&str],
-    routines: &[&str],
-    inputs: &Inputs,
-) -> Result<Vec<Step>, String> {
+fn parse_records(text: &str, own_name: &str, known: &KnownNames) -> Result<Vec<Step>, String> {
     let words: Vec<&str> = text.split_whitespace().collect();
-    let until_record = |name: &str| {
-        let input = inputs
-            .find_input(name)
-            .ok_or_else(|| format_missing_input(name))?;
-        Ok::<_, String>(Step {
+    let until_record = |name: &str| match known.inputs.find_input(name) {
+        Some(input) => Ok(Step {
             kind: Step::UNTIL,
             gait: input.byte(),
             count: 0,
-        })
+        }),
+        None => Err(format_missing_input(name)),
     };
     match words.as_slice() {
         ["wait"] => Err("must name an input, for example \"wait button\"".to_string()),
@@ -199,9 +195,9 @@ fn parse_records(
         }
         [words @ .., "until", name] if !words.is_empty() => Ok(vec![
             until_record(name)?,
-            parse_step(words, own_name, gaits, routines, true)?,
+            parse_step(words, own_name, known, true)?,
         ]),
-        words => Ok(vec![parse_step(words, own_name, gaits, routines, false)?]),
+        words => Ok(vec![parse_step(words, own_name, known, false)?]),
     }
 }
 
@@ -221,15 +217,17 @@ fn format_missing_input(name: &str) -> String {
 fn parse_step(
     words: &[&str],
     own_name: &str,
-    gaits: &[&str],
-    routines: &[&str],
+    known: &KnownNames,
     has_input: bool,
 ) -> Result<Step, String> {
-    let (words, frames) = match words {
-        [words @ .., time, "s"] => (words, Some(parse_frames(time)?)),
-        words => (words, None),
+    let (name_words, frames, cycles) = match words {
+        [name_words @ .., time, "s"] => (name_words, Some(parse_frames(time)?), None),
+        [name_words @ .., count] if count.parse::<f64>().is_ok() => {
+            (name_words, None, Some(*count))
+        }
+        name_words => (name_words, None, None),
     };
-    if words == ["rest"] {
+    if name_words == ["rest"] && cycles.is_none() {
         let default_count = if has_input { Step::ENDLESS } else { 1 };
         return Ok(Step {
             kind: Step::REST,
@@ -237,30 +235,25 @@ fn parse_step(
             count: frames.unwrap_or(default_count),
         });
     }
-    let (words, count) = match (words, frames) {
-        (words, Some(_)) => (words, ""),
-        ([name @ .., count], None) if count.parse::<f64>().is_ok() => (name, *count),
-        (words, None) => (words, "none"),
-    };
-    let name = words.join("-");
-    let Some(gait) = gaits.iter().position(|gait| *gait == name) else {
+    let name = name_words.join("-");
+    let Some(gait) = known.gaits.iter().position(|gait| *gait == name) else {
         return Err(if name == own_name {
             "is the routine itself, which would never end".to_string()
-        } else if routines.contains(&&*name) {
+        } else if known.routines.contains(&&*name) {
             "is a routine; a step must be a gait".to_string()
         } else {
-            let suggestion = suggest(&name, gaits);
+            let suggestion = suggest(&name, known.gaits);
             format!("names the gait \"{name}\", which does not exist; {suggestion}")
         });
     };
     let gait = gait as u8;
-    let endless_count = (has_input && count == "none").then_some(Step::ENDLESS);
+    let endless_count = (has_input && cycles.is_none()).then_some(Step::ENDLESS);
     if let Some(count) = frames.or(endless_count) {
         let kind = Step::FRAMES;
         return Ok(Step { kind, gait, count });
     }
     let kind = Step::CYCLES;
-    match count.parse() {
+    match cycles.unwrap_or_default().parse() {
         Ok(count @ 1..=MAX_CYCLES) => Ok(Step { kind, gait, count }),
         _ => Err(format!(
             "needs a length: 1 to {MAX_CYCLES} cycles, for example \"{name} 3\", or a time, for example \"{name} 2 s\""

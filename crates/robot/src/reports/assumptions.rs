@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use lizard_contact::{GroundContact, Travel};
+use lizard_contact::{GroundContact, JointFriction, Travel};
 
 use crate::checks::CheckedGait;
 use crate::config::ServoType;
@@ -30,8 +30,8 @@ struct ModelInputs {
     ground: GroundContact,
     /// The type of all four servos, with their supply voltage.
     servo: ServoType,
-    /// Friction of the pins, N mm, and of a slider, N.
-    joint_friction: [f64; 2],
+    /// Friction of the pins and of the sliders.
+    joint_friction: JointFriction,
     /// Angle that a servo turns, divided by the angle that the firmware sends.
     angle_scale: f64,
 }
@@ -39,11 +39,10 @@ struct ModelInputs {
 impl ModelInputs {
     /// Returns the inputs of a robot's prediction.
     fn for_robot(robot: &Robot) -> Self {
-        let friction = robot.motors().joint_friction;
         Self {
             ground: *robot.ground(),
             servo: *robot.servo_type(),
-            joint_friction: [friction.pin_torque, friction.slider_force],
+            joint_friction: robot.motors().joint_friction,
             angle_scale: 1.0,
         }
     }
@@ -51,9 +50,31 @@ impl ModelInputs {
     /// Simulates a cycle of a gait and returns the displacement; `pace` is relative to the gait's nominal pace.
     fn simulate_cycle(&self, robot: &Robot, gait: &CheckedGait, pace: f64) -> Travel {
         let mut motors = robot.motors_with_type(&self.servo, self.servo.supply_volts);
-        let friction = &mut motors.joint_friction;
-        [friction.pin_torque, friction.slider_force] = self.joint_friction;
+        motors.joint_friction = self.joint_friction;
         gait.simulate_with_angle_scale(&self.ground, &motors, pace, self.angle_scale)
+    }
+
+    /// Finds the gaits that move the robot noticeably, each with its displacement, without mirror images and reverses.
+    fn find_distinct_gaits<'a>(&self, robot: &'a Robot) -> Vec<(&'a CheckedGait, Travel)> {
+        let mut gaits: Vec<(&CheckedGait, Travel)> = Vec::new();
+        let rigid_ground = robot.ground().with_rigid_drive();
+        for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
+            if !gait.predict(&rigid_ground).is_determined() {
+                continue;
+            }
+            let displacement = self.simulate_cycle(robot, gait, 1.0);
+            let is_mirror_or_reverse = |(_, listed): &(_, Travel)| {
+                let is_close = |a: f64, b: f64| (a.abs() - b.abs()).abs() < MIRROR_TOLERANCE;
+                is_close(displacement.forward, listed.forward)
+                    && is_close(displacement.turn, listed.turn)
+            };
+            let moves_noticeably = displacement.forward.abs() > MIN_DISTANCE_MM
+                || displacement.turn.abs() > MIN_TURN_DEG;
+            if moves_noticeably && !gaits.iter().any(is_mirror_or_reverse) {
+                gaits.push((gait, displacement));
+            }
+        }
+        gaits
     }
 }
 
@@ -138,8 +159,8 @@ const ASSUMPTIONS: [Assumption; 21] = assumptions! {
         inputs.servo.rotor_time_constant_ms = 2.0;
         inputs.servo.full_torque_deg = 1.0;
     });
-    "pin friction", "N mm", 0.0 to 20.0, number(joint_friction[0]);
-    "slider friction", "N", 0.0 to 1.0, number(joint_friction[1]);
+    "pin friction", "N mm", 0.0 to 20.0, number(joint_friction.pin_torque);
+    "slider friction", "N", 0.0 to 1.0, number(joint_friction.slider_force);
     "mass", "g", 350.0 to 500.0, number(ground.body.mass);
     "centre of mass ahead", "mm", -15.0 to 15.0, number(ground.body.centre_of_mass[0]);
     "pad friction", "", 0.4 to 1.2, number(ground.friction_coefficient);
@@ -155,7 +176,8 @@ const ASSUMPTIONS: [Assumption; 21] = assumptions! {
     "clone servos, stiff joints, friction 1, 50 g heavier", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
         inputs.servo.stall_torque_kg_cm = 1.2;
         inputs.servo.s_per_60_deg = 0.15;
-        inputs.joint_friction = [17.0, 0.5];
+        inputs.joint_friction.pin_torque = 17.0;
+        inputs.joint_friction.slider_force = 0.5;
         inputs.ground.friction_coefficient = 1.0;
         inputs.ground.body.mass += 50.0;
     });
@@ -194,18 +216,15 @@ impl Assumptions {
     /// seconds.
     pub fn compute(robot: &Robot) -> Self {
         let nominal = ModelInputs::for_robot(robot);
-        let gaits = find_distinct_gaits(robot, |gait| nominal.simulate_cycle(robot, gait, 1.0));
+        let gaits = nominal.find_distinct_gaits(robot);
         let compute_row = |assumption: &Assumption| {
-            let compute_change = |gait: &CheckedGait, displacement: &Travel, value: f64| {
-                let inputs = assumption.variation.apply(nominal, value);
-                let component = principal_component(displacement);
-                let changed_displacement = inputs.simulate_cycle(robot, gait, 1.0);
-                100.0 * (component(&changed_displacement) / component(displacement) - 1.0)
-            };
             let compute_changes = |(gait, displacement): &(&CheckedGait, Travel)| {
-                assumption
-                    .range
-                    .map(|value| compute_change(gait, displacement, value))
+                let component = principal_component(displacement);
+                assumption.range.map(|value| {
+                    let inputs = assumption.variation.apply(nominal, value);
+                    let changed_displacement = inputs.simulate_cycle(robot, gait, 1.0);
+                    100.0 * (component(&changed_displacement) / component(displacement) - 1.0)
+                })
             };
             Row {
                 description: assumption.description,
@@ -258,56 +277,28 @@ impl MovementRange {
             movement: component(&travel),
             assumption: None,
         };
-        let extremes = ASSUMPTIONS.iter().flat_map(|assumption| {
-            assumption.range.map(|value| {
-                let inputs = assumption.variation.apply(nominal, value);
-                Extreme {
-                    movement: component(&inputs.simulate_cycle(robot, gait, pace)),
-                    assumption: Some(assumption.description),
-                }
-            })
-        });
         let mut range = Self {
             is_turn: is_turn(&travel),
             min: nominal_extreme,
             max: nominal_extreme,
         };
-        for extreme in extremes {
-            if extreme.movement < range.min.movement {
-                range.min = extreme;
-            }
-            if extreme.movement > range.max.movement {
-                range.max = extreme;
+        for assumption in &ASSUMPTIONS {
+            for value in assumption.range {
+                let inputs = assumption.variation.apply(nominal, value);
+                let extreme = Extreme {
+                    movement: component(&inputs.simulate_cycle(robot, gait, pace)),
+                    assumption: Some(assumption.description),
+                };
+                if extreme.movement < range.min.movement {
+                    range.min = extreme;
+                }
+                if extreme.movement > range.max.movement {
+                    range.max = extreme;
+                }
             }
         }
         range
     }
-}
-
-/// Finds the gaits that move the robot noticeably, each with its displacement, without mirror images and reverses.
-fn find_distinct_gaits(
-    robot: &Robot,
-    simulate: impl Fn(&CheckedGait) -> Travel,
-) -> Vec<(&CheckedGait, Travel)> {
-    let mut gaits: Vec<(&CheckedGait, Travel)> = Vec::new();
-    let rigid_ground = robot.ground().with_rigid_drive();
-    for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
-        if !gait.predict(&rigid_ground).is_determined() {
-            continue;
-        }
-        let displacement = simulate(gait);
-        let is_mirror_or_reverse = |(_, listed): &(_, Travel)| {
-            let is_close = |a: f64, b: f64| (a.abs() - b.abs()).abs() < MIRROR_TOLERANCE;
-            is_close(displacement.forward, listed.forward)
-                && is_close(displacement.turn, listed.turn)
-        };
-        let moves_noticeably =
-            displacement.forward.abs() > MIN_DISTANCE_MM || displacement.turn.abs() > MIN_TURN_DEG;
-        if moves_noticeably && !gaits.iter().any(is_mirror_or_reverse) {
-            gaits.push((gait, displacement));
-        }
-    }
-    gaits
 }
 
 /// True if a gait turns on the spot: its turn in deg is at least its distance in mm.

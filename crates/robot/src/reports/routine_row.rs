@@ -40,10 +40,8 @@ impl RoutineRow {
         sweeps.extend(Self::simulate_sweeps(robot, routine));
         let seconds = (sweeps.len() - 1) as f64 / FRAMES_PER_SECOND;
         // The undetermined components depend only on the pads, so rigid legs suffice to find them.
-        let prediction = robot
-            .ground()
-            .with_rigid_drive()
-            .predict(sweeps.iter().copied());
+        let rigid_ground = robot.ground().with_rigid_drive();
+        let prediction = rigid_ground.predict(sweeps.iter().copied());
         let movement_with_servos = prediction.keep_determined(drive_servos(robot, &sweeps));
         let movement = prediction.keep_determined(robot.ground().travel(sweeps));
         Self {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use lizard_contact::{Drive, Feet, GroundContact, Prediction, Stance};
+use lizard_contact::{GroundContact, Prediction};
 
 use crate::reports::report::{UNDETERMINED_NOTE, column_width, format_component, format_turn};
 use crate::robot::Robot;
@@ -16,8 +16,8 @@ struct Parameter {
     title: &'static str,
     /// The values that the parameter takes.
     values: &'static [f64],
-    /// Returns the ground with one of the values.
-    apply: fn(&GroundContact, f64) -> GroundContact,
+    /// Sets the parameter of the ground to one of the values.
+    apply: fn(&mut GroundContact, f64),
 }
 
 /// The varied parameters in the order of the report.
@@ -27,60 +27,34 @@ const PARAMETERS: [Parameter; 5] = [
     Parameter {
         title: "friction",
         values: &[0.8, 1.0, 1.1, 1.25, 1.5, 2.0],
-        apply: |ground, ratio| GroundContact {
-            friction_ratio: ratio,
-            ..*ground
-        },
+        apply: |ground, ratio| ground.friction_ratio = ratio,
     },
     // A leg that is mounted 41.4 deg outward is in line with its servo's horn.
     Parameter {
         title: "mount, deg",
         values: &[0.0, 20.0, 41.4, 49.0, -41.4],
-        apply: |ground, mount| GroundContact {
-            feet: Feet {
-                mount_angle: mount,
-                ..ground.feet
-            },
-            ..*ground
-        },
+        apply: |ground, mount| ground.feet.mount_angle = mount,
     },
     Parameter {
         title: "too long, mm",
         values: &[0.5, 1.0, 1.5, 2.0],
-        apply: |ground, excess_length| {
-            ground_with_stance(ground, ground.stance.stiffness, excess_length)
-        },
+        apply: |ground, excess_length| ground.stance.twist = excess_length,
     },
     // The last value is the stiffness of leaf springs that are 2 mm thick.
     Parameter {
         title: "feet, N/mm",
         values: &[1.0, 2.0, 3.3],
-        apply: |ground, stiffness| ground_with_stance(ground, stiffness, EXCESS_LENGTH_MM),
+        apply: |ground, stiffness| {
+            ground.stance.stiffness = stiffness;
+            ground.stance.twist = EXCESS_LENGTH_MM;
+        },
     },
     Parameter {
         title: "play, +-deg",
         values: &[1.0, 2.0],
-        apply: |ground, play| GroundContact {
-            drive: Drive {
-                play,
-                ..ground.drive
-            },
-            ..*ground
-        },
+        apply: |ground, play| ground.drive.play = play,
     },
 ];
-
-/// Returns the ground with feet of this stiffness (N/mm), and the front left foot too long by `excess_length` (mm).
-fn ground_with_stance(ground: &GroundContact, stiffness: f64, excess_length: f64) -> GroundContact {
-    GroundContact {
-        stance: Stance {
-            stiffness,
-            twist: excess_length,
-            ..ground.stance
-        },
-        ..*ground
-    }
-}
 
 /// Predictions of all gaits that move, for each value of each parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,7 +72,11 @@ impl Sensitivity {
         let moving_gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
         let rows = moving_gaits.map(|gait| {
             let predictions = PARAMETERS.map(|parameter| {
-                let predict = |value: &f64| gait.predict(&(parameter.apply)(ground, *value));
+                let predict = |value: &f64| {
+                    let mut ground = *ground;
+                    (parameter.apply)(&mut ground, *value);
+                    gait.predict(&ground)
+                };
                 parameter.values.iter().map(predict).collect()
             });
             (gait.name().to_string(), predictions)

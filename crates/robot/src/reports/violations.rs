@@ -1,23 +1,19 @@
 //! The messages about a pose that a robot must not take: violated limits, and angles outside the servos' travel.
 
-use lizard_kinematics::{Pose, Solution, wrap};
+use lizard_kinematics::{Solution, wrap};
 
 use crate::config::servo::SERVO_NAMES;
 use crate::robot::Robot;
 
 /// Returns a message for each violation by a solved pose; none if the pose is safe.
 pub fn find_pose_violations(robot: &Robot, solution: &Solution) -> Vec<String> {
-    let violations = robot.limits().violations(solution);
-    violations
+    let limit_violations = robot.limits().violations(solution);
+    let angles = <[f64; 4]>::from(solution.pose);
+    let travel_violations = (0..4).filter_map(|i| find_travel_violation(robot, i, angles[i]));
+    limit_violations
         .map(|violation| violation.to_string())
-        .chain(find_travel_violations(robot, &solution.pose))
+        .chain(travel_violations)
         .collect()
-}
-
-/// Returns a message for each servo that cannot reach its angle in a pose.
-pub fn find_travel_violations(robot: &Robot, pose: &Pose) -> impl Iterator<Item = String> {
-    let angles = <[f64; 4]>::from(*pose);
-    (0..4).filter_map(move |i| find_travel_violation(robot, i, angles[i]))
 }
 
 /// Returns a message if the servo with this index cannot reach an angle (deg, chassis frame), `None` if it can.

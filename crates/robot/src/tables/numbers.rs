@@ -200,6 +200,7 @@ fn floor_with_allowance(value: f64) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Robot;
     use crate::testing::{all_robots, robot, valid_robot_with};
     use lizard_core::numbers::gaits::GaitId;
     use lizard_core::numbers::part::{End, Side};
@@ -382,7 +383,7 @@ mod tests {
     }
 
     /// Reads the numbers of a robot's section.
-    fn read_numbers(robot: &crate::Robot) -> Numbers {
+    fn read_numbers(robot: &Robot) -> Numbers {
         let section = robot.section();
         Flash::from(section.as_slice()).read(size_of::<Header>())
     }
@@ -400,11 +401,8 @@ mod tests {
             }
             assert_eq!([rise, folded, skew], [tail[0], tail[2], tail[3]], "{name}");
             // Only the tail of the unequal robot has crank tips that can be so far apart.
-            assert_eq!(
-                [stretched != 0, tail[1] != 0],
-                [false, name == "unequal"],
-                "{name}"
-            );
+            assert_eq!(stretched, 0, "{name}");
+            assert_eq!(tail[1] != 0, name == "unequal", "{name}");
         }
     }
 
@@ -416,13 +414,10 @@ mod tests {
             assert_eq!(large.firmware().link_lengths(end).scale().bits, 8);
         }
         for side in [Side::Left, Side::Right] {
-            let (paper_side, large_side) =
-                (paper.firmware().slider(side), large.firmware().slider(side));
-            assert_eq!(large_side.scale.bits, 7);
-            assert_eq!(
-                4 * u32::from(large_side.nominal_length),
-                3 * u32::from(paper_side.nominal_length)
-            );
+            assert_eq!(large.firmware().slider(side).scale.bits, 7);
+            let nominal_steps =
+                |robot: &Robot| u32::from(robot.firmware().slider(side).nominal_length);
+            assert_eq!(4 * nominal_steps(&large), 3 * nominal_steps(&paper));
         }
     }
 }

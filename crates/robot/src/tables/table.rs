@@ -8,7 +8,7 @@ use lizard_core::numbers::gaits::{Channel, Gait as TableGait, MAX_WAVES, SAMPLES
 use lizard_core::numbers::units::CYCLE;
 
 use crate::config::servo::{FORWARD_TURN_SIGN, SERVO_NAMES};
-use crate::file::{ReadResult, UnlocatedError};
+use crate::file::{Error, ReadResult};
 use crate::gaits::{Gait, Stride, Waveform, canonicalize, to_command};
 use crate::units::{FRAMES_PER_SECOND, ONE_Q14, PHASES_PER_CYCLE, STEPS_PER_DEGREE};
 
@@ -36,18 +36,14 @@ impl Tables {
         let mut bank = WaveformBank::default();
         let mut stored_strides = Vec::new();
         for gait in gaits {
-            let key = format!("gait.{}", gait.name);
             for ((stride, forward_sign), name) in
                 gait.strides.iter().zip(FORWARD_TURN_SIGN).zip(SERVO_NAMES)
             {
                 let Some(stored_stride) = bank.find_or_add(stride, forward_sign) else {
-                    let consequence = format!(
-                        "in \"{}\" servo {name} would have to turn farther than it can",
-                        gait.name
-                    );
-                    let message = "its sweep is half a turn or more";
-                    return Err(UnlocatedError::with_own_subject(key, message)
-                        .with_consequence(consequence));
+                    let consequence =
+                        format!("servo {name} would have to turn farther than it can");
+                    let problem = "its sweep is half a turn or more";
+                    return Err(Error::in_gait(&gait.name, &consequence, problem));
                 };
                 stored_strides.push(stored_stride);
             }
@@ -55,7 +51,7 @@ impl Tables {
                 let message = format!(
                     "needs more than the {MAX_WAVES} waveforms that the firmware supports; gaits that differ only in amplitude, start, gain, period or direction share a waveform"
                 );
-                return Err(UnlocatedError::new(key, message));
+                return Err(Error::new(format!("gait.{}", gait.name), message));
             }
         }
         let peak_amplitudes = bank.find_peak_amplitudes(&stored_strides);
@@ -154,30 +150,23 @@ impl WaveformBank {
         }
         let offset = -stride.start - shift;
         let samples = samples.map(|value| value / peak);
-        let shared_stride = self
+        let tolerance = SHARED_WAVE_TOLERANCE_DEG / amplitude.abs();
+        let shared_wave = self
             .samples
             .iter()
             .enumerate()
             .find_map(|(wave, existing)| {
-                let rotation = find_rotation(
-                    existing,
-                    &samples,
-                    SHARED_WAVE_TOLERANCE_DEG / amplitude.abs(),
-                )?;
-                Some(StoredStride {
-                    wave,
-                    lead: offset + rotation as f64 / SAMPLES_PER_WAVE as f64,
-                    amplitude,
-                })
+                find_rotation(existing, &samples, tolerance).map(|rotation| (wave, rotation))
             });
-        Some(shared_stride.unwrap_or_else(|| {
+        let (wave, rotation) = shared_wave.unwrap_or_else(|| {
             self.samples.push(samples);
-            StoredStride {
-                wave: self.samples.len() - 1,
-                lead: offset,
-                amplitude,
-            }
-        }))
+            (self.samples.len() - 1, 0)
+        });
+        Some(StoredStride {
+            wave,
+            lead: offset + rotation as f64 / SAMPLES_PER_WAVE as f64,
+            amplitude,
+        })
     }
 
     /// Finds the largest amplitude with which each waveform is used, deg. A waveform is stored with this amplitude, so
@@ -233,12 +222,14 @@ fn find_rotation(
 
 #[cfg(test)]
 mod tests {
-    use crate::Robot;
+    use lizard_core::numbers::gaits::{Gait as TableGait, GaitId};
+
     use crate::robot::STAND;
     use crate::testing::{
         all_robots, assert_starts_with, error_with, for_each_gait, robot, text_before_gaits,
         valid_robot_with,
     };
+    use crate::{CheckedGait, Robot};
 
     /// Number of waveforms in a robot's tables.
     fn wave_count(robot: &Robot) -> usize {
@@ -248,10 +239,7 @@ mod tests {
     #[test]
     fn a_reversed_gait_has_the_same_channels_and_a_negative_increment() {
         let robot = robot("own-gaits");
-        let table_gait = |name: &str| {
-            let index = robot.gait(name).expect(name).index();
-            robot.firmware().gait(gait_id(&robot, index))
-        };
+        let table_gait = |name: &str| core_gait(&robot, robot.gait(name).expect(name));
         for (forward, backward) in [("stroll", "stroll-back"), ("veer-right", "veer-right-back")] {
             let (forward, backward) = (table_gait(forward), table_gait(backward));
             assert_eq!(forward.channels, backward.channels);
@@ -267,8 +255,7 @@ mod tests {
     #[test]
     fn the_increments_of_a_period_add_up_to_one_cycle() {
         for_each_gait(|label, robot, gait| {
-            let id = gait_id(robot, gait.index());
-            let increment = robot.firmware().gait(id).increment;
+            let increment = core_gait(robot, gait).increment;
             let frames = 50.0 * gait.period();
             let error = f64::from(increment.abs()) * frames - f64::from(1 << 24);
             assert!(error.abs() <= 0.5 * frames, "{label}");
@@ -276,17 +263,21 @@ mod tests {
         });
     }
 
-    /// The id of the gait with this index.
-    fn gait_id(robot: &Robot, index: usize) -> lizard_core::numbers::gaits::GaitId {
-        lizard_core::numbers::gaits::GaitId::all(robot.gaits().len())
-            .nth(index)
-            .expect("the gait exists")
+    /// The id of a gait of a robot.
+    fn gait_id(robot: &Robot, gait: &CheckedGait) -> GaitId {
+        let mut ids = GaitId::all(robot.gaits().len());
+        ids.nth(gait.index()).expect("the gait exists")
+    }
+
+    /// The core's record of a gait.
+    fn core_gait(robot: &Robot, gait: &CheckedGait) -> TableGait {
+        robot.firmware().gait(gait_id(robot, gait))
     }
 
     #[test]
     fn gait_names_in_the_core_have_spaces_instead_of_hyphens() {
         for_each_gait(|label, robot, gait| {
-            let console_name = robot.firmware().gait_name(gait_id(robot, gait.index()));
+            let console_name = robot.firmware().gait_name(gait_id(robot, gait));
             let console_name = String::from_utf8(console_name.collect());
             assert_eq!(console_name, Ok(gait.command()), "{label}");
         });
@@ -346,10 +337,9 @@ mod tests {
     #[test]
     fn the_largest_gain_of_every_waveform_is_1() {
         for (name, robot) in all_robots() {
-            let firmware = robot.firmware();
             let mut max_gains = vec![0; wave_count(&robot)];
             for gait in robot.gaits() {
-                for channel in firmware.gait(gait_id(&robot, gait.index())).channels {
+                for channel in core_gait(&robot, gait).channels {
                     let max_gain = &mut max_gains[usize::from(channel.wave)];
                     *max_gain = channel.gain.unsigned_abs().max(*max_gain);
                 }

@@ -3,7 +3,7 @@
 
 use lizard_robot::{Body, Drive, DriveEffect, DriveKind, GroundContact, Report, Walker};
 
-use crate::{REFERENCE_BODY, gait, paper, paper_with, simulate_movement};
+use crate::{REFERENCE_BODY, assert_near, gait, paper, paper_with, simulate_movement};
 
 /// Returns the paper's ground with this drive and the reference body.
 fn ground_with(drive: Drive) -> GroundContact {
@@ -35,10 +35,7 @@ fn gaits_with_weak_struts_match_a_separate_solver() {
     for (force, expected) in [(0.5, [34.8, 24.6, 14.3]), (1.0, [35.7, 26.7, 15.2])] {
         for (name, expected) in ["walk", "trot", "left"].into_iter().zip(expected) {
             let movement = simulate_movement(gait(paper(), name), &ground_with_strut(force));
-            assert!(
-                (movement - expected).abs() < 0.2,
-                "{name} at {force} N: {movement}"
-            );
+            assert_near(&format!("{name} at {force} N"), movement, expected, 0.2);
         }
     }
 }
@@ -49,11 +46,8 @@ fn struts_with_at_least_two_newtons_act_like_rigid_links() {
         let gait = gait(paper(), name);
         let rigid_movement = simulate_movement(gait, paper().ground());
         for force in [2.0, 3.0, 5.0] {
-            let movement = simulate_movement(gait, &ground_with_strut(force));
-            assert!(
-                (movement / rigid_movement - 1.0).abs() < 0.005,
-                "{name} at {force} N: {movement}"
-            );
+            let ratio = simulate_movement(gait, &ground_with_strut(force)) / rigid_movement;
+            assert_near(&format!("{name} at {force} N"), ratio, 1.0, 0.005);
         }
         // The spring recommended in docs/build.md suffices for a robot of 400 g, and the strongest spring suffices for
         // pads with 1.5 times the friction.
@@ -66,11 +60,8 @@ fn struts_with_at_least_two_newtons_act_like_rigid_links() {
                 },
                 ..ground_with_strut(force)
             };
-            let movement = simulate_movement(gait, &heavy_ground);
-            assert!(
-                (movement / rigid_movement - 1.0).abs() < 0.01,
-                "{name} at {force} N: {movement}"
-            );
+            let ratio = simulate_movement(gait, &heavy_ground) / rigid_movement;
+            assert_near(&format!("{name} at {force} N"), ratio, 1.0, 0.01);
         }
     }
 }
@@ -79,13 +70,10 @@ fn struts_with_at_least_two_newtons_act_like_rigid_links() {
 fn gaits_with_play_match_a_separate_solver() {
     for (play_deg, expected) in [(1.0, [33.4, 24.4, 14.1]), (2.0, [31.5, 21.2, 12.8])] {
         for (name, expected) in ["walk", "trot", "left"].into_iter().zip(expected) {
-            let cycle = gait(paper(), name).simulate_cycle(&ground_with_play(play_deg));
-            let movement = simulate_movement(gait(paper(), name), &ground_with_play(play_deg));
-            assert!(
-                (movement - expected).abs() < 0.25,
-                "{name} with {play_deg} deg of play: {movement}"
-            );
-            assert!((cycle.max_lag - play_deg).abs() < 1e-3, "{cycle:?}");
+            let (gait, ground) = (gait(paper(), name), ground_with_play(play_deg));
+            let label = format!("{name} with {play_deg} deg of play");
+            assert_near(&label, simulate_movement(gait, &ground), expected, 0.25);
+            assert_near(&label, gait.simulate_cycle(&ground).max_lag, play_deg, 1e-3);
         }
     }
 }
@@ -120,21 +108,14 @@ fn a_struts_lever_arm_is_the_derivative_of_its_length() {
                 (leg_anchor - servo_anchor).length()
             };
             let slope = (length_at(0.001) - length_at(-0.001)) / 0.002f64.to_radians();
-            assert!(
-                (strut.lever_arm(leg, sweep) - slope.abs()).abs() < 1e-4,
-                "leg {leg}: the slope is {slope} mm"
-            );
+            let label = format!("leg {leg} at {sweep} deg");
+            assert_near(&label, strut.lever_arm(leg, sweep), slope.abs(), 1e-4);
             let (lag, torque) = strut.lag_and_torque_at_slot_end(leg, sweep);
             let lag = lag.copysign(slope);
-            assert!(
-                (length_at(lag) - length_at(0.0) - strut.slot_length).abs() < 1e-6,
-                "the lag is {lag} deg"
-            );
+            let extension = length_at(lag) - length_at(0.0);
+            assert_near(&label, extension, strut.slot_length, 1e-6);
             let slope = (length_at(lag + 0.001) - length_at(lag - 0.001)) / 0.002f64.to_radians();
-            assert!(
-                (torque - 4.0 * slope.abs()).abs() < 1e-3,
-                "torque {torque} N mm, slope {slope} mm"
-            );
+            assert_near(&label, torque, 4.0 * slope.abs(), 1e-3);
         }
     }
 }
@@ -155,10 +136,8 @@ fn the_drive_is_read_from_its_table() {
     assert_eq!(strut, paper().strut_with_spring(4.0, 0.4));
     // Without the keys `force` and `rate`, both follow from the coil spring as it is mounted between its screws.
     let coil_drive = read_drive("kind = \"strut\"");
-    assert_eq!(
-        coil_drive.strut(),
-        Some(&paper().strut_with_coil(&paper().parts().spring))
-    );
+    let coil_strut = paper().strut_with_coil(&paper().parts().spring);
+    assert_eq!(coil_drive.strut(), Some(&coil_strut));
     assert!((paper().mounted_spring_length() - 28.5f64.hypot(10.0) - 3.0).abs() < 1e-9);
 }
 
@@ -208,10 +187,8 @@ fn a_lag_stays_constant_while_no_servo_turns_and_falls_with_friction() {
     assert!(lags.iter().any(|lag| lag.abs() > 2.0), "{lags:?}");
     walker.move_to(sweeps);
     for (new_lag, old_lag) in walker.lags().into_iter().zip(lags) {
-        assert!(
-            (new_lag - old_lag).abs() < 1e-6,
-            "no servo turns, so no lag changes"
-        );
+        let label = "no servo turns, so no lag changes";
+        assert_near(label, new_lag, old_lag, 1e-6);
     }
     walker.set_ground(GroundContact {
         friction_coefficient: 0.07,
@@ -243,15 +220,10 @@ fn a_report_shows_the_displacement_relative_to_rigid_legs() {
     let report = Report::compute(&robot).to_string();
     let trot = report.lines().find(|line| line.starts_with("trot"));
     let effect = DriveEffect::compute(gait(&robot, "trot"), robot.ground()).expect("the legs lag");
-    let percent_text = format!(
-        "{:.0}",
-        100.0 * effect.fraction_of_rigid.expect("trot moves the robot")
-    );
-    assert!(
-        trot.expect("the report has the gait trot")
-            .ends_with(&percent_text),
-        "{report}"
-    );
+    let fraction = effect.fraction_of_rigid.expect("trot moves the robot");
+    let trot = trot.expect("the report has the gait trot");
+    let percent_text = format!("{:.0}", 100.0 * fraction);
+    assert!(trot.ends_with(&percent_text), "{report}");
     assert!(report.contains("lag % of rigid"));
 }
 
@@ -260,10 +232,8 @@ fn mass_and_friction_are_read_from_the_file() {
     let read_ground =
         |old: &str, new: &str| *paper_with(old, new).expect("the robot is valid").ground();
     let heavy_ground = read_ground("mass = 435.0 ", "mass = 310\ncentre = [5.0, -2.0] ");
-    assert_eq!(
-        (heavy_ground.body.mass, heavy_ground.body.centre_of_mass),
-        (310.0, [5.0, -2.0])
-    );
+    assert_eq!(heavy_ground.body.mass, 310.0);
+    assert_eq!(heavy_ground.body.centre_of_mass, [5.0, -2.0]);
     assert!((heavy_ground.mean_pad_friction() - 0.7 * 0.31 * 9.80665 / 4.0).abs() < 1e-12);
     let smooth_ground = read_ground("[ground]", "[ground]\nfriction = 0.5");
     assert!((smooth_ground.mean_pad_friction() - 0.5 * 0.435 * 9.80665 / 4.0).abs() < 1e-12);

@@ -3,7 +3,7 @@
 use lizard_core::numbers::gaits::{Input, Step};
 use lizard_robot::{OPEN_INPUTS_NOTE, Report, RoutineRow};
 
-use super::{paper, paper_text, paper_with_tables, read_cases};
+use super::{gait, paper, paper_text, paper_with_tables, read_cases, record_fields};
 
 /// Both inputs, each with a free pin.
 const INPUTS: &str = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";
@@ -26,8 +26,7 @@ fn step_records(step: &str) -> Vec<(u8, u8, u16)> {
         panic!("the robot has one routine");
     };
     assert_eq!(routine.step_count(), 1);
-    let to_fields = |step: &Step| (step.kind, step.gait, step.count);
-    routine.step_records().iter().map(to_fields).collect()
+    record_fields(routine)
 }
 
 #[test]
@@ -35,7 +34,7 @@ fn a_step_with_an_input_has_two_records_with_the_input_first() {
     let (button, nose) = (Input::button(15), Input::nose(16));
     let until_record = |input: Input| (Step::UNTIL, input.byte(), 0);
     let wait_record = (Step::WAIT, 0, Step::ENDLESS);
-    let gait_index = |name: &str| paper().gait(name).expect(name).index() as u8;
+    let gait_index = |name: &str| gait(paper(), name).index() as u8;
     let (frames, endless) = (Step::FRAMES, Step::ENDLESS);
     let [walk, arc] = ["walk", "arc-left"].map(gait_index);
     for (step, input, record) in [

@@ -3,7 +3,8 @@
 
 use std::sync::LazyLock;
 
-use lizard_robot::{Body, CheckedGait, Error, GroundContact, Robot};
+use lizard_core::numbers::gaits::Step;
+use lizard_robot::{Body, CheckedGait, Error, GroundContact, Robot, Routine};
 
 mod docs;
 mod drives;
@@ -43,6 +44,12 @@ fn gait<'a>(robot: &'a Robot, name: &str) -> &'a CheckedGait {
     robot.gait(name).expect(name)
 }
 
+/// Returns kind, gait and count of each step record of a routine.
+fn record_fields(routine: &Routine) -> Vec<(u8, u8, u16)> {
+    let to_fields = |step: &Step| (step.kind, step.gait, step.count);
+    routine.step_records().iter().map(to_fields).collect()
+}
+
 /// The body for which a separate implementation of the contact model computed the expected values.
 const REFERENCE_BODY: Body = Body {
     mass: 307.0,
@@ -56,6 +63,13 @@ fn simulate_movement(gait: &CheckedGait, ground: &GroundContact) -> f64 {
         "left" | "right" => travel.turn,
         _ => travel.forward,
     }
+}
+
+/// Asserts that a value differs from the expected value by less than a tolerance.
+#[track_caller]
+fn assert_near(label: &str, actual: f64, expected: f64, tolerance: f64) {
+    let is_near = (actual - expected).abs() < tolerance;
+    assert!(is_near, "{label}: {actual}, expected {expected}");
 }
 
 /// Reads the paper's robot with one part of its file replaced.

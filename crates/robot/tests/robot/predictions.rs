@@ -4,7 +4,7 @@
 use lizard_robot::{Report, Robot, Travel};
 use proptest::prelude::*;
 
-use crate::{gait, paper, paper_with};
+use crate::{assert_near, gait, paper, paper_with};
 
 /// Displacement of each gait over one cycle: forward mm, turn deg. The values come from a separate implementation of
 /// the same model, by which the gaits were chosen.
@@ -34,7 +34,7 @@ fn predict(robot: &Robot, name: &str) -> Travel {
 }
 
 /// Asserts that a displacement equals the expected displacement within 1 % or 0.3 mm, and 0.2 deg.
-fn assert_near(name: &str, travel: Travel, forward: f64, turn: f64) {
+fn assert_travel_near(name: &str, travel: Travel, forward: f64, turn: f64) {
     assert!(
         (travel.forward - forward).abs() <= 0.3f64.max(forward.abs() * 0.01),
         "{name} {travel:?}"
@@ -46,7 +46,7 @@ fn assert_near(name: &str, travel: Travel, forward: f64, turn: f64) {
 fn every_gait_of_the_papers_robot_matches_a_separate_solver() {
     let robot = paper();
     for (name, forward, turn) in EXPECTED_MOVEMENTS {
-        assert_near(name, predict(robot, name), forward, turn);
+        assert_travel_near(name, predict(robot, name), forward, turn);
     }
 }
 
@@ -56,7 +56,7 @@ fn the_tables_at_fifty_frames_per_second_move_the_robot_as_far() {
     for (name, forward, turn) in EXPECTED_MOVEMENTS {
         let gait = gait(robot, name);
         let angles = gait.frames().map(|(_, phase)| gait.table_angles(phase));
-        assert_near(name, robot.predict_travel(angles), forward, turn);
+        assert_travel_near(name, robot.predict_travel(angles), forward, turn);
     }
 }
 
@@ -79,22 +79,15 @@ fn the_displacement_of_a_head_gesture_is_undetermined() {
 #[test]
 fn a_reversed_gait_undoes_its_movement() {
     let robot = paper();
-    let walk = predict(robot, "walk");
-    let back = predict(robot, "back");
-    assert!(
-        (walk.forward + back.forward).abs() < 1e-6,
-        "{walk:?} {back:?}"
-    );
+    let [walk, back] = ["walk", "back"].map(|name| predict(robot, name));
+    assert_near("back", back.forward, -walk.forward, 1e-6);
     // One cycle forward and the same cycle in reverse, for a gait that also turns.
     let arc = gait(robot, "arc-left");
     let cycle: Vec<[f64; 4]> = (0..=500).map(|i| arc.sweeps(i as f64 / 500.0)).collect();
-    let travel = robot
-        .ground()
-        .travel(cycle.iter().chain(cycle.iter().rev()).copied());
-    assert!(
-        travel.forward.hypot(travel.left) < 1e-5 && travel.turn.abs() < 1e-6,
-        "{travel:?}"
-    );
+    let retraced_cycle = cycle.iter().chain(cycle.iter().rev()).copied();
+    let travel = robot.ground().travel(retraced_cycle);
+    assert_near("arc-left", travel.forward.hypot(travel.left), 0.0, 1e-5);
+    assert_near("arc-left", travel.turn, 0.0, 1e-6);
 }
 
 #[test]
@@ -115,27 +108,23 @@ fn a_sinusoidal_trot_does_not_move_the_robot() {
         [sweep, -sweep, sweep, -sweep]
     };
     let travel = robot.ground().travel((0..=400).map(sweeps_at));
-    assert!(
-        travel.forward.abs() < 1e-5 && travel.left.abs() < 1e-5 && travel.turn.abs() < 1e-5,
-        "{travel:?}"
-    );
+    for component in [travel.forward, travel.left, travel.turn] {
+        assert!(component.abs() < 1e-5, "{travel:?}");
+    }
 }
 
 #[test]
 fn doubling_the_samples_changes_predictions_by_less_than_0_01() {
     let robot = paper();
     for gait in robot.gaits() {
-        let sweeps_at = |i| gait.sweeps(gait.phase_at(gait.period() * f64::from(i) / 1000.0));
-        let coarse_travel = robot.ground().travel((0..=1000).map(sweeps_at));
-        let sweeps_at = |i| gait.sweeps(gait.phase_at(gait.period() * f64::from(i) / 2000.0));
-        let fine_travel = robot.ground().travel((0..=2000).map(sweeps_at));
-        let error = (coarse_travel.forward - fine_travel.forward)
-            .hypot(coarse_travel.left - fine_travel.left);
-        assert!(
-            error < 0.01 && (coarse_travel.turn - fine_travel.turn).abs() < 0.01,
-            "{}: the error is {error} mm",
-            gait.name()
-        );
+        let [coarse, fine] = [1000, 2000].map(|count: i32| {
+            let seconds_at = |i: i32| gait.period() * f64::from(i) / f64::from(count);
+            let sweeps_at = |i| gait.sweeps(gait.phase_at(seconds_at(i)));
+            robot.ground().travel((0..=count).map(sweeps_at))
+        });
+        let error = (coarse.forward - fine.forward).hypot(coarse.left - fine.left);
+        assert_near(gait.name(), error, 0.0, 0.01);
+        assert_near(gait.name(), coarse.turn, fine.turn, 0.01);
     }
 }
 
@@ -148,8 +137,7 @@ fn predict_forward(robot: &Robot, name: &str) -> f64 {
 #[test]
 fn legs_mounted_outward_shorten_walk_far_more_than_crawl() {
     for mount in ["41.0", "49.0"] {
-        let robot =
-            paper_with("mount = 0.0", &format!("mount = {mount}")).expect("the robot is valid");
+        let robot = paper_with("mount = 0.0", &format!("mount = {mount}")).expect(mount);
         assert!((4.0..=6.5).contains(&predict_forward(&robot, "walk")));
         assert!((21.0..=25.0).contains(&predict_forward(&robot, "crawl")));
     }
@@ -157,26 +145,20 @@ fn legs_mounted_outward_shorten_walk_far_more_than_crawl() {
 
 #[test]
 fn pads_that_grip_backward_lengthen_walk_and_shorten_back() {
-    let paper_robot = paper();
-    let robot_with_ratio = |ratio: &str| {
-        paper_with("_forward = 1.0", &format!("_forward = {ratio}")).expect("the robot is valid")
+    let predict_both = |robot: &Robot| ["walk", "back"].map(|name| predict_forward(robot, name));
+    let [paper_walk, paper_back] = predict_both(paper());
+    let predict_with_ratio = |ratio: &str| {
+        let robot = paper_with("_forward = 1.0", &format!("_forward = {ratio}"));
+        predict_both(&robot.expect(ratio))
     };
     for ratio in ["1.1", "1.25", "1.5"] {
-        let robot = robot_with_ratio(ratio);
-        assert!(predict_forward(&robot, "walk") > predict_forward(paper_robot, "walk"));
-        assert!(
-            predict_forward(&robot, "back") > predict_forward(paper_robot, "back"),
-            "the grip shortens the distance backward"
-        );
-        assert!(
-            predict_forward(&robot, "back") < -30.0,
-            "the robot still walks backward"
-        );
+        let [walk, back] = predict_with_ratio(ratio);
+        assert!(walk > paper_walk, "{ratio}");
+        assert!(back > paper_back, "the grip shortens the distance backward");
+        assert!(back < -30.0, "the robot still walks backward");
     }
-    assert!(
-        predict_forward(&robot_with_ratio("2.0"), "back") > 0.0,
-        "with too much grip, back moves forward"
-    );
+    let [_, back] = predict_with_ratio("2.0");
+    assert!(back > 0.0, "with too much grip, back moves forward");
 }
 
 proptest! {

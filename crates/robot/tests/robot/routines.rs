@@ -4,7 +4,7 @@
 use lizard_core::numbers::gaits::Step;
 use lizard_robot::RoutineRow;
 
-use super::{gait, paper, paper_text, paper_with_tables, read_cases};
+use super::{gait, paper, paper_text, paper_with_tables, read_cases, record_fields};
 
 /// Returns the error message for a routine `patrol` with these lines.
 fn parse_error(lines: &str) -> String {
@@ -22,18 +22,17 @@ repeat = 3
 #[test]
 fn steps_and_rounds_are_read() {
     let robot = paper_with_tables(PATROL).expect("the routine is valid");
-    let routine = robot.routine("patrol");
-    let routine = routine.expect("the file defines the routine");
-    let gait_index = |name: &str| robot.gait(name).expect(name).index() as u8;
+    let gait_index = |name: &str| gait(&robot, name).index() as u8;
     let steps = [
         (Step::FRAMES, gait_index("stand"), 50),
         (Step::CYCLES, gait_index("walk"), 4),
         (Step::CYCLES, gait_index("left"), 6),
         (Step::CYCLES, gait_index("look"), 1),
         (Step::REST, 0, 1),
-    ]
-    .map(|(kind, gait, count)| Step { kind, gait, count });
-    assert_eq!(routine.step_records(), steps);
+    ];
+    let routine = robot.routine("patrol");
+    let routine = routine.expect("the file defines the routine");
+    assert_eq!(record_fields(routine), steps);
     assert_eq!(routine.round_count(), Some(3));
     let read_round_count = |repeat: &str| {
         let text = format!("[routine.one]\nsteps = [\"walk 1\"]\n{repeat}");
@@ -50,17 +49,16 @@ fn names_of_two_words_and_times_with_decimals_are_read() {
 steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "stand 999 s"]"#;
     let robot = paper_with_tables(text).expect("the routine is valid");
     let arc_index = gait(&robot, "arc-left").index() as u8;
-    let routine = robot.routine("about face");
     let steps = [
         (Step::CYCLES, arc_index, 2),
         (Step::FRAMES, arc_index, 125),
         (Step::CYCLES, arc_index, 999),
         (Step::REST, 0, 1),
         (Step::FRAMES, 0, 49_950),
-    ]
-    .map(|(kind, gait, count)| Step { kind, gait, count });
+    ];
+    let routine = robot.routine("about face");
     let routine = routine.expect("the file defines the routine");
-    assert_eq!(routine.step_records(), steps);
+    assert_eq!(record_fields(routine), steps);
 }
 
 #[test]
@@ -105,12 +103,11 @@ fn eight_routines_of_sixteen_steps_fit_next_to_the_papers_gaits_and_maps() {
 #[test]
 fn an_error_is_reported_with_its_line_and_step() {
     let no_length = "needs a length: 1 to 999 cycles, for example \"walk 3\", or a time, for example \"walk 2 s\"";
+    let unknown_gait = "names the gait \"wolk\", which does not exist; did you mean \"walk\"?";
+    let empty_name = "names the gait \"\", which does not exist; allowed: stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look";
     let no_time = "has a time that is not between 0.02 and 999 s";
     for (step, problem) in [
-        (
-            "wolk 4",
-            "names the gait \"wolk\", which does not exist; did you mean \"walk\"?",
-        ),
+        ("wolk 4", unknown_gait),
         ("patrol 1", "is the routine itself, which would never end"),
         ("round 1", "is a routine; a step must be a gait"),
         ("walk", no_length),
@@ -119,10 +116,7 @@ fn an_error_is_reported_with_its_line_and_step() {
         ("walk 1.5", no_length),
         ("walk 0 s", no_time),
         ("rest nan s", no_time),
-        (
-            "",
-            "names the gait \"\", which does not exist; allowed: stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look",
-        ),
+        ("", empty_name),
     ] {
         // The paper's file is followed by a blank line, the header of the routine's table, and then its first key.
         let line = paper_text().lines().count() + 3;
@@ -147,10 +141,8 @@ fn an_error_is_reported_with_its_line_and_step() {
     "#;
     for (lines, message) in read_cases(mistakes) {
         let actual = parse_error(&lines);
-        assert!(
-            actual.ends_with(&format!(" routine.patrol.{message}")),
-            "{actual}"
-        );
+        let expected_end = format!(" routine.patrol.{message}");
+        assert!(actual.ends_with(&expected_end), "{actual}");
         assert!(actual.starts_with("robot.toml:"), "{actual}");
     }
     let many_steps = "\"walk 1\", ".repeat(100);

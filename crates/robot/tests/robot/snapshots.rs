@@ -33,11 +33,8 @@ fn every_gait_matches_its_snapshot() {
             std::fs::write(&path, &current).expect(&path);
         }
         let stored = std::fs::read_to_string(&path).unwrap_or_default();
-        if let Some((stored, current)) = stored
-            .lines()
-            .zip(current.lines())
-            .find(|(stored, current)| stored != current)
-        {
+        let mut lines = stored.lines().zip(current.lines());
+        if let Some((stored, current)) = lines.find(|(stored, current)| stored != current) {
             panic!(
                 "{} has changed.\n  was {stored}\n  is  {current}\nIf this is intended, run BLESS_GAITS=1 cargo test -p lizard-robot snapshots and commit {path}.",
                 gait.name()
@@ -60,9 +57,7 @@ fn every_snapshot_belongs_to_a_gait() {
         let gait_name = name
             .strip_suffix(".csv")
             .unwrap_or_else(|| panic!("{SNAPSHOT_DIR}/{name} is not a snapshot"));
-        assert!(
-            robot.gait(gait_name).is_some(),
-            "{SNAPSHOT_DIR}/{name} belongs to no gait"
-        );
+        let has_gait = robot.gait(gait_name).is_some();
+        assert!(has_gait, "{SNAPSHOT_DIR}/{name} belongs to no gait");
     }
 }

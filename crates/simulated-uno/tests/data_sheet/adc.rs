@@ -1,15 +1,13 @@
 //! Tests of the simulated supply and ADC against the data sheet, chapters 11.5 and 24.
 
-use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Pin, ResetCause, Uno};
-
-use super::{compile_with_headers, intervals, mark_cycles, mark_values, new_uno, reset_causes};
+use super::*;
 
 /// CPU cycles of an ADC clock at prescaler 128, which is 125 kHz.
 const CYCLES_PER_CLOCK: u64 = 128;
 
 /// Compiles a program that can use these macros: `start()` starts a conversion, `wait()` waits for its end, `show()`
 /// writes the result to GPIOR0 as two marks, low byte first, and `convert()` does all three.
-fn program(body: &str) -> Image {
+pub fn program(body: &str) -> Image {
     compile_with_headers(&format!(
         "#define start() (ADCSRA = 0xc7)
         #define wait() while (ADCSRA & 0x40) {{}}
@@ -19,18 +17,21 @@ fn program(body: &str) -> Image {
     ))
 }
 
-/// Returns a UNO with a program that consists of this text and the macros of [`program`].
-pub fn uno_with_program(body: &str) -> Uno {
-    new_uno(program(body))
-}
-
 /// Returns a UNO whose main program runs these statements once, with these voltages (mV) at A0 and the following
 /// pins.
 fn uno_with_statements(body: &str, pin_mv: &[u16]) -> Uno {
-    let mut uno = uno_with_program(&format!("int main(void) {{ {body} for (;;) {{}} }}"));
+    let body = format!("int main(void) {{ {body} for (;;) {{}} }}");
+    let mut uno = new_uno(program(&body));
     for (number, mv) in (0..).zip(pin_mv) {
         uno.set_analog_mv(Pin::a(number), *mv);
     }
+    uno
+}
+
+/// Runs these statements once in the main program, for a number of milliseconds. Returns the UNO.
+fn run_statements(body: &str, pin_mv: &[u16], ms: u64) -> Uno {
+    let mut uno = uno_with_statements(body, pin_mv);
+    uno.run_ms(ms);
     uno
 }
 
@@ -44,9 +45,7 @@ fn conversion_results(uno: &Uno) -> Vec<u16> {
 
 /// Runs these statements once in the main program, and returns their conversion results.
 fn run_for_results(body: &str, pin_mv: &[u16]) -> Vec<u16> {
-    let mut uno = uno_with_statements(body, pin_mv);
-    uno.run_ms(3);
-    conversion_results(&uno)
+    conversion_results(&run_statements(body, pin_mv, 3))
 }
 
 /// Program that measures the settled bandgap against AVcc repeatedly.
@@ -63,7 +62,7 @@ fn the_bandgap_result_is_the_ratio_of_the_bandgap_to_the_supply() {
         (4500.0, 1017.0),
         (2800.0, 1200.0),
     ] {
-        let mut uno = uno_with_program(BANDGAP_PROGRAM);
+        let mut uno = new_uno(program(BANDGAP_PROGRAM));
         uno.set_supply_mv(supply_mv);
         uno.set_bandgap_mv(bandgap_mv);
         uno.run_ms(3);
@@ -77,13 +76,13 @@ fn the_bandgap_result_is_the_ratio_of_the_bandgap_to_the_supply() {
 #[test]
 #[should_panic(expected = "the bandgap reference must be between 1000 and 1200 mV")]
 fn setting_a_bandgap_outside_the_data_sheet_range_panics() {
-    uno_with_program(BANDGAP_PROGRAM).set_bandgap_mv(1201.0);
+    new_uno(program(BANDGAP_PROGRAM)).set_bandgap_mv(1201.0);
 }
 
 #[test]
 #[should_panic(expected = "D9 is not an analogue pin")]
 fn setting_the_voltage_of_a_digital_pin_panics() {
-    uno_with_program(BANDGAP_PROGRAM).set_analog_mv(Pin::d(9), 1);
+    new_uno(program(BANDGAP_PROGRAM)).set_analog_mv(Pin::d(9), 1);
 }
 
 #[test]
@@ -172,8 +171,7 @@ fn register_values_match_the_data_sheet() {
             &[0xa8, 0xc0, 0xa8],
         ),
     ] {
-        let mut uno = uno_with_statements(body, pin_mv);
-        uno.run_ms(2);
+        let uno = run_statements(body, pin_mv, 2);
         assert_eq!(mark_values(&uno), expected, "{message}");
     }
 }
@@ -182,14 +180,14 @@ fn register_values_match_the_data_sheet() {
 fn the_first_conversion_takes_25_clocks_and_later_conversions_take_13() {
     // Table 24-1: "First conversion 25", "Normal conversions, single ended 13".
     // A conversion "starts at the following rising edge of the ADC clock", so it may take up to one clock more.
-    let mut uno = uno_with_statements(
+    let uno = run_statements(
         "ADMUX = 0x40; ADCSRA = 0x87;
         for (unsigned char i = 0; i < 3; i++) { start(); GPIOR0 = i; wait(); GPIOR0 = i; }
         ADCSRA = 7; ADCSRA = 0x87;
         start(); GPIOR0 = 9; wait(); GPIOR0 = 9;",
         &[],
+        2,
     );
-    uno.run_ms(2);
     let lengths = intervals(&mark_cycles(&uno));
     for (length, clocks) in lengths.into_iter().step_by(2).zip([25, 13, 13, 25]) {
         let range = clocks * CYCLES_PER_CLOCK - 4..(clocks + 1) * CYCLES_PER_CLOCK + 12;
@@ -206,9 +204,7 @@ fn the_prescaler_divides_as_in_table_24_5() {
             "ADMUX = 0x40; ADCSRA = 0xa0 | {select}; ADCSRA |= 0x40;
             for (;;) {{ while (!(ADCSRA & 0x10)) {{}} GPIOR0 = 1; ADCSRA |= 0x10; }}"
         );
-        let mut uno = uno_with_statements(&body, &[]);
-        uno.run_ms(2);
-        let cycles = mark_cycles(&uno);
+        let cycles = mark_cycles(&run_statements(&body, &[], 2));
         let count = cycles.len() as u64 - 2;
         let (first_cycle, last_cycle) = (cycles[1], cycles[cycles.len() - 1]);
         // Free running: "a new conversion will be started immediately". With the smallest divisors, the program's
@@ -230,16 +226,15 @@ fn the_two_lowest_prescaler_settings_divide_by_two() {
             ADCSRA = 0xc0 | {select}; __builtin_avr_delay_cycles(18); GPIOR0 = ADCSRA & 0x40;
             ADCSRA = 0xc0 | {select}; __builtin_avr_delay_cycles(40); GPIOR0 = ADCSRA & 0x40;"
         );
-        let mut uno = uno_with_statements(&body, &[]);
-        uno.run_ms(1);
+        let uno = run_statements(&body, &[], 1);
         assert_eq!(mark_values(&uno), [0x40, 0], "ADPS {select}");
     }
 }
 
 #[test]
 fn the_adc_interrupt_wakes_the_cpu_and_clears_its_flag() {
-    let mut uno = uno_with_program("ISR(ADC_vect) { GPIOR0 = ADCSRA; show(); }
-        int main(void) { SMCR = 1; ADMUX = 0x40; ADCSRA = 0xcf; sei(); for (;;) asm volatile (\"sleep\"); }");
+    let mut uno = new_uno(program("ISR(ADC_vect) { GPIOR0 = ADCSRA; show(); }
+        int main(void) { SMCR = 1; ADMUX = 0x40; ADCSRA = 0xcf; sei(); for (;;) asm volatile (\"sleep\"); }"));
     uno.set_analog_mv(Pin::a(0), 2500);
     uno.run_ms(1);
     assert_eq!(mark_values(&uno), [0x8f, 0x00, 0x02]);
@@ -272,7 +267,7 @@ fn a_voltage_is_sampled_at_the_clock_in_table_24_1() {
 fn conversions_end_a_whole_number_of_adc_clocks_apart() {
     // "the conversion starts at the following rising edge of the ADC clock cycle" (24.4): the ends of any two
     // conversions are a whole number of clocks apart.
-    let mut uno = uno_with_statements(
+    let uno = run_statements(
         "ADMUX = 0x40; start();
         for (unsigned char i = 0; i < 20; i++) {
             while (!(ADCSRA & 0x10)) {}
@@ -281,8 +276,8 @@ fn conversions_end_a_whole_number_of_adc_clocks_apart() {
             ADCSRA = 0xd7;
         }",
         &[],
+        4,
     );
-    uno.run_ms(4);
     let cycles = mark_cycles(&uno);
     assert_eq!(cycles.len(), 20);
     for cycle in &cycles {
@@ -360,8 +355,7 @@ fn a_reset_switches_the_adc_off() {
 
 #[test]
 fn a_supply_ramp_is_linear_and_the_adc_follows_it() {
-    let mut uno = uno_with_program(BANDGAP_PROGRAM);
-    uno.run_ms(2);
+    let mut uno = uno_after_ms(2, program(BANDGAP_PROGRAM));
     uno.ramp_supply_mv(3000.0, 100 * CYCLES_PER_MS);
     uno.run_ms(50);
     assert!((uno.supply_mv() - 4000.0).abs() < 1e-6);
@@ -378,12 +372,10 @@ fn a_supply_ramp_is_linear_and_the_adc_follows_it() {
 #[test]
 fn stock_simavr_measures_a_low_supply_but_does_not_reset() {
     let mut uno = Uno::with_image(program(BANDGAP_PROGRAM), Fidelity::Stock);
-    uno.set_supply_mv(2500.0);
-    uno.run_ms(3);
+    run_at_supply(&mut uno, 2500.0, 3);
     assert_eq!(conversion_results(&uno)[1], 450);
     assert!(!uno.is_held_in_reset());
-    uno.set_supply_mv(1000.0);
-    uno.run_ms(1);
+    run_at_supply(&mut uno, 1000.0, 1);
     assert!(!uno.is_held_in_reset());
-    assert_eq!(reset_causes(&uno), [ResetCause::PowerOn]);
+    assert_eq!(reset_causes(&uno), [PowerOn]);
 }

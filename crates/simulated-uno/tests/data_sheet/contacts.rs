@@ -1,8 +1,6 @@
 //! Tests that a pin with a contact to ground behaves as in the data sheet, sections 14.2.1 and 14.2.4.
 
-use simulated_uno::{Pin, Uno, avr_gcc};
-
-use super::{FIDELITIES, mark_values};
+use super::*;
 
 /// A program that enables the pull-ups of D4, D8 and A1 by writes to PIND, PINB and PINC (data sheet, 14.2.2), and then
 /// repeatedly writes the levels of the three pins to GPIOR0 as bits 0, 1 and 2.
@@ -21,7 +19,7 @@ int main(void) {
 
 #[test]
 fn a_pin_is_low_while_its_contact_is_closed_and_high_otherwise() {
-    let image = avr_gcc::compile_c(LEVELS_PROGRAM);
+    let image = compile_c(LEVELS_PROGRAM);
     let pins = [Pin::d(4), Pin::d(8), Pin::a(1)];
     for fidelity in FIDELITIES {
         let mut uno = Uno::with_image(image.clone(), fidelity);

@@ -1,13 +1,7 @@
 //! Tests of disturbances of the simulated UNO: foreign interrupts, which have no source on the chip, a main program
 //! that makes no progress, and registers written from outside.
 
-use simulated_uno::Uno;
-use simulated_uno::avr_gcc::{assemble, compile_c};
-
-use super::{
-    FIDELITIES, LED, compile_with_headers, intervals, mark_cycles, mark_values, new_uno,
-    pulse_widths, unos_after,
-};
+use super::*;
 
 /// Program in which the LED is on for 100 cycles with interrupts disabled, and off for about 99 with interrupts
 /// enabled.
@@ -81,15 +75,7 @@ fn a_foreign_interrupt_ends_a_sleep_and_precedes_interrupts_of_the_chip() {
 
 #[test]
 fn bytes_beyond_the_receive_buffer_are_lost_while_interrupts_are_blocked() {
-    let image = compile_with_headers(
-        "ISR(USART_RX_vect) { GPIOR0 = UDR0; }
-        int main(void) {
-            UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x90;
-            sei();
-            for (;;) {}
-        }",
-    );
-    let mut uno = new_uno(image);
+    let mut uno = new_uno(compile_receiver("GPIOR0 = UDR0;"));
     uno.run_until_cycle(1000);
     uno.send(b"abcdefgh");
     // Three bytes have arrived. Of the next five bytes, the receive buffer keeps the first two and the shift register
@@ -119,7 +105,7 @@ fn interrupts_are_served_while_main_is_stalled() {
 
 #[test]
 fn a_poke_has_the_same_effect_as_a_store() {
-    for mut uno in unos_after(1000, &assemble("sbi DDRB, 5\nend: rjmp end")) {
+    for mut uno in unos_after(1000, &assemble_loop("sbi DDRB, 5")) {
         uno.poke(0x25, 0x20);
         assert!(uno.is_high(LED));
         uno.poke(0x25, 0);

@@ -1,12 +1,6 @@
 //! Tests of the simulated EEPROM against the data sheet, chapters 8.4 and 8.6.
 
-use simulated_uno::avr_gcc::assemble;
-use simulated_uno::{CYCLES_PER_US, EEPROM_SIZE, EepromMode, Fidelity, Image, Uno};
-
-use super::{
-    CORRECTION_IS_OBSOLETE, assert_within, compile_with_headers, intervals, mark_cycles,
-    mark_values, new_uno, pulse_widths, uno_after, uno_after_ms,
-};
+use super::*;
 
 /// Cycles of an operation that erases and writes, according to table 8-1: "Erase and Write in one operation (Atomic
 /// Operation)", 3.4 ms.
@@ -17,7 +11,7 @@ const SINGLE_CYCLES: u64 = 1800 * CYCLES_PER_US;
 
 /// Returns a UNO that has run for a number of cycles: first these instructions, then an endless loop.
 fn run(source: &str, cycles: u64) -> Uno {
-    uno_after(cycles, assemble(&format!("{source}\nend: rjmp end")))
+    uno_after(cycles, assemble_loop(source))
 }
 
 /// Compiles `body` with functions for the EEPROM: `set(address, byte, mode)` and `get(address)`, as in the examples of

@@ -1,9 +1,6 @@
 //! Tests of Intel HEX images, compared with the ELF of the same program and with handwritten lines.
 
-use simulated_uno::Image;
-use simulated_uno::avr_gcc::compile_c;
-
-use super::{LED, uno_after_ms};
+use super::*;
 
 /// Formats a line of Intel HEX as avr-objcopy does: `:`, length, address, type, bytes, checksum.
 fn format_line(address: u16, record_type: u8, bytes: &[u8]) -> String {

@@ -1,24 +1,17 @@
 //! Tests of the simulated pins, memory and call timing against cycles counted with the data sheet.
 
-use simulated_uno::avr_gcc::{assemble, compile_c};
-use simulated_uno::{CYCLES_PER_MS, Call, Image, Pin, Pulse, State, Uno, max_pins_high};
-
-use super::{
-    FIDELITIES, LED, compile_with_headers, new_uno, numbered_edges, pulse_widths, uno_after,
-    unos_after,
-};
+use super::*;
 
 #[test]
 fn the_width_of_a_pulse_is_the_sum_of_its_instruction_cycles() {
     // High at the end of the first `out`; then 3 nops and the second `out`: 4 cycles.
-    let image = assemble(
+    let image = assemble_loop(
         "sbi DDRB, 5
          ldi r16, 0x20
          ldi r17, 0
          out PORTB, r16
          nop $ nop $ nop
-         out PORTB, r17
-    end: rjmp end",
+         out PORTB, r17",
     );
     for uno in unos_after(100, &image) {
         // sbi 2, ldi 1, ldi 1, out 1: high after 5 cycles.
@@ -30,7 +23,7 @@ fn the_width_of_a_pulse_is_the_sum_of_its_instruction_cycles() {
 fn an_edge_is_stamped_with_the_last_cycle_of_its_instruction() {
     // First pulse: `out` (1 cycle) high, then 2 nops and `cbi` (2 cycles) low: 4 cycles. Second pulse: `sts` (2
     // cycles) high, then 1 nop and `out` (1 cycle) low: 2 cycles.
-    let image = assemble(
+    let image = assemble_loop(
         "sbi DDRB, 5
          ldi r16, 0x20
          ldi r17, 0
@@ -40,8 +33,7 @@ fn an_edge_is_stamped_with_the_last_cycle_of_its_instruction() {
          nop
          sts PORTB + 0x20, r16
          nop
-         out PORTB, r17
-    end: rjmp end",
+         out PORTB, r17",
     );
     for uno in unos_after(100, &image) {
         assert_eq!(pulse_widths(&uno), [4, 2]);
@@ -50,7 +42,7 @@ fn an_edge_is_stamped_with_the_last_cycle_of_its_instruction() {
 
 #[test]
 fn edges_have_arduino_numbers_and_pins_that_are_high_together_are_counted() {
-    let image = assemble(
+    let image = assemble_loop(
         "ldi r16, 0xff
          out DDRB, r16
          out DDRD, r16
@@ -59,8 +51,7 @@ fn edges_have_arduino_numbers_and_pins_that_are_high_together_are_counted() {
          cbi PORTD, 3
          cbi PORTB, 1
          sbi PORTB, 3
-         cbi PORTB, 3
-    end: rjmp end",
+         cbi PORTB, 3",
     );
     let uno = uno_after(100, image);
     let first_edges = [(3, true), (9, true), (3, false)];
@@ -83,8 +74,7 @@ fn every_pin_of_every_port_is_recorded_under_its_arduino_number() {
             expected.push((Pin::arduino(first_number + bit), start, 2));
         }
     }
-    source += "end: rjmp end";
-    let image = assemble(&source);
+    let image = assemble_loop(&source);
     for uno in unos_after(200, &image) {
         for (pin, start, width) in &expected {
             let (start, width) = (*start, *width);
@@ -106,11 +96,10 @@ fn an_analogue_pin_has_an_arduino_number_and_a_name() {
 
 #[test]
 fn a_single_analogue_pin_can_be_read_and_toggled() {
-    let image = assemble(
+    let image = assemble_loop(
         "ldi r16, 0xff $ out DDRC, r16
          sbi PORTC, 0
-         sbi PINC, 5
-    end: rjmp end",
+         sbi PINC, 5",
     );
     let mut uno = new_uno(image);
     assert!(!uno.is_high(Pin::a(0)));
@@ -121,12 +110,11 @@ fn a_single_analogue_pin_can_be_read_and_toggled() {
 
 #[test]
 fn sbi_on_a_pin_register_toggles_one_pin() {
-    let image = assemble(
+    let image = assemble_loop(
         "ldi r16, 0xff $ out DDRB, r16
          sbi PORTB, 1
          sbi PINB, 5
-         sbi PINB, 5
-    end: rjmp end",
+         sbi PINB, 5",
     );
     let uno = uno_after(100, image);
     assert_eq!(numbered_edges(&uno), [(9, true), (13, true), (13, false)]);
@@ -134,30 +122,25 @@ fn sbi_on_a_pin_register_toggles_one_pin() {
 
 #[test]
 fn sleeping_with_interrupts_off_is_a_halt() {
-    let image = assemble("ldi r16, 1 $ out SMCR, r16 $ cli $ sleep\nend: rjmp end");
-    for fidelity in FIDELITIES {
-        let mut uno = Uno::with_image(image.clone(), fidelity);
-        assert_eq!(*uno.run_ms(1), State::Halted);
+    let image = assemble_loop("ldi r16, 1 $ out SMCR, r16 $ cli $ sleep");
+    for uno in unos_after(CYCLES_PER_MS, &image) {
+        assert_eq!(*uno.state(), State::Halted);
         assert!(uno.cycle() < 100, "time stops when the firmware halts");
     }
 }
 
 #[test]
 fn a_store_outside_memory_is_a_crash() {
-    let image = assemble("ldi r16, 1 $ sts 0x0fff, r16\nend: rjmp end");
-    let mut uno = new_uno(image);
-    assert!(matches!(uno.run_ms(1), State::Crashed { .. }));
+    let uno = uno_after_ms(1, assemble_loop("ldi r16, 1 $ sts 0x0fff, r16"));
+    assert!(matches!(uno.state(), State::Crashed { .. }));
 }
 
 #[test]
 fn resets_by_the_watchdog_are_counted() {
-    let image = compile_with_headers(
-        "int main(void) {
-            MCUSR = 0;
-            wdt_enable(WDTO_15MS);
-            PORTB = 0; DDRB = 0x20; PORTB = 0x20;
-            for (;;) {}
-        }",
+    let image = compile_statements(
+        "MCUSR = 0;
+        wdt_enable(WDTO_15MS);
+        PORTB = 0; DDRB = 0x20; PORTB = 0x20;",
     );
     for uno in unos_after(70 * CYCLES_PER_MS, &image) {
         assert_eq!(uno.watchdog_resets(), 4, "every 16 ms");

@@ -1,12 +1,6 @@
 //! Tests of the simulated interrupts and Timer1 against cycles counted with the data sheet.
 
-use simulated_uno::avr_gcc::assemble;
-use simulated_uno::{Fidelity, Uno};
-
-use super::{
-    CORRECTION_IS_OBSOLETE, FIDELITIES, LED, compile_with_headers, mark_cycles, mark_values,
-    new_uno, uno_after, unos_after,
-};
+use super::*;
 
 /// Program that sleeps, with Timer1 in CTC mode and a compare interrupt every 10 000 cycles. The handler's first
 /// instruction switches the LED on, and its second switches the LED off.
@@ -176,14 +170,11 @@ fn an_interrupt_enabled_while_its_flag_is_set_is_served_at_once() {
 fn high_bytes_of_16_bit_registers_are_written_through_the_shared_temp_byte() {
     // The program writes the high byte of OCR1A, then both bytes of OCR1B, then the low byte of OCR1A. A write to a
     // high byte only changes TEMP, so both registers take the high byte that was written to OCR1B.
-    let image = compile_with_headers(
-        "int main(void) {
-            OCR1AH = 0x12;
-            OCR1BH = 0x34; OCR1BL = 0x56;
-            OCR1AL = 0x78;
-            GPIOR0 = OCR1AH; GPIOR0 = OCR1AL; GPIOR0 = OCR1BH; GPIOR0 = OCR1BL;
-            for (;;) {}
-        }",
+    let image = compile_statements(
+        "OCR1AH = 0x12;
+        OCR1BH = 0x34; OCR1BL = 0x56;
+        OCR1AL = 0x78;
+        GPIOR0 = OCR1AH; GPIOR0 = OCR1AL; GPIOR0 = OCR1BH; GPIOR0 = OCR1BL;",
     );
     let uno = uno_after(500, image);
     assert_eq!(mark_values(&uno), [0x34, 0x78, 0x34, 0x56]);

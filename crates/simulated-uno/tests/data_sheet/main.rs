@@ -15,8 +15,12 @@ mod say;
 mod serial;
 mod watchdog;
 
-use simulated_uno::avr_gcc::compile_c;
-use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Pin, ResetCause, Uno};
+use simulated_uno::ResetCause::{self, BrownOut, External, PowerOn, Watchdog};
+use simulated_uno::avr_gcc::{assemble, assemble_at, compile_c};
+use simulated_uno::{
+    CYCLES_PER_MS, CYCLES_PER_US, Call, EEPROM_SIZE, EepromMode, Fidelity, Image, Pin, PowerCut,
+    Pulse, SRAM_END, SRAM_START, State, Uno, max_pins_high,
+};
 
 /// The pin of the LED on the board.
 const LED: Pin = Pin::d(13);
@@ -51,6 +55,12 @@ fn uno_after(cycles: u64, image: Image) -> Uno {
 /// Returns a UNO of the data-sheet fidelity with this program, after a number of milliseconds.
 fn uno_after_ms(ms: u64, image: Image) -> Uno {
     uno_after(ms * CYCLES_PER_MS, image)
+}
+
+/// Sets the supply voltage, mV, and runs for a number of milliseconds.
+fn run_at_supply(uno: &mut Uno, mv: f64, ms: u64) {
+    uno.set_supply_mv(mv);
+    uno.run_ms(ms);
 }
 
 /// Returns the bytes that the program has written to GPIOR0.
@@ -100,6 +110,24 @@ fn compile_with_headers(source: &str) -> Image {
     let names = ["avr/io.h", "avr/interrupt.h", "avr/wdt.h", "util/delay.h"];
     let headers = names.map(|name| format!("#include <{name}>\n"));
     compile_c(&(headers.concat() + source))
+}
+
+/// Assembles these instructions, followed by an endless loop.
+fn assemble_loop(instructions: &str) -> Image {
+    assemble(&format!("{instructions}\nend: rjmp end"))
+}
+
+/// Compiles a program whose main function runs these statements once.
+fn compile_statements(body: &str) -> Image {
+    compile_with_headers(&format!("int main(void) {{ {body} for (;;) {{}} }}"))
+}
+
+/// Compiles a program that receives at 115 200 baud and runs these statements in the interrupt of each byte.
+fn compile_receiver(body: &str) -> Image {
+    compile_with_headers(&format!(
+        "ISR(USART_RX_vect) {{ {body} }}
+        int main(void) {{ UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x90; sei(); for (;;) {{}} }}"
+    ))
 }
 
 #[track_caller]

@@ -1,9 +1,7 @@
 //! Tests of power cuts during an EEPROM write.
 
-use simulated_uno::{EEPROM_SIZE, PowerCut, ResetCause, State, Uno};
-
 use super::eeprom::{ATOMIC_CYCLES, program};
-use super::{mark_values, new_uno, reset_causes};
+use super::*;
 
 /// Program that writes 0x35 over 0xa6 at address 0, then 0x5c at address 1. If address 0 does not contain 0xa6, as
 /// after a power cut, the program only marks the byte that it contains.
@@ -104,7 +102,7 @@ fn a_board_restarts_after_a_power_cut_with_the_same_eeprom() {
     uno.power_cycle();
     assert_eq!(*uno.run_ms(20), State::Alive);
     assert_eq!(mark_values(&uno), [0x35 | 0x08]);
-    assert_eq!(reset_causes(&uno), [ResetCause::PowerOn; 2]);
+    assert_eq!(reset_causes(&uno), [PowerOn; 2]);
 }
 
 #[test]

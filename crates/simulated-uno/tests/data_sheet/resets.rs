@@ -1,19 +1,6 @@
 //! Tests of the simulated UNO's resets against the data sheet, chapter 11.
 
-use simulated_uno::avr_gcc::{assemble, assemble_at};
-use simulated_uno::{
-    CYCLES_PER_MS, Fidelity, Image, Pin, PowerCut, ResetCause, SRAM_END, SRAM_START, State, Uno,
-};
-
-use super::{
-    compile_with_headers, mark_values, new_uno, reset_causes, transmitted_bytes, uno_after,
-    uno_after_ms, unos_after,
-};
-
-/// Compiles a program whose main function runs these statements once.
-fn compile_statements(body: &str) -> Image {
-    compile_with_headers(&format!("int main(void) {{ {body} for (;;) {{}} }}"))
-}
+use super::*;
 
 /// Compiles a program that marks the value of MCUSR at each start and does not change MCUSR.
 fn compile_mcusr_program() -> Image {
@@ -32,22 +19,12 @@ fn mcusr_accumulates_the_causes_until_power_on() {
     // WDRF).
     let mut uno = uno_after_ms(1, compile_mcusr_program());
     reset_and_run(&mut uno);
-    uno.set_supply_mv(2500.0);
-    uno.run_ms(1);
-    uno.set_supply_mv(5000.0);
-    uno.run_ms(1);
+    run_at_supply(&mut uno, 2500.0, 1);
+    run_at_supply(&mut uno, 5000.0, 1);
     uno.power_cycle();
     uno.run_ms(1);
     assert_eq!(mark_values(&uno), [0x01, 0x03, 0x07, 0x01]);
-    assert_eq!(
-        reset_causes(&uno),
-        [
-            ResetCause::PowerOn,
-            ResetCause::External,
-            ResetCause::BrownOut,
-            ResetCause::PowerOn
-        ]
-    );
+    assert_eq!(reset_causes(&uno), [PowerOn, External, BrownOut, PowerOn]);
 }
 
 #[test]
@@ -75,13 +52,12 @@ fn mcusr_of_stock_simavr_holds_only_the_last_cause() {
 fn sram_and_registers_survive_every_reset_except_power_on() {
     // "During reset, all I/O Registers are set to their initial values" (11.1): SRAM and r0 to r31 are not I/O
     // registers.
-    let image = assemble(
+    let image = assemble_loop(
         "lds r18, 0x0234
          out GPIOR0, r18
          out GPIOR0, r2
          ldi r16, 0x5a $ sts 0x0234, r16 $ mov r2, r16
-         ldi r16, 0x77 $ out GPIOR1, r16 $ sts OCR1AL, r16
-    end: rjmp end",
+         ldi r16, 0x77 $ out GPIOR1, r16 $ sts OCR1AL, r16",
     );
     for mut uno in unos_after(CYCLES_PER_MS, &image) {
         assert_eq!(uno.peek(0x4a), 0x77);
@@ -99,7 +75,7 @@ fn sram_and_registers_survive_every_reset_except_power_on() {
 #[test]
 fn power_on_fills_the_sram_with_noise_that_depends_on_the_seed() {
     let sram_after_seed = |seed: Option<u64>| {
-        let mut uno = new_uno(assemble("end: rjmp end"));
+        let mut uno = new_uno(assemble_loop(""));
         if let Some(seed) = seed {
             uno.set_noise_seed(seed);
             uno.power_cycle();
@@ -121,10 +97,9 @@ fn power_on_fills_the_sram_with_noise_that_depends_on_the_seed() {
 
 #[test]
 fn each_power_on_changes_the_noise_and_restarts_the_stack_measurement() {
-    let image = assemble(
+    let image = assemble_loop(
         "ldi r16, 0x08 $ out SPH, r16 $ ldi r16, 0xff $ out SPL, r16
-         push r16 $ push r16 $ push r16
-    end: rjmp end",
+         push r16 $ push r16 $ push r16",
     );
     let mut uno = new_uno(image);
     let first_byte = uno.peek(0x300);
@@ -186,10 +161,9 @@ fn a_timer_is_stopped_after_a_reset() {
 
 #[test]
 fn temp_is_cleared_by_a_reset() {
-    let image = assemble(
+    let image = assemble_loop(
         "ldi r16, 0x12 $ sts OCR1AL, r16 $ lds r17, OCR1AH $ out GPIOR0, r17
-         ldi r16, 0x34 $ sts OCR1AH, r16
-    end: rjmp end",
+         ldi r16, 0x34 $ sts OCR1AH, r16",
     );
     let mut uno = uno_after_ms(1, image);
     reset_and_run(&mut uno);
@@ -202,7 +176,7 @@ fn a_reset_restarts_halted_or_crashed_firmware() {
         ("ldi r16, 1 $ out SMCR, r16 $ cli $ sleep", true),
         ("ldi r16, 1 $ sts 0x0fff, r16", false),
     ] {
-        let image = assemble(&format!("out GPIOR0, r1\n{source}\nend: rjmp end"));
+        let image = assemble_loop(&format!("out GPIOR0, r1\n{source}"));
         let mut uno = uno_after_ms(1, image);
         assert_ne!(*uno.state(), State::Alive);
         assert_eq!(*uno.state() == State::Halted, is_halt, "{source}");
@@ -264,12 +238,7 @@ fn after_a_boot_loader_mcusr_is_zero_and_the_watchdog_is_off() {
     assert_eq!(mark_values(&uno), [0; 8]);
     assert_eq!(
         reset_causes(&uno),
-        [
-            ResetCause::PowerOn,
-            ResetCause::Watchdog,
-            ResetCause::External,
-            ResetCause::PowerOn
-        ],
+        [PowerOn, Watchdog, External, PowerOn],
         "the simulator records the causes nevertheless"
     );
     uno.set_boot_loader(false);
@@ -285,7 +254,7 @@ fn a_boot_loader_can_be_removed_before_the_first_cycle() {
     uno.set_boot_loader(false);
     uno.run_ms(1);
     assert_eq!(mark_values(&uno), [1]);
-    assert_eq!(reset_causes(&uno), [ResetCause::PowerOn]);
+    assert_eq!(reset_causes(&uno), [PowerOn]);
 }
 
 #[test]

@@ -1,9 +1,6 @@
 //! Tests of `Uno::say`, which sends a line to the UNO and returns its answer.
 
-use simulated_uno::avr_gcc::compile_c;
-use simulated_uno::{State, Uno};
-
-use super::{FIDELITIES, new_uno, uno_after_ms};
+use super::*;
 
 /// Program at 115 200 baud that answers each line with the same line in capitals. It ignores `x` and halts at `!`.
 const CAPITALS_PROGRAM: &str = r"

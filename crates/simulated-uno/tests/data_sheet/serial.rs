@@ -1,11 +1,6 @@
 //! Tests of the simulated serial line against the data sheet: baud rate, lost bytes, framing errors and floods.
 
-use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Uno};
-
-use super::{
-    FIDELITIES, assert_within, compile_with_headers, intervals, mark_values, new_uno,
-    transmission_cycles, transmitted_bytes, uno_after, uno_after_ms, unos_after,
-};
+use super::*;
 
 /// Cycles of a 10-bit frame at exactly 115 200 baud, the sender's baud rate.
 const FRAME_CYCLES: f64 = 10.0 * 16_000_000.0 / 115_200.0;
@@ -107,15 +102,7 @@ fn an_overrun_flag_is_cleared_by_the_next_read() {
 
 #[test]
 fn a_fast_receive_interrupt_loses_no_byte() {
-    let image = compile_with_headers(
-        "static volatile unsigned char sum;
-        ISR(USART_RX_vect) { sum += UDR0; GPIOR0 = sum; }
-        int main(void) {
-            UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x90;
-            sei();
-            for (;;) {}
-        }",
-    );
+    let image = compile_receiver("static volatile unsigned char sum; sum += UDR0; GPIOR0 = sum;");
     for mut uno in unos_after(1000, &image) {
         let bytes: Vec<u8> = (0..1000).map(|n| (n * 7) as u8).collect();
         uno.send(&bytes);

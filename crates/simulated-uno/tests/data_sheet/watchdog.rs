@@ -1,12 +1,6 @@
 //! Tests of the simulated watchdog against the data sheet, chapters 11.8 and 11.9.2.
 
-use simulated_uno::avr_gcc::assemble;
-use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, ResetCause, State, Uno};
-
-use super::{
-    CORRECTION_IS_OBSOLETE, assert_within, compile_with_headers, intervals, mark_cycles,
-    mark_values, new_uno, uno_after, uno_after_ms,
-};
+use super::*;
 
 /// The shortest time-out, 2 048 cycles of the 128 kHz oscillator, in CPU cycles.
 const MIN_TIMEOUT_CYCLES: u64 = 16 * CYCLES_PER_MS;
@@ -14,7 +8,7 @@ const MIN_TIMEOUT_CYCLES: u64 = 16 * CYCLES_PER_MS;
 /// Returns the cycles at which the watchdog has reset the chip.
 fn watchdog_reset_cycles(uno: &Uno) -> Vec<u64> {
     let resets = uno.reset_events().into_iter();
-    let watchdog_events = resets.filter(|reset| reset.cause == ResetCause::Watchdog);
+    let watchdog_events = resets.filter(|reset| reset.cause == Watchdog);
     watchdog_events.map(|reset| reset.cycle).collect()
 }
 
@@ -108,11 +102,10 @@ fn switch_off_after_nops(nop_count: usize) -> Uno {
          ldi r16, 0x08 $ sts WDTCSR, r16
          sts WDTCSR, r17
          {}
-         sts WDTCSR, r18
-    end: rjmp end",
+         sts WDTCSR, r18",
         "nop\n".repeat(nop_count)
     );
-    uno_after_ms(17, assemble(&source))
+    uno_after_ms(17, assemble_loop(&source))
 }
 
 #[test]
@@ -172,9 +165,8 @@ fn hardware_clears_wdce_after_four_cycles() {
     // "hardware will clear WDCE after four clock cycles" (11.9.2).
     let source = "ldi r17, 0x18 $ sts WDTCSR, r17
          lds r18, WDTCSR $ lds r19, WDTCSR $ lds r20, WDTCSR
-         out GPIOR0, r18 $ out GPIOR0, r19 $ out GPIOR0, r20
-    end: rjmp end";
-    let uno = uno_after(50, assemble(source));
+         out GPIOR0, r18 $ out GPIOR0, r19 $ out GPIOR0, r20";
+    let uno = uno_after(50, assemble_loop(source));
     assert_eq!(mark_values(&uno), [0x18, 0x18, 0x08]);
 }
 
@@ -275,11 +267,10 @@ fn an_interrupt_in_the_cycle_of_the_sleep_instruction_does_not_end_the_sleep() {
              ldi r16, 20 $ sts OCR1AL, r16 $ ldi r16, 9 $ sts TCCR1B, r16
              {}
              sleep
-             out GPIOR0, r16
-        end: rjmp end",
+             out GPIOR0, r16",
             "nop\n".repeat(nops)
         );
-        let uno = uno_after_ms(10, assemble(&source));
+        let uno = uno_after_ms(10, assemble_loop(&source));
         assert!(uno.marks().is_empty(), "{nops} nops");
     }
 }

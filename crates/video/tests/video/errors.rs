@@ -7,7 +7,9 @@ use lizard_studio::render::{Pose, Studio};
 use lizard_studio::walk::{Variation, Walk, paper_gait, true_displacement};
 use lizard_video::{Frame, Gait, MeasuredGait, Setup, Video, VideoError};
 
-use crate::studio::{FRAME_RATE, FULL_SCALE, record_frames, record_robot, record_walk, studio};
+use crate::studio::{
+    FRAME_RATE, FULL_SCALE, add_frame, record_frames, record_robot, record_walk, studio,
+};
 
 /// Returns a walk that is centred on the origin.
 fn centred_walk(gait: &Gait, cycle_count: usize) -> Walk {
@@ -28,11 +30,12 @@ fn record_five_cycles(studio: &Studio) -> Video {
     record_cycles(studio, &paper_gait("walk"), 5, FRAME_RATE)
 }
 
-/// Returns the error that occurs when five cycles of `walk` are measured in a studio.
-fn expect_error(studio: &Studio, setup: Setup) -> VideoError {
-    record_five_cycles(studio)
-        .measure(setup, &paper_gait("walk"))
-        .expect_err("the video cannot be measured")
+/// Returns the error that occurs when five cycles of `walk` are measured in a changed studio.
+fn expect_error(setup: Setup, change: impl Fn(&mut Studio)) -> VideoError {
+    let mut studio = studio();
+    change(&mut studio);
+    let measured = record_five_cycles(&studio).measure(setup, &paper_gait("walk"));
+    measured.expect_err("the video cannot be measured")
 }
 
 #[test]
@@ -40,19 +43,15 @@ fn a_video_without_frames_or_tags_is_rejected() {
     let (gait, mut video) = (paper_gait("walk"), Video::default());
     assert_eq!(video.measure(FULL_SCALE, &gait), Err(VideoError::NoFrames));
     let grey = Frame::new(320, 240, vec![128; 320 * 240]).expect("the frame is complete");
-    let result = video.add_frame(0.0, &grey);
-    result.expect("the frame fits the video");
+    add_frame(&mut video, 0.0, &grey);
     assert_eq!(video.measure(FULL_SCALE, &gait), Err(VideoError::NoTag));
 }
 
 #[test]
 fn the_error_names_a_tag_that_is_always_covered() {
-    let mut studio = studio();
-    studio.covered_tags = vec![2];
-    let error = expect_error(&studio, FULL_SCALE);
+    let error = expect_error(FULL_SCALE, |studio| studio.covered_tags = vec![2]);
     assert_eq!(error, VideoError::NoFloorTag { id: 2 });
-    studio.covered_tags = vec![4];
-    let error = expect_error(&studio, FULL_SCALE);
+    let error = expect_error(FULL_SCALE, |studio| studio.covered_tags = vec![4]);
     let VideoError::DeckTagTooRare { visible_count, .. } = error else {
         panic!("{error}");
     };
@@ -61,19 +60,18 @@ fn the_error_names_a_tag_that_is_always_covered() {
 
 #[test]
 fn a_tag_with_a_cable_over_its_corner_counts_as_missing() {
-    let mut studio = studio();
-    let [x, y, _] = studio.strips[0];
-    studio.discs = vec![[x + 128.0, y + 22.0, 10.0, 40.0]];
-    let error = expect_error(&studio, FULL_SCALE);
+    let error = expect_error(FULL_SCALE, |studio| {
+        let [x, y, _] = studio.strips[0];
+        studio.discs = vec![[x + 128.0, y + 22.0, 10.0, 40.0]];
+    });
     assert_eq!(error, VideoError::NoFloorTag { id: 1 });
 }
 
 #[test]
 fn no_tag_is_found_in_darkness_or_glare() {
-    let mut studio = studio();
     for light in [0.05, 10.0] {
-        studio.light = light;
-        assert_eq!(expect_error(&studio, FULL_SCALE), VideoError::NoTag);
+        let error = expect_error(FULL_SCALE, |studio| studio.light = light);
+        assert_eq!(error, VideoError::NoTag, "light {light}");
     }
 }
 
@@ -183,9 +181,7 @@ fn a_sheet_printed_too_small_gives_the_true_distance_if_the_ruler_is_measured() 
 
 #[test]
 fn tags_that_were_cut_apart_and_moved_are_rejected() {
-    let mut studio = studio();
-    studio.tag_distance_factor = 0.95;
-    let error = expect_error(&studio, FULL_SCALE);
+    let error = expect_error(FULL_SCALE, |studio| studio.tag_distance_factor = 0.95);
     assert!(
         matches!(error, VideoError::WrongTagSize { edge } if edge > 51.5)
             || matches!(error, VideoError::SheetMismatch { .. }),
@@ -197,13 +193,11 @@ fn tags_that_were_cut_apart_and_moved_are_rejected() {
 
 #[test]
 fn a_card_at_another_height_than_given_is_rejected_by_its_size() {
-    let mut studio = studio();
-    studio.deck_tag_height = 83.0;
     let wrong_setup = Setup {
         deck_height: 40.0,
         ..FULL_SCALE
     };
-    let error = expect_error(&studio, wrong_setup);
+    let error = expect_error(wrong_setup, |studio| studio.deck_tag_height = 83.0);
     assert_matches!(error, VideoError::WrongHeight { height_by_size, .. } if height_by_size > 52.0);
 }
 

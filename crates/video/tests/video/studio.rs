@@ -3,7 +3,7 @@
 use fastrand::Rng;
 use lizard_studio::render::{Pose, Studio, random_normal};
 use lizard_studio::walk::Walk;
-use lizard_video::{Frame, Setup, Video};
+use lizard_video::{AnalysedVideo, Frame, Setup, Video};
 
 /// The setup for a sheet that is printed at full scale (1:1).
 pub const FULL_SCALE: Setup = Setup {
@@ -23,9 +23,20 @@ pub fn studio() -> Studio {
 pub fn small_studio(seed: u64, tilt: f64) -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(seed));
     (studio.size, studio.focal_length) = ([640, 360], 1.0);
-    (studio.camera_height, studio.camera_tilt) = (800.0, tilt);
-    (studio.camera_direction, studio.camera_roll, studio.aim) = (90.0, 0.0, [0.0; 2]);
+    studio.aim_camera(800.0, tilt);
     studio
+}
+
+/// Adds a frame to a video.
+pub fn add_frame(video: &mut Video, seconds: f64, frame: &Frame) {
+    let result = video.add_frame(seconds, frame);
+    result.expect("the frame fits the video");
+}
+
+/// Analyses a video of a sheet that is printed at full scale.
+pub fn analyse(video: &Video) -> AnalysedVideo {
+    let analysed_video = video.analyse(FULL_SCALE);
+    analysed_video.expect("the video can be analysed")
 }
 
 /// Records a walk with the camera on a tripod.
@@ -57,8 +68,7 @@ pub fn record_frames(
     let mut video = Video::default();
     for i in 0..(duration_s * frame_rate) as usize {
         let seconds = i as f64 / frame_rate;
-        let result = video.add_frame(seconds, &frame_at(seconds));
-        result.expect("the frame fits the video");
+        add_frame(&mut video, seconds, &frame_at(seconds));
     }
     video
 }

@@ -6,7 +6,6 @@
 
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
-use std::thread;
 use std::time::Instant;
 
 use lizard_host_tests::trouble::{Failure, Scenario, collect_events, run_and_check, run_campaign};
@@ -25,7 +24,6 @@ fn main() -> ExitCode {
         return run_verbosely(&image, seed, scenario_number);
     }
     let count = read_number("COUNT").unwrap_or(10_000);
-    let thread_count = thread::available_parallelism().map_or(1, |n| n.get());
     let start = Instant::now();
     let report = |done_count: u64, failure: Option<&Failure>| {
         if let Some(failure) = failure {
@@ -37,7 +35,7 @@ fn main() -> ExitCode {
             _ = std::io::stdout().flush();
         }
     };
-    let summary = run_campaign(&image, robot, seed, count, thread_count, report);
+    let summary = run_campaign(&image, robot, seed, count, report);
     for failure in summary.failures.iter().take(MAX_PRINTED_FAILURES) {
         println!(
             "\n{failure}  to run only this scenario: make trouble SEED={seed} ONLY={}",
@@ -58,7 +56,7 @@ fn main() -> ExitCode {
 fn run_verbosely(image: &Image, seed: u64, number: u64) -> ExitCode {
     let scenario = Scenario::generate(seed, number, patrolling_robot());
     print!("{scenario}");
-    let record = lizard_host_tests::trouble::run_scenario(image, patrolling_robot(), &scenario);
+    let (record, failure) = run_and_check(image, patrolling_robot(), &scenario);
     let mut last_pulse_times = [Time::MIN / 2; 4];
     for (time, event) in collect_events(&record) {
         let is_reported = match event {
@@ -74,7 +72,7 @@ fn run_verbosely(image: &Image, seed: u64, number: u64) -> ExitCode {
             println!("{:10.3} ms  {event:?}", time as f64 / MS as f64);
         }
     }
-    match run_and_check(image, patrolling_robot(), &scenario).1 {
+    match failure {
         None => {
             println!("every rule holds");
             ExitCode::SUCCESS

@@ -40,8 +40,7 @@ impl Script<'_> {
     /// Stalls the main loop for 1 to 300 ms and waits until the stall ends. The watchdog may end it after 250 ms.
     fn add_stall(&mut self) {
         let cycles = self.rng.u64(MS..300 * MS);
-        self.steps.push(Step::Stall(cycles));
-        self.steps.push(Step::Wait(cycles));
+        self.steps.extend([Step::Stall(cycles), Step::Wait(cycles)]);
     }
 
     /// Lowers the supply for a while, sometimes below the minimum voltage of the chip or of its RAM.

@@ -50,22 +50,21 @@ impl World {
         // command.
         let has_unnoticed_edge =
             self.observer.is_stop_unreported() && self.running_robot.board.late_edges > 0;
-        self.observe_motion_command(effect, Some(is_accepted));
+        self.observer
+            .observe_command(self.now, effect, Some(is_accepted));
         if is_accepted && effect == Effect::CalibrationChange {
             self.observe(Event::CalibrationChanged { is_saved: false });
         }
-        let sent_at = self.now;
         self.observe(Event::Answer {
             line,
             effect,
-            sent_at,
+            sent_at: self.now,
             answer,
         });
         if answer == "ok load" {
             self.check_loaded_limits()?;
         }
-        let is_refused_for_supply = answer.starts_with("err 8");
-        if is_refused_for_supply
+        if answer.starts_with("err 8")
             && !self.observer.was_supply_low(0, 70 * FRAME)
             && Time::from(self.running_robot.motion().frame_count()) * FRAME > SUPPLY_SETTLING_TIME
         {
@@ -89,16 +88,6 @@ impl World {
             }
         }
         self.observer.take_verdict()
-    }
-
-    /// Passes a command that moves, freezes or rests the robot to the observer.
-    pub(super) fn observe_motion_command(&mut self, effect: Effect, is_accepted: Option<bool>) {
-        if matches!(effect, Effect::Motion | Effect::Freeze | Effect::Rest) {
-            self.observe(Event::MotionCommand {
-                effect,
-                is_accepted,
-            });
-        }
     }
 
     /// Checks the promises in the answers by running a clone until all promises are due.
@@ -158,10 +147,9 @@ impl World {
 
     /// True if the robot rests and its pose is in the EEPROM.
     pub(super) fn is_rest_pose_saved(&self) -> bool {
-        let memory = &self.running_robot.board.memory;
         let motion = self.running_robot.motion();
         // Reads a copy of the bytes, because a busy EEPROM cannot be read.
-        let readable_memory = Eeprom::with_bytes(*memory.bytes());
+        let readable_memory = Eeprom::with_bytes(*self.running_robot.board.memory.bytes());
         motion.is_resting()
             && copies::read_rest_pose(motion.robot(), &readable_memory) == Some(*motion.pose())
     }

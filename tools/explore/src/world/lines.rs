@@ -39,7 +39,7 @@ impl World {
         }
         if self.unanswered_line.is_some() {
             let effect = effect(line, &self.robot());
-            self.observe_motion_command(effect, None);
+            self.observer.observe_command(self.now, effect, None);
         }
         self.observe_output(self.now)
     }

@@ -1,10 +1,9 @@
 //! Layout of an object, in which functions are ordered so that calls are short.
 
-use object::build::elf::{Section, SectionId};
+use object::build::elf::{Relocation, Section, SectionId};
 use object::elf;
 
 use super::Object;
-use crate::edit::Reference;
 use crate::instruction::{falls_through, may_skip_next};
 use crate::order::{Call, Pieces};
 
@@ -30,10 +29,10 @@ impl Object<'_> {
                 [] => true,
             };
             // A relative branch to another section might no longer reach it.
-            let survives_move = |reference: &Reference| {
+            let survives_move = |reference: &Relocation| {
                 let short_reach_kinds = [elf::R_AVR_7_PCREL, elf::R_AVR_13_PCREL];
-                !short_reach_kinds.contains(&reference.kind)
-                    || self.0.symbols.get(reference.symbol).section == Some(section.id())
+                !short_reach_kinds.contains(&reference.r_type)
+                    || self.target_offset(section.id(), reference).is_some()
             };
             stops_at_end && code.references.iter().all(survives_move)
         };
@@ -48,15 +47,12 @@ impl Object<'_> {
         let piece_index =
             |section: SectionId| functions.iter().position(|function| *function == section);
         let mut pieces = Pieces::default();
-        let is_call = |reference: &&Reference| reference.kind == elf::R_AVR_CALL;
+        let is_call = |reference: &&Relocation| reference.r_type == elf::R_AVR_CALL;
         for section in &functions {
             // The size is estimated as if all calls in the function were short.
-            let call_savings = 2 * self
-                .read_references(*section)
-                .iter()
-                .filter(is_call)
-                .count() as u64;
-            let size = self.0.sections.get(*section).sh_size - call_savings;
+            let references = self.read_references(*section);
+            let call_count = references.iter().filter(is_call).count() as u64;
+            let size = self.0.sections.get(*section).sh_size - 2 * call_count;
             pieces.sizes.push(size as u32);
         }
         let staying_sections =
@@ -66,18 +62,21 @@ impl Object<'_> {
             .sizes
             .extend([ROUTINES_SIZE + staying_bytes as u32, 0]);
         for section in code_sections() {
-            for reference in self.read_references(section.id()) {
-                let symbol = self.0.symbols.get(reference.symbol);
-                let caller = piece_index(section.id()).unwrap_or(middle_piece);
+            let caller = piece_index(section.id()).unwrap_or(middle_piece);
+            for reference in self.read_references(section.id()).iter().filter(is_call) {
+                let Some(symbol) = reference.symbol else {
+                    continue;
+                };
+                let symbol = self.0.symbols.get(symbol);
                 let callee = match symbol.section {
                     Some(section) => piece_index(section).unwrap_or(middle_piece),
                     None if symbol.name.starts_with(b"__frame_") => middle_piece,
                     None => other_files_piece,
                 };
-                if is_call(&&reference) && caller != callee {
+                if caller != callee {
                     let offset = match caller == middle_piece {
                         true => 0,
-                        false => reference.offset as u32,
+                        false => reference.r_offset as u32,
                     };
                     pieces.calls.push(Call {
                         caller,

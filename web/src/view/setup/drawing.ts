@@ -28,16 +28,19 @@ function pointAt([x, y]: Point, lengthMm: number, degrees: number): Point {
 
 const makeLine = (className: string, [x1, y1]: Point, [x2, y2]: Point) => makeSvg('line', { class: className, x1, y1, x2, y2 });
 
-/** Makes an arrow about a shaft; it starts at the angle `startDeg` and has the direction of `turnDeg`. */
-function makeArrow(shaft: Point, radius: number, startDeg: number, turnDeg: number): SVGElement[] {
+/** Makes the crank after a rotation by `turnDeg` from its neutral angle, and an arrow for this rotation. */
+function makeTurn(shaft: Point, crankLength: number, neutral: number, turnDeg: number): SVGElement[] {
   const direction = Math.sign(turnDeg);
+  const radius = crankLength * 0.75;
+  const startDeg = neutral + direction * 8;
   const endDeg = startDeg + direction * ARC_DEG;
   const [x1, y1] = pointAt(shaft, radius, startDeg);
   const [x2, y2] = pointAt(shaft, radius, endDeg);
   // Because y is downward, SVG's sweep flag is 0 for counter-clockwise.
   const arc = makeSvg('path', { class: 'arrow', d: `M ${x1} ${y1} A ${radius} ${radius} 0 0 ${turnDeg > 0 ? 0 : 1} ${x2} ${y2}` });
   const headPoints = [pointAt(shaft, radius + 6, endDeg - direction * 9), [x2, y2], pointAt(shaft, radius - 6, endDeg - direction * 9)];
-  return [arc, makeSvg('polyline', { class: 'arrow', points: headPoints.map((point) => point.map((n) => (n as number).toFixed(2)).join()).join(' ') })];
+  const head = makeSvg('polyline', { class: 'arrow', points: headPoints.map((point) => point.map((n) => (n as number).toFixed(2)).join()).join(' ') });
+  return [makeLine('ghost', shaft, pointAt(shaft, crankLength, neutral + turnDeg)), arc, head];
 }
 
 /** Makes the drawing of the robot; `selected` is the highlighted servo, null for none. */
@@ -51,39 +54,39 @@ export function makeDrawing({ servos, plate }: Description, { shafts, tips }: Sc
   const viewHalfHeight = Math.max(HALF_LENGTH_MM + crankLength, halfLength) + 8;
   const angles = servos.map(({ neutral }, n) => `${formatServo(n)}: ${neutral.toFixed(1)}°`).join('; ');
   const arrowText = selected?.turnDeg ? ` An arrow shows A${selected.servo + 1} turning ${selected.turnDeg > 0 ? 'counter-clockwise' : 'clockwise'}.` : '';
-  const svg = makeSvg('svg', {
-    class: 'robot-drawing',
-    viewBox: `${-viewHalfWidth} ${-viewHalfHeight} ${2 * viewHalfWidth} ${2 * viewHalfHeight}`,
-    role: 'img',
-    'aria-label': `The robot from above; ahead is up. Angles of the cranks, counter-clockwise from the robot's right: ${angles}.${arrowText}`,
-  });
-  svg.append(
-    makeSvg('rect', { class: 'plate', x: -halfWidth, y: -halfLength, width: 2 * halfWidth, height: 2 * halfLength, rx: 8 }),
-    makeLine('ahead', [0, 16], [0, -16]),
-    makeSvg('polyline', { class: 'ahead', points: '-6,-8 0,-16 6,-8' }),
-    makeSvg('text', { x: 0, y: 28 }, 'ahead'),
-  );
-  shaftPoints.forEach((shaft, n) => {
+  const servoGroups = shaftPoints.map((shaft, n) => {
     const { neutral, pin } = servos[n];
     const isSelected = selected?.servo === n;
-    const group = makeSvg('g', { class: `servo a${n + 1}${selected && !isSelected ? ' other' : ''}` });
-    const tip = pointAt(shaft, crankLength, neutral);
-    group.append(makeLine('zero', shaft, pointAt(shaft, crankLength * 0.6, 0)), makeLine('crank', shaft, tip));
-    if (isSelected && selected.turnDeg !== null) {
-      group.append(makeLine('ghost', shaft, pointAt(shaft, crankLength, neutral + selected.turnDeg)), ...makeArrow(shaft, crankLength * 0.75, neutral + Math.sign(selected.turnDeg) * 8, selected.turnDeg));
-    }
-    group.append(makeSvg('circle', { class: 'shaft', cx: shaft[0], cy: shaft[1], r: 5 }));
+    const turn = isSelected && selected.turnDeg !== null ? makeTurn(shaft, crankLength, neutral, selected.turnDeg) : [];
     // The text is beyond the crank, where it does not overlap the arrow.
     const isLeft = shaft[0] < 0;
     const x = (isLeft ? -1 : 1) * (Math.abs(shaft[0]) + crankLength + 6);
     const y = shaft[1] + Math.sign(shaft[1]) * crankLength * 0.4;
     const side = isLeft ? 'left' : 'right';
-    group.append(
+    return makeSvg(
+      'g',
+      { class: `servo a${n + 1}${selected && !isSelected ? ' other' : ''}` },
+      makeLine('zero', shaft, pointAt(shaft, crankLength * 0.6, 0)),
+      makeLine('crank', shaft, pointAt(shaft, crankLength, neutral)),
+      ...turn,
+      makeSvg('circle', { class: 'shaft', cx: shaft[0], cy: shaft[1], r: 5 }),
       makeSvg('text', { class: `name ${side}`, x, y: y - 5 }, `A${n + 1}`),
       makeSvg('text', { class: side, x, y: y + 7 }, `${neutral.toFixed(1)}°`),
       makeSvg('text', { class: side, x, y: y + 19 }, `pin D${pin}`),
     );
-    svg.append(group);
   });
-  return svg;
+  return makeSvg(
+    'svg',
+    {
+      class: 'robot-drawing',
+      viewBox: `${-viewHalfWidth} ${-viewHalfHeight} ${2 * viewHalfWidth} ${2 * viewHalfHeight}`,
+      role: 'img',
+      'aria-label': `The robot from above; ahead is up. Angles of the cranks, counter-clockwise from the robot's right: ${angles}.${arrowText}`,
+    },
+    makeSvg('rect', { class: 'plate', x: -halfWidth, y: -halfLength, width: 2 * halfWidth, height: 2 * halfLength, rx: 8 }),
+    makeLine('ahead', [0, 16], [0, -16]),
+    makeSvg('polyline', { class: 'ahead', points: '-6,-8 0,-16 6,-8' }),
+    makeSvg('text', { x: 0, y: 28 }, 'ahead'),
+    ...servoGroups,
+  );
 }

@@ -7,18 +7,10 @@ export const hornsStep: Step = {
   title: 'Fit the horns',
   needsRobot: true,
   selectedServo: () => null,
-  makeElements({ run, markDone }) {
-    const rest = () =>
-      run(async (calibrator) => {
-        await calibrator.rest();
-        return 'The pulses have ended. Switch on the servos\' supply now.';
-      });
+  makeElements({ perform }) {
+    const rest = () => perform((calibrator) => calibrator.rest(), 'The pulses have ended. Switch on the servos\' supply now.');
     const centerServos = () =>
-      run(async (calibrator) => {
-        await calibrator.centerServos();
-        markDone('Horns');
-        return 'Every servo now holds its middle position (pulse width 1500 µs).';
-      });
+      perform((calibrator) => calibrator.centerServos(), 'Every servo now holds its middle position (pulse width 1500 µs).', 'Horns');
     return [
       paragraph('The shafts are still empty, and each horn is screwed into its link. First end the pulses, so that no servo moves; then switch on the servos\' supply.'),
       row(button('Let the servos rest', rest), button('Turn all servos to their middle', centerServos, true)),

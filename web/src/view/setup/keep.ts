@@ -2,14 +2,14 @@
 import { formatCalibration } from '../../robot';
 import { formatServo } from './drawing';
 import { saveFile } from '../download';
-import { button, make, note, row, table, paragraph } from '../elements';
+import { button, make, note, onFile, row, table, paragraph } from '../elements';
 import type { Step } from './step';
 
 export const keepStep: Step = {
   name: 'Keep',
   title: 'Save the calibration, also as a file',
   needsRobot: true,
-  makeElements({ calibrator, run, markDone, setCalibration, isDone }) {
+  makeElements({ calibrator, perform, setCalibration, isDone }) {
     if (!calibrator) return [paragraph('Reading the calibration…')];
     const { servos } = calibrator.calibration;
     const rows = servos.map(({ trim, limit, dir, scale }, servo) => [
@@ -20,16 +20,9 @@ export const keepStep: Step = {
       scale.toFixed(2),
     ]);
     const saveCalibration = () =>
-      run(async (calibrator) => {
-        await calibrator.save();
-        markDone('Keep');
-        return 'Saved: the board starts with it from now on, even with new firmware.';
-      });
+      perform((calibrator) => calibrator.save(), 'Saved: the board starts with it from now on, even with new firmware.', 'Keep');
     const fileInput = make('input', { type: 'file', accept: '.toml' });
-    fileInput.addEventListener('change', () => {
-      const chosenFile = fileInput.files?.[0];
-      if (chosenFile) void chosenFile.text().then((text) => setCalibration(text, chosenFile.name));
-    });
+    onFile(fileInput, (file) => void file.text().then((text) => setCalibration(text, file.name)));
     return [
       table('Calibration of the robot', ['servo', 'sign', 'trim', 'limits', 'µs per °'], rows),
       paragraph(calibrator.isChanged ? 'Not saved yet.' : isDone('Keep') ? 'Saved in the board.' : 'No setting has changed since the board was connected.'),

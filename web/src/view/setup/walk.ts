@@ -7,9 +7,9 @@ export const walkStep: Step = {
   name: 'First walk',
   title: 'The first walk',
   needsRobot: true,
-  makeElements(tools) {
-    const { run, stand, markDone, session } = tools;
-    const uncheckedServos = findUncheckedServos(tools);
+  makeElements(dialog) {
+    const { run, perform, stand, markDone, session } = dialog;
+    const uncheckedServos = findUncheckedServos(dialog);
     const isWalking = session.description.gaits.some(({ command, moves }) => moves && command === session.gait);
     const startWalk = () =>
       run(async (calibrator) => {
@@ -18,12 +18,8 @@ export const walkStep: Step = {
         markDone('First walk');
         return `The robot has started "${gait}".`;
       });
-    const saveCalibration = () =>
-      run(async (calibrator) => {
-        await calibrator.save();
-        return 'Saved. You may now switch off the power.';
-      });
-    const isUnsaved = tools.calibrator?.isChanged ?? false;
+    const saveCalibration = () => perform((calibrator) => calibrator.save(), 'Saved. You may now switch off the power.');
+    const isUnsaved = dialog.calibrator?.isChanged ?? false;
     return [
       paragraph('Assemble the robot now (quickstart, step 7). Let it walk first on a box, with its feet in the air, and then on the floor with free space ahead.'),
       ...(isUnsaved ? [paragraph('Without power, unsaved settings are lost.'), row(button('Save first', saveCalibration))] : []),

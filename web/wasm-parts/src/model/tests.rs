@@ -20,7 +20,7 @@ fn to_chassis([x, y, cos, sin]: [f64; 4], point: Vector) -> Vector {
 #[test]
 fn the_mounts_of_lagging_legs_match_the_shape_of_the_twin() {
     let model = make_model("strut");
-    let robot = model.assembly().robot().clone();
+    let robot = model.assembly.robot().clone();
     let neutral: [f64; 4] = robot.neutral_pose().into();
     let angles = [0, 1, 2, 3].map(|servo| neutral[servo] + [4.0, -6.0, 3.0, 5.0][servo]);
     let lags = [0.0, 2.5, -3.0, 7.0];
@@ -29,7 +29,7 @@ fn the_mounts_of_lagging_legs_match_the_shape_of_the_twin() {
     let placements = model.place_mounts(angles, lags).expect("every loop closes");
     let placement_of = |mount| placements[model.mount_index(mount)];
     for servo in 0..4 {
-        let (leg, plan) = (shape.legs[servo], &model.assembly().layout().legs[servo]);
+        let (leg, plan) = (shape.legs[servo], &model.assembly.layout().legs[servo]);
         let mounts = [Mount::Crank(servo), Mount::Follower(servo)];
         for (joint, mount) in leg.joints.into_iter().zip(mounts) {
             let error = (to_chassis(placement_of(mount), plan.crank_joint) - joint).length();
@@ -49,7 +49,7 @@ fn the_mounts_of_lagging_legs_match_the_shape_of_the_twin() {
 #[test]
 fn the_mounts_of_legs_that_do_not_lag_match_the_assembly() {
     let model = make_model("rigid");
-    let robot = model.assembly().robot();
+    let robot = model.assembly.robot();
     let angles = [130.0, 45.0, 322.0, 219.0];
     let pose = robot.lizard().solve(&angles.into());
     let pose = pose.expect("every loop closes");
@@ -57,7 +57,7 @@ fn the_mounts_of_legs_that_do_not_lag_match_the_assembly() {
     let placements = placements.expect("every loop closes");
     assert_eq!(placements.len(), model.mounts.len());
     for (mount, placement) in model.mounts.iter().zip(placements) {
-        let Placement { origin, x_axis } = model.assembly().placement(*mount, &pose);
+        let Placement { origin, x_axis } = model.assembly.placement(*mount, &pose);
         let expected = [origin.x, origin.y, x_axis.x, x_axis.y].into_iter();
         let errors = expected.zip(placement).map(|(a, b)| (a - b).abs());
         let error = errors.fold(0.0, f64::max);
@@ -78,7 +78,7 @@ fn every_solid_has_the_height_of_its_body_and_no_corner_outside_the_body() {
     let solids = list_corners(&solids.expect("every solid is closed"));
     let largest_solid_index = entry.bodies.iter().map(|body| body.solid).max();
     assert_eq!(largest_solid_index, Some(solids.len() - 1));
-    for (body_entry, body) in entry.bodies.iter().zip(model.assembly().bodies()) {
+    for (body_entry, body) in entry.bodies.iter().zip(model.assembly.bodies()) {
         let matrix = body_entry.matrix;
         let z = solids[body_entry.solid].iter().map(|corner| {
             let [x, y, z] = corner.map(f64::from);

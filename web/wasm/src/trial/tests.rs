@@ -101,19 +101,6 @@ fn a_refusal_offers_the_nearest_valid_values() {
 }
 
 #[test]
-fn a_robot_toml_accepts_the_table() {
-    let robot = load_paper_robot();
-    let mine = Bars {
-        name: "mine".to_string(),
-        amplitude: 18.5,
-        ..get_bars(&robot, "arc-left")
-    };
-    let robot = Robot::parse(&format!("{PAPER_TOML}\n{}", mine.to_toml()));
-    let robot = robot.expect("the robot with the gait is valid");
-    assert_eq!(get_bars(&robot, "mine"), mine);
-}
-
-#[test]
 fn a_gait_replaces_the_gait_of_the_same_name_or_else_is_added() {
     let robot = load_paper_robot();
     let walk = Bars {
@@ -130,7 +117,8 @@ fn a_gait_replaces_the_gait_of_the_same_name_or_else_is_added() {
     assert_eq!(gait_names(&changed_robot), gait_names(&robot));
     let mine = Bars {
         name: "mine".to_string(),
-        ..walk
+        amplitude: 18.5,
+        ..get_bars(&robot, "arc-left")
     };
     let extended_robot = Robot::parse(&put_into(&mine, &text));
     let extended_robot = extended_robot.expect("the extended robot is valid");

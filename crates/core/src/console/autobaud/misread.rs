@@ -276,9 +276,8 @@ fn a_receiver_faster_than_the_sender_never_decodes_a_line_end() {
         assert!(start_edges.len() > 128);
         for sample_times in compute_sample_times(sender, receiver) {
             let end_states = receive_byte(&start_edges, &graph, &automaton, sample_times);
-            let reads_line_end = end_states
-                .iter()
-                .any(|(line, _)| *line == ReceivedLine::CommandPrefix(LineAutomaton::START));
+            let line_end = ReceivedLine::CommandPrefix(LineAutomaton::START);
+            let reads_line_end = end_states.iter().any(|(line, _)| *line == line_end);
             assert!(!reads_line_end, "{sender:?} received at {receiver:?}");
         }
     }
@@ -288,17 +287,12 @@ fn a_receiver_faster_than_the_sender_never_decodes_a_line_end() {
 fn a_receiver_slower_than_the_sender_misreads_lines_only_as_words_too_short_to_be_accepted() {
     let mut automaton = LineAutomaton::for_accepted_lines();
     let words = Word::ALL.iter().map(|word| word.text());
-    let is_short = |word: &&str| word.len() < MIN_COMMAND_BYTES;
-    let short_words: BTreeSet<usize> = words
-        .filter(is_short)
-        .map(|word| automaton.add_word(word))
-        .collect();
+    let short_words = words.filter(|word| word.len() < MIN_COMMAND_BYTES);
+    let short_words: BTreeSet<usize> = short_words.map(|word| automaton.add_word(word)).collect();
     for (sender, receiver) in rate_pairs(true) {
         let commands = find_decodable_commands(sender, receiver);
-        assert!(
-            commands.is_subset(&short_words),
-            "{sender:?} at {receiver:?}: {commands:?}"
-        );
+        let case = std::format!("{sender:?} at {receiver:?}: {commands:?}");
+        assert!(commands.is_subset(&short_words), "{case}");
     }
 }
 

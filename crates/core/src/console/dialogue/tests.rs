@@ -23,16 +23,21 @@ use crate::guard::clearance::Clearance;
 use crate::memory::restart::{Cause, Restart, ServoState};
 use crate::memory::settings::Settings;
 use crate::motion::Activity;
+use crate::numbers::gaits::Step;
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::units::PulseWidth;
 use crate::sample::{GAIT_NAMES, SLOW_PACE, Sample};
 use crate::step::StepResult;
 use crate::virtual_board::{Eeprom, VirtualBoard, is_answer};
 use helpers::{
-    Dialogue, activity_name, assert_line_starts, assert_status, format_neutral_pose,
-    measure_phase_advance, parse_pairs, run_frame_and_read_widths, set_supply,
+    Dialogue, activity_name, assert_line_starts, format_neutral_pose, measure_phase_advance,
+    parse_pairs, run_frame_and_read_widths, set_supply, start_patrol, wake_and_run, wake_and_send,
     wake_asymmetric_robot, wake_robot,
 };
+
+const CYCLES: u8 = Step::CYCLES;
+const FRAMES: u8 = Step::FRAMES;
+const REST: u8 = Step::REST;
 
 /// The command for the neutral pose of [`Sample::asymmetric`].
 const NEUTRAL_COMMAND: &str = "pose 132.37 47.91 309.64 226.18";
@@ -115,18 +120,15 @@ fn help_lists_all_gait_names_and_fills_each_line_before_the_next() {
         for pair in lines.windows(2) {
             let next_name = pair[1].split('|').next().expect("each line has a name");
             let joined_length = "# gaits: ".len() + pair[0].len() + 1 + next_name.len();
-            assert!(
-                joined_length > usize::from(print::MAX_GAIT_NAMES_LINE_BYTES),
-                "{pair:?}"
-            );
+            let max_length = usize::from(print::MAX_GAIT_NAMES_LINE_BYTES);
+            assert!(joined_length > max_length, "{pair:?}");
         }
     }
 }
 
 /// Runs a robot until the guard holds it, without reading its output.
 fn run_until_guard_holds() -> Dialogue {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_line("stray");
+    let mut dialogue = wake_and_send(&["stray"]);
     for _ in 0..200 {
         dialogue.run_without_reader(1);
         if dialogue.motion().hazard().is_some() {
@@ -141,13 +143,12 @@ fn each_hold_is_reported_once_and_status_shows_it_until_the_robot_moves_again() 
     let mut dialogue = run_until_guard_holds();
     let printed_lines = dialogue.read_lines();
     assert_line_starts(&printed_lines, &["# held in the last safe pose: "]);
-    assert!(
-        printed_lines[0].contains(" margin of ") || printed_lines[0].contains(" slider is at ")
-    );
+    let hazards = [" margin of ", " slider is at "];
+    assert!(hazards.iter().any(|text| printed_lines[0].contains(text)));
     assert!(dialogue.run_frames(100).is_empty());
-    assert_status(&mut dialogue, &[("guard", "held"), ("fault", "guard")]);
+    dialogue.expect_status(&[("guard", "held"), ("fault", "guard")]);
     dialogue.send_and_run("stand", 1);
-    assert_status(&mut dialogue, &[("guard", "clear"), ("fault", "none")]);
+    dialogue.expect_status(&[("guard", "clear"), ("fault", "none")]);
     dialogue.run_frames(100);
     let printed_lines = dialogue.send_and_run("stray", 200);
     assert_eq!(printed_lines.len(), 1, "a second hold is reported again");
@@ -207,8 +208,7 @@ fn pending_lines_are_written_in_the_order_banner_answer_notice_hold_reason_repor
 fn a_resting_robot_refuses_to_move_until_it_receives_stand() {
     let unsafe_pose = "pose 95 90 309.64 226.18";
     for line in ["sway", "sway left", "stop", NEUTRAL_COMMAND, unsafe_pose] {
-        let mut dialogue = wake_asymmetric_robot();
-        dialogue.expect_accepted("rest");
+        let mut dialogue = wake_and_send(&["rest"]);
         dialogue.expect_refused(line, "7 the servos are resting; send stand first");
         for _ in 0..50 {
             assert_eq!(dialogue.run_frame(), Pulses::default(), "{line}");
@@ -230,10 +230,8 @@ fn a_poses_travel_is_checked_before_its_margins() {
     dialogue.expect_refused("pose 400 1 1 1", "3 A1 must be 61.37..215.36");
     dialogue.expect_refused("pose 132 47 200 226", "3 A3 must be 235.64..18.64");
     let message = dialogue.send_line("pose 132.37 4 309.64 226.18");
-    assert!(
-        message.starts_with("err 4 ") || message.starts_with("err 5 "),
-        "{message}"
-    );
+    let is_unsafe = message.starts_with("err 4 ") || message.starts_with("err 5 ");
+    assert!(is_unsafe, "{message}");
     assert_eq!(dialogue.status_value("gait"), "stand");
 }
 

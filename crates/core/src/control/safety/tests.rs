@@ -124,11 +124,10 @@ fn a_gait_without_a_command_ends_after_the_deadman_time_and_no_sooner() {
             }
             // The times since a command just before the first frame, ms: in the last frame, which ended the gait, and
             // in the previous frame.
-            let (last_ms, previous_ms) = (20 * frames, 20 * frames - 20);
-            assert!(
-                last_ms >= u32::from(deadman_ms) && previous_ms < u32::from(deadman_ms),
-                "{frames}"
-            );
+            let last_ms = 20 * frames;
+            let previous_ms = last_ms - 20;
+            assert!(last_ms >= deadman_ms, "{frames}");
+            assert!(previous_ms < deadman_ms, "{frames}");
             assert_eq!(safety.fault(), Some(Fault::Link));
             safety.clear_fault();
         }
@@ -243,23 +242,11 @@ fn the_stronger_of_two_simultaneous_reactions_counts() {
 
 #[test]
 fn each_notice_is_printed_once_and_in_a_fixed_order() {
+    use Notice::{Boot, Fault, RestPoseNotSaved, SavedSettings, Supply};
     let mut safety = safety_without_boot();
-    for notice in [
-        Notice::Boot,
-        Notice::SavedSettings,
-        Notice::Supply,
-        Notice::Fault,
-        Notice::RestPoseNotSaved,
-        Notice::Boot,
-    ] {
+    for notice in [Boot, SavedSettings, Supply, Fault, RestPoseNotSaved, Boot] {
         safety.notify(notice);
     }
-    let expected_notices = [
-        Notice::SavedSettings,
-        Notice::RestPoseNotSaved,
-        Notice::Fault,
-        Notice::Supply,
-        Notice::Boot,
-    ];
+    let expected_notices = [SavedSettings, RestPoseNotSaved, Fault, Supply, Boot];
     assert_eq!(take_notices(&mut safety), expected_notices);
 }

@@ -56,10 +56,7 @@ fn format_event_rows(event: Event) -> Vec<String> {
     let mut groups: Vec<(Vec<&str>, String)> = Vec::new();
     for (supply, name) in SUPPLY_LEVELS {
         let cells = format_cells(supply);
-        match groups
-            .iter_mut()
-            .find(|(_, group_cells)| *group_cells == cells)
-        {
+        match groups.iter_mut().find(|(_, other)| *other == cells) {
             Some((names, _)) => names.push(name),
             None => groups.push((Vec::from([name]), cells)),
         }
@@ -96,25 +93,24 @@ fn the_docs_show_the_table_of_events() {
 fn the_docs_show_the_table_of_resets() {
     let mut rows = Vec::new();
     for cause in Cause::ALL {
-        for (suspected_brown_outs, frequency) in [
-            (0, "once, twice"),
-            (BROWN_OUTS_TO_REST, "three times in a row"),
-        ] {
-            let action_after = |servos| first_action(cause, suspected_brown_outs, servos);
-            if suspected_brown_outs > 0
-                && ServosBefore::ALL.map(action_after)
-                    == ServosBefore::ALL.map(|servos| first_action(cause, 0, servos))
-            {
-                continue;
-            }
-            let depends_on_count = matches!(cause, Cause::External | Cause::BrownOut);
-            let cells = ServosBefore::ALL.map(|servos| match action_after(servos).0 {
+        let [first_actions, later_actions] = [0, BROWN_OUTS_TO_REST]
+            .map(|count| ServosBefore::ALL.map(|servos| first_action(cause, count, servos)));
+        let groups = if first_actions == later_actions {
+            Vec::from([("any", first_actions)])
+        } else {
+            Vec::from([
+                ("once, twice", first_actions),
+                ("three times in a row", later_actions),
+            ])
+        };
+        for (frequency, actions) in groups {
+            let cells = actions.map(|(action, _)| match action {
                 FirstAction::Wake => "wakes, stands",
                 FirstAction::WakeInPlace => "wakes where it was, stands",
                 FirstAction::Hold => "held",
                 FirstAction::Rest => "rests",
             });
-            let fault = action_after(ServosBefore::Held).1;
+            let (_, fault) = actions[ServosBefore::Held as usize];
             rows.push(format!(
                 "| {} | {} | {} | {} |",
                 match cause {
@@ -123,7 +119,7 @@ fn the_docs_show_the_table_of_resets() {
                     Cause::BrownOut => "`brownout`",
                     Cause::Watchdog => "`watchdog`",
                 },
-                if depends_on_count { frequency } else { "any" },
+                frequency,
                 cells.join(" | "),
                 fault.map_or("-".into(), |fault| format!("{}", fault.code())),
             ));

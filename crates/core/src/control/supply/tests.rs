@@ -4,15 +4,9 @@ use std::vec::Vec;
 
 use proptest::prelude::*;
 
+use super::Level::{Rest, Slow, Stop};
 use super::*;
-
-const fn thresholds([slow_mv, stop_mv, rest_mv]: [u16; 3]) -> Thresholds {
-    Thresholds {
-        slow_mv,
-        stop_mv,
-        rest_mv,
-    }
-}
+use crate::sample::thresholds;
 
 const SUPPLIES: Supplies = Supplies {
     reference_mv: 1100,
@@ -91,11 +85,7 @@ proptest! {
 fn a_falling_supply_reaches_each_level_after_six_frames() {
     let mut supply = Supply::default();
     assert_eq!(measure_board_until_change(&mut supply, 5.0), None);
-    for (volts, level) in [
-        (4.45, Level::Slow),
-        (4.25, Level::Stop),
-        (4.05, Level::Rest),
-    ] {
+    for (volts, level) in [(4.45, Slow), (4.25, Stop), (4.05, Rest)] {
         let change = measure_board_until_change(&mut supply, volts);
         assert_eq!(change, Some((6, level)));
     }
@@ -107,11 +97,9 @@ fn a_falling_supply_reaches_each_level_after_six_frames() {
 
 #[test]
 fn six_low_readings_lower_the_level_only_as_far_as_the_highest_of_them() {
-    for (usual_volts, outlier_volts, level) in [
-        (4.45, 3.5, Level::Slow),
-        (4.25, 3.5, Level::Stop),
-        (3.5, 4.45, Level::Slow),
-    ] {
+    for (usual_volts, outlier_volts, level) in
+        [(4.45, 3.5, Slow), (4.25, 3.5, Stop), (3.5, 4.45, Slow)]
+    {
         for outlier_frame in 0..6 {
             let mut supply = Supply::default();
             for frame in 0..6 {
@@ -193,17 +181,14 @@ fn the_supply_with_the_lower_level_determines_the_level_and_is_reported() {
         measure_until_change(&mut supply, reading, &supplies);
         assert_eq!(supply.level(), level);
         let reported_volts = f64::from(supply.limiting_voltage(&supplies).centivolts()) / 100.0;
-        assert!(
-            (reported_volts - limiting_volts).abs() < 0.05,
-            "reported {reported_volts} V for {limiting_volts} V"
-        );
+        let case = std::format!("reported {reported_volts} V for {limiting_volts} V");
+        assert!((reported_volts - limiting_volts).abs() < 0.05, "{case}");
     }
 }
 
 #[test]
 fn an_unmeasured_supply_is_not_low() {
-    let supplies = SUPPLIES_WITH_RAIL;
     let mut supply = Supply::default();
-    let change = measure_until_change(&mut supply, Reading::default(), &supplies);
+    let change = measure_until_change(&mut supply, Reading::default(), &SUPPLIES_WITH_RAIL);
     assert_eq!(change, None);
 }

@@ -9,35 +9,24 @@ use crate::sample::{SampleFiveBar, bounds, to_degrees, to_f64};
 
 /// Yields random five-bars, in mm, whose couplers are long enough for the other links.
 fn any_five_bar() -> impl Strategy<Value = kinematics::FiveBar> {
-    let any_crank = || 1.0..100.0f64;
-    let any_coupler = || 5.0..120.0f64;
-    let unequal_lengths = (
-        0.0..100.0f64,
-        any_crank(),
-        any_coupler(),
-        any_coupler(),
-        any_crank(),
-    )
-        .prop_map(|lengths| kinematics::FiveBar::new(lengths.into()));
-    (unequal_lengths, 0u8..3)
-        .prop_map(|(five_bar, variant)| {
-            let right_coupler = match variant {
+    let lengths = [0.0..100.0, 1.0..100.0, 5.0..120.0, 5.0..120.0, 1.0..100.0];
+    (lengths, 0u8..3)
+        .prop_map(|(lengths, variant)| {
+            let mut five_bar = kinematics::FiveBar::new(lengths);
+            five_bar.right_coupler_length = match variant {
                 0 => five_bar.left_coupler_length,
                 1 => five_bar.left_coupler_length + five_bar.base / 500.0,
                 _ => five_bar.right_coupler_length,
             };
-            kinematics::FiveBar {
-                right_coupler_length: right_coupler,
-                ..five_bar
-            }
+            five_bar
         })
         .prop_filter("the couplers are long enough", |five_bar| {
             SampleFiveBar::new(five_bar).is_some()
         })
 }
 
-fn compute_margins(sample: &SampleFiveBar, left: Angle, right: Angle) -> EndMargins {
-    let [left, right] = [left, right].map(Direction::from_angle);
+fn compute_margins(sample: &SampleFiveBar, angles: [Angle; 2]) -> EndMargins {
+    let [left, right] = angles.map(Direction::from_angle);
     sample.five_bar().margins(&left, &right)
 }
 
@@ -50,18 +39,21 @@ proptest! {
         left: u16,
         right: u16,
     ) {
-        let [left, right] = [left, right].map(Angle);
+        let angles = [left, right].map(Angle);
         let sample = SampleFiveBar::new(&five_bar).expect("the lengths fit the integers");
-        let actual = compute_margins(&sample, left, right);
-        let angles = [left, right].map(to_degrees);
-        let bound = bounds::EndErrors::at_angles(&five_bar, &sample, angles);
+        let actual = compute_margins(&sample, angles);
+        let angles = angles.map(to_degrees);
+        let bound = bounds::EndErrors::at_angles(&five_bar, &sample.lengths, angles);
         let Ok(pose) = five_bar.forward(angles[0], angles[1]) else {
             // Couplers that just fail to meet may meet once their lengths are rounded to whole steps.
             prop_assert!(to_f64(actual.type2).abs() <= bound.type2, "{actual:?}");
             return Ok(());
         };
-        let error = to_f64(actual.type2).abs() - pose.type2;
-        prop_assert!(error <= bound.type2, "type-2 error {error}: {bound:?}");
+        let actual_type2 = to_f64(actual.type2).abs();
+        let error = actual_type2 - pose.type2;
+        // Where the tables have no correct value, a small margin may also be too large, see `MIN_KNOWN_MARGIN`.
+        let is_too_large = !bound.are_margins_known && actual_type2 <= 0.045;
+        prop_assert!(error <= bound.type2 || is_too_large, "type-2 error {error}: {bound:?}");
         if actual == EndMargins::default() {
             // Margins of zero are reported as "below 0.1", so the true type-2 margin must be below 0.1.
             prop_assert!(pose.type2 < 0.1, "no margins at a type-2 margin of {}", pose.type2);
@@ -117,19 +109,15 @@ fn the_largest_known_errors_are_within_their_bounds() {
         let five_bar = kinematics::FiveBar::new(lengths);
         let sample = SampleFiveBar::new(&five_bar).expect("the lengths fit the integers");
         let angles = angles.map(Angle);
-        let actual = compute_margins(&sample, angles[0], angles[1]);
-        let angles = angles.map(to_degrees);
-        let bound = bounds::EndErrors::at_angles(&five_bar, &sample, angles);
-        let pose = five_bar
-            .forward(angles[0], angles[1])
-            .expect("the loop closes");
+        let actual = compute_margins(&sample, angles);
+        let [left, right] = angles.map(to_degrees);
+        let bound = bounds::EndErrors::at_angles(&five_bar, &sample.lengths, [left, right]);
+        let pose = five_bar.forward(left, right).expect("the loop closes");
         let error = (to_f64(actual.type2).abs() - pose.type2).abs();
         // The five-bar must still have the error for which it was chosen.
         assert!(error > known_error && pose.type2 > 0.1, "{error}");
-        assert!(
-            error <= bound.type2 && bound.type2 < 2.5 * error,
-            "{error}: {bound:?}"
-        );
+        let is_narrow = bound.type2 < 2.5 * error;
+        assert!(error <= bound.type2 && is_narrow, "{error}: {bound:?}");
     }
 }
 
@@ -141,11 +129,10 @@ fn rounding_does_not_bias_a_type_2_margin_with_few_bits() {
     let sample = SampleFiveBar::new(&five_bar).expect("the lengths fit the integers");
     let (mut error_sum, mut count) = (0.0, 0.0);
     for left in (13_000..18_000).step_by(7) {
-        let [left, right] = [Angle(left), Angle(0x8000 - left)];
-        let pose = five_bar
-            .forward(to_degrees(left), to_degrees(right))
-            .expect("the loop closes");
-        let actual = to_f64(compute_margins(&sample, left, right).type2);
+        let angles = [left, 0x8000 - left].map(Angle);
+        let [left, right] = angles.map(to_degrees);
+        let pose = five_bar.forward(left, right).expect("the loop closes");
+        let actual = to_f64(compute_margins(&sample, angles).type2);
         if pose.gap.x > 0.0 && pose.type2 > 0.1 && pose.type2 < 0.3 {
             error_sum += actual - pose.type2;
             count += 1.0;
@@ -159,12 +146,9 @@ fn rounding_does_not_bias_a_type_2_margin_with_few_bits() {
 fn couplers_in_line_and_crossed_crank_tips_are_beyond_every_limit() {
     let five_bar = kinematics::FiveBar::new([20.0, 30.0, 40.0, 35.0, 30.0]);
     let sample = SampleFiveBar::new(&five_bar).expect("the lengths fit the integers");
-    let margins_at = |left, right| {
-        let [left, right] = [left, right].map(Angle::from_centideg);
-        compute_margins(&sample, left, right)
-    };
+    let margins_at = |angles: [i32; 2]| compute_margins(&sample, angles.map(Angle::from_centideg));
     // Both cranks point outward: the distance between their tips is 80 mm, more than the couplers reach.
-    assert_eq!(margins_at(18_000, 0), EndMargins::default());
+    assert_eq!(margins_at([18_000, 0]), EndMargins::default());
     // The cranks cross, so the couplers close the loop upside down.
-    assert!(margins_at(6_000, 12_000).type2 < Sine(0));
+    assert!(margins_at([6_000, 12_000]).type2 < Sine(0));
 }

@@ -1,6 +1,6 @@
 //! Tests of resets between any two stores, of random RAM contents, and of every cause of a reset.
 
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::vec::Vec;
 
 use proptest::prelude::*;
@@ -9,22 +9,19 @@ use super::*;
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::units::{PulseWidth, Sweep};
 
-/// RAM that survives a reset, which may occur after any number of stores.
-struct Ram {
-    bytes: RefCell<Vec<u8>>,
-    /// The number of stores until the reset; later stores are lost.
-    stores_until_reset: Cell<usize>,
-    /// The total number of stores, including lost ones.
-    store_count: Cell<usize>,
-}
+/// RAM that survives a reset. It keeps its first bytes and its bytes after each store, because a reset may occur after
+/// any number of stores.
+struct Ram(RefCell<Vec<Vec<u8>>>);
 
 impl Ram {
     fn with_bytes(bytes: Vec<u8>) -> Self {
-        Self {
-            bytes: RefCell::new(bytes),
-            stores_until_reset: Cell::new(usize::MAX),
-            store_count: Cell::new(0),
-        }
+        Self(RefCell::new(Vec::from([bytes])))
+    }
+
+    /// The current bytes.
+    fn bytes(&self) -> Vec<u8> {
+        let states = self.0.borrow();
+        states.last().expect("the RAM has bytes").clone()
     }
 
     /// Returns the RAM after the first call of `begin` since power-on.
@@ -35,31 +32,27 @@ impl Ram {
         ram
     }
 
-    /// Returns a copy of the RAM that loses all but the first `kept_count` stores.
-    fn with_reset_after(&self, kept_count: usize) -> Self {
-        let ram = self.copy_after_reset();
-        ram.stores_until_reset.set(kept_count);
-        ram
-    }
-
     /// Returns the RAM as the next run of the program finds it.
     fn copy_after_reset(&self) -> Self {
-        Self::with_bytes(self.bytes.borrow().clone())
+        Self::with_bytes(self.bytes())
+    }
+
+    /// Returns the RAM as the next run of the program finds it after a reset before each store or after the last one.
+    fn copies_after_resets(&self) -> Vec<Self> {
+        let states = self.0.borrow();
+        states.iter().cloned().map(Self::with_bytes).collect()
     }
 }
 
 impl Cells for Ram {
     fn get(&self, index: usize) -> u8 {
-        self.bytes.borrow()[index]
+        self.bytes()[index]
     }
 
     fn set(&self, index: usize, byte: u8) {
-        self.store_count.set(self.store_count.get() + 1);
-        let stores_left = self.stores_until_reset.get();
-        if stores_left > 0 {
-            self.stores_until_reset.set(stores_left - 1);
-            self.bytes.borrow_mut()[index] = byte;
-        }
+        let mut bytes = self.bytes();
+        bytes[index] = byte;
+        self.0.borrow_mut().push(bytes);
     }
 }
 
@@ -107,20 +100,16 @@ fn a_reset_between_any_two_stores_leaves_the_old_or_the_new_servo_state() {
     store_servo_state(&ram, &make_servo_state(1), 1);
     let (mut old_count, mut new_count) = (0, 0);
     for n in 2..9 {
-        let complete_ram = ram.with_reset_after(usize::MAX);
-        store_servo_state(&complete_ram, &make_servo_state(n), n as u8);
-        for kept_count in 0..=complete_ram.store_count.get() {
-            let torn_ram = ram.with_reset_after(kept_count);
-            store_servo_state(&torn_ram, &make_servo_state(n), n as u8);
-            let found_servo_state = begin(&torn_ram.copy_after_reset(), None).servo_state_before;
+        let next_ram = ram.copy_after_reset();
+        store_servo_state(&next_ram, &make_servo_state(n), n as u8);
+        for (kept_count, torn_ram) in next_ram.copies_after_resets().iter().enumerate() {
+            let found_servo_state = begin(torn_ram, None).servo_state_before;
             if found_servo_state == Some(make_servo_state(n)) {
                 new_count += 1;
             } else {
-                assert_eq!(
-                    found_servo_state,
-                    Some(make_servo_state(n - 1)),
-                    "servo state {n}, {kept_count} stores"
-                );
+                let case = std::format!("servo state {n}, {kept_count} stores");
+                let old_servo_state = Some(make_servo_state(n - 1));
+                assert_eq!(found_servo_state, old_servo_state, "{case}");
                 old_count += 1;
             }
         }
@@ -135,13 +124,12 @@ fn a_reset_between_any_two_stores_of_begin_keeps_the_servo_state() {
     let ram = Ram::after_power_on();
     store_servo_state(&ram, &make_servo_state(5), 5);
     mark_hung(&ram);
-    let complete_ram = ram.with_reset_after(usize::MAX);
-    begin(&complete_ram, None);
-    assert!(complete_ram.store_count.get() >= 3);
-    for kept_count in 0..=complete_ram.store_count.get() {
-        let torn_ram = ram.with_reset_after(kept_count);
-        begin(&torn_ram, None);
-        let restart = begin(&torn_ram.copy_after_reset(), None);
+    let next_ram = ram.copy_after_reset();
+    begin(&next_ram, None);
+    let torn_rams = next_ram.copies_after_resets();
+    assert!(torn_rams.len() > 3);
+    for (kept_count, torn_ram) in torn_rams.iter().enumerate() {
+        let restart = begin(torn_ram, None);
         let expected = Some(make_servo_state(5));
         assert_eq!(restart.servo_state_before, expected, "{kept_count} stores");
         assert!((1..=2).contains(&restart.reset_count));

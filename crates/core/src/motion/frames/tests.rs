@@ -82,7 +82,7 @@ impl Motion {
     }
 
     /// The pulses of the current pose.
-    fn held_pulses(&self) -> Pulses {
+    pub(crate) fn held_pulses(&self) -> Pulses {
         self.servo_state.pose.pulses(&self.calibration)
     }
 }
@@ -160,26 +160,30 @@ fn a_move_that_arrives_at_a_pose_holds_it() {
 }
 
 #[test]
-fn a_move_that_arrives_at_a_gait_starts_at_phase_0_and_accelerates() {
+fn a_move_that_arrives_at_another_or_the_stopped_gait_starts_at_phase_0_and_accelerates() {
     for name in GAIT_NAMES {
-        let mut motion = Motion::in_gait("swing", 90);
-        motion.stop();
-        motion.start(name);
-        let id = motion.robot.gait_id(name);
-        let gait = motion.robot.gait(id);
-        motion.advance_frame();
-        while motion.is_moving() {
-            assert_eq!(motion.phase(), 0);
+        for (stopped_name, held_frames) in [("swing", 0), ("sway", 5)] {
+            let mut motion = Motion::in_gait(stopped_name, 90);
+            motion.stop();
+            motion.run(held_frames);
+            motion.start(name);
+            let id = motion.robot.gait_id(name);
+            let gait = motion.robot.gait(id);
             motion.advance_frame();
-        }
-        assert_eq!(motion.state, State::cycling(&motion.robot, id));
-        assert_eq!(motion.pose(), &gait.pose(motion.robot.waves(), 0));
-        let mut phase = 0;
-        for pace in [147, 294, 441, 588, 735, 882, 1024, 1024] {
-            motion.advance_frame();
-            phase = gait.advance(phase, pace);
-            assert_eq!((motion.pace(), motion.phase()), (pace, phase));
-            assert_eq!(motion.pose(), &gait.pose(motion.robot.waves(), phase));
+            assert!(motion.is_moving());
+            while motion.is_moving() {
+                assert_eq!(motion.phase(), 0);
+                motion.advance_frame();
+            }
+            assert_eq!(motion.state, State::cycling(&motion.robot, id));
+            assert_eq!(motion.pose(), &gait.pose(motion.robot.waves(), 0));
+            let mut phase = 0;
+            for pace in [147, 294, 441, 588, 735, 882, 1024, 1024] {
+                motion.advance_frame();
+                phase = gait.advance(phase, pace);
+                assert_eq!((motion.pace(), motion.phase()), (pace, phase));
+                assert_eq!(motion.pose(), &gait.pose(motion.robot.waves(), phase));
+            }
         }
     }
 }
@@ -213,18 +217,15 @@ fn a_move_brakes_on_its_line_before_it_turns_to_another_pose() {
 
 #[test]
 fn a_move_to_a_gait_continues_when_that_gait_is_ordered_again() {
-    let build_motion = || {
-        let mut motion = Motion::standing();
-        motion.go_to_sweeps(SWEEPS);
-        motion.run(TRANSITION_FRAMES);
-        motion.start("sway");
-        motion.run(4);
-        assert!(motion.is_moving());
-        motion
-    };
-    let mut repeated_motion = build_motion();
+    let mut motion = Motion::standing();
+    motion.go_to_sweeps(SWEEPS);
+    motion.run(TRANSITION_FRAMES);
+    motion.start("sway");
+    motion.run(4);
+    assert!(motion.is_moving());
+    let mut repeated_motion = motion.clone();
     repeated_motion.start("sway");
-    assert_same_motion(repeated_motion, build_motion());
+    assert_same_motion(repeated_motion, motion);
 }
 
 // Cycling.
@@ -320,14 +321,17 @@ fn stop_freezes_the_pose_in_the_next_frame_of_every_gait_and_of_the_move_to_it()
 }
 
 #[test]
-fn rest_ends_the_pulses_in_the_next_frame_of_every_gait() {
+fn rest_ends_the_pulses_in_the_next_frame_of_every_gait_and_the_pose_stays() {
     for name in GAIT_NAMES {
         for frames in 0..140 {
             let mut motion = Motion::in_gait(name, frames);
             let pose = *motion.pose();
             motion.rest();
-            assert_eq!(motion.advance_frame(), Pulses::default());
-            assert_eq!((motion.pose(), motion.phase()), (&pose, 0));
+            for _ in 0..50 {
+                assert_eq!(motion.advance_frame(), Pulses::default());
+                assert_eq!(motion.activity(), Activity::Rest);
+                assert_eq!((motion.pose(), motion.phase()), (&pose, 0));
+            }
         }
     }
 }
@@ -343,22 +347,6 @@ fn stop_and_rest_cancel_the_next_motion() {
         motion.run(TRANSITION_FRAMES);
         assert_eq!(motion.pose(), &pose);
     }
-}
-
-#[test]
-fn a_stopped_gait_restarts_at_its_first_pose() {
-    let mut motion = Motion::in_gait("sway", 90);
-    motion.stop();
-    motion.run(5);
-    motion.start("sway");
-    motion.advance_frame();
-    assert!(motion.is_moving());
-    while motion.is_moving() {
-        motion.advance_frame();
-    }
-    let gait = motion.robot.gait(motion.robot.gait_id("sway"));
-    let first_pose = gait.pose(motion.robot.waves(), 0);
-    assert_eq!((motion.pose(), motion.phase()), (&first_pose, 0));
 }
 
 #[test]

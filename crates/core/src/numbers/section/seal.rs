@@ -174,10 +174,8 @@ mod tests {
                         .find(|sum| add_erased(*sum) == *sum),
                 };
                 let Some(target) = target else { continue };
-                bytes.extend(find_bytes_between(
-                    Checksum::compute(&bytes[CRC_RANGE_START..]),
-                    target,
-                ));
+                let sum = Checksum::compute(&bytes[CRC_RANGE_START..]);
+                bytes.extend(find_bytes_between(sum, target));
                 let case = std::format!("{length} and {other_length}");
                 assert!(has_other_length_with_sum(&bytes), "{case}");
                 let sums = compute_prefix_checksums(&bytes[CRC_RANGE_START..]);
@@ -185,11 +183,9 @@ mod tests {
                 counts[usize::from(other_length > length)] += 1;
             }
         }
-        let [shorter_count, longer_count] = counts;
-        assert!(
-            shorter_count >= 6 && longer_count >= 6,
-            "{shorter_count} shorter, {longer_count} longer"
-        );
+        let [shorter, longer] = counts;
+        let are_enough = shorter >= 6 && longer >= 6;
+        assert!(are_enough, "{shorter} shorter, {longer} longer");
     }
 
     proptest! {

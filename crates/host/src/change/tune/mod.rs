@@ -3,9 +3,7 @@
 mod report;
 
 use lizard_robot::{CheckedGait, Robot};
-use lizard_tune::{
-    BuiltGait, Comparison, GaitKind, ScoredParameters, Tuning, TuningError, trial_count,
-};
+use lizard_tune::{BuiltGait, Comparison, GaitKind, Tuning, TuningError, trial_count};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -161,16 +159,7 @@ fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure
     let Some(pieces) = pieces else {
         return Ok(None);
     };
-    let kinds = GaitKind::ALL.into_iter().zip(pieces);
-    let scored = kinds.flat_map(|(kind, piece)| {
-        let to_scored = move |(score, parameters)| ScoredParameters {
-            kind,
-            score,
-            parameters,
-        };
-        piece.into_iter().map(to_scored)
-    });
-    let best = tuning.build_best(scored.collect());
+    let best = tuning.build_best(pieces);
     best.map(Some).ok_or_else(|| {
         let rate = tuning.rate();
         Failure::Operation(format!(

@@ -6,23 +6,19 @@ use lizard_tune::{Comparison, SPREAD_TEXT};
 
 /// Formats the comparison as a part of a robot.toml: everything except the gait's table is a comment.
 pub fn format(comparison: &Comparison) -> String {
-    let mut text = String::new();
     let Comparison {
         unit,
+        rate,
         robot_count,
         faster_count,
         ..
     } = comparison;
     let (gait, tuned) = (&comparison.gait.name, &comparison.tuned.name);
-    _ = writeln!(
-        text,
-        "# {unit} at servo speeds up to {:.1} deg/s; the last three columns: {robot_count} random robots and floors\n#",
-        comparison.rate
-    );
     let name_width = gait.len().max(tuned.len()).max(8);
-    _ = writeln!(
-        text,
-        "# {:name_width$}  cycle, s   deg/s  least margin          ideal   SG-90     5 %    50 %    95 %",
+    let mut text = format!(
+        "# {unit} at servo speeds up to {rate:.1} deg/s; the last three columns: {robot_count} random robots and floors\n\
+         #\n\
+         # {:name_width$}  cycle, s   deg/s  least margin          ideal   SG-90     5 %    50 %    95 %\n",
         "gait"
     );
     for row in [&comparison.gait, &comparison.tuned] {
@@ -34,7 +30,7 @@ pub fn format(comparison: &Comparison) -> String {
             row.name, row.period, row.rate, row.predicted, row.sg90
         );
     }
-    _ = writeln!(text, "#");
+    text += "#\n";
     if comparison.is_better() {
         _ = writeln!(
             text,

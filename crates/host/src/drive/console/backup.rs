@@ -44,7 +44,7 @@ pub fn backup(args: BackupArgs) -> Result<(), Failure> {
     let finder = args.connection.into_finder("calibrate backup FILE")?;
     let (mut board, _) = finder.connect()?;
     let calibration = block_on(read_settings(&mut board.link))
-        .map_err(|error| board.to_failure(&error.into()))?;
+        .map_err(|error| board.to_failure(LinkError::from(error)))?;
     files::write(&args.file, calibration.to_toml().as_bytes())?;
     println!(
         "saved the calibration of {} to {}",

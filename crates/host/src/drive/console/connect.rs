@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use serialport::SerialPort;
 
-use super::link::{Link, LinkError, Timeouts};
+use super::dialogue_error::DialogueError;
+use super::link::Link;
 use super::port;
 use super::usb_ports;
 use crate::shared::escape::escape_controls;
@@ -35,9 +36,14 @@ pub struct BoardFinder {
     port: Option<String>,
     /// The subcommand with the arguments before the port, for messages.
     command: &'static str,
-    #[cfg(all(feature = "simulator", target_os = "linux"))]
-    simulated_board: Option<simulated_uno::BackgroundPort>,
+    simulated_board: Option<SimulatedBoard>,
 }
+
+#[cfg(all(feature = "simulator", target_os = "linux"))]
+type SimulatedBoard = simulated_uno::BackgroundPort;
+/// The simulated board of a build without a simulator, which never exists.
+#[cfg(not(all(feature = "simulator", target_os = "linux")))]
+type SimulatedBoard = std::convert::Infallible;
 
 /// An open port with a connected board.
 pub struct Connection {
@@ -61,7 +67,6 @@ impl ConnectionArgs {
         Ok(BoardFinder {
             port: self.port,
             command,
-            #[cfg(all(feature = "simulator", target_os = "linux"))]
             simulated_board: None,
         })
     }
@@ -104,7 +109,7 @@ fn simulate_board(
 }
 
 impl BoardFinder {
-    /// Opens the port, which resets the board. Call [`Connection::wait_for_robot`] next.
+    /// Opens the port, which resets the board. Call [`Link::wait_for_robot`] next.
     ///
     /// # Errors
     /// Fails if there is no board, there are several, or the port cannot be opened.
@@ -122,7 +127,7 @@ impl BoardFinder {
             }
         };
         Ok(Connection {
-            link: Link::new(port::open(&port)?, Timeouts::default()),
+            link: Link::new(port::open(&port)?),
             name,
         })
     }
@@ -135,33 +140,24 @@ impl BoardFinder {
     pub fn connect(&self) -> Result<(Connection, Option<String>), Failure> {
         let mut board = self.open()?;
         eprintln!("lizard: waiting for the board at {}", board.name);
-        let banner = board.wait_for_robot()?;
+        let banner = board.link.wait_for_robot();
+        let banner = banner.map_err(|error| board.to_failure(error))?;
         Ok((board, banner))
     }
 
     /// True if the board is simulated; it then exists only as long as this program runs.
     pub fn is_simulated(&self) -> bool {
-        #[cfg(all(feature = "simulator", target_os = "linux"))]
-        let is_simulated = self.simulated_board.is_some();
-        #[cfg(not(all(feature = "simulator", target_os = "linux")))]
-        let is_simulated = false;
-        is_simulated
+        self.simulated_board.is_some()
     }
 }
 
 impl Connection {
-    /// Waits for the banner; see [`Link::wait_for_robot`].
-    ///
-    /// # Errors
-    /// Fails if no lizard answers; the message names the port.
-    pub fn wait_for_robot(&mut self) -> Result<Option<String>, Failure> {
-        self.link
-            .wait_for_robot()
-            .map_err(|error| self.to_failure(&error))
-    }
-
-    /// Converts the error to a failure whose message names the port.
-    pub fn to_failure(&self, error: &LinkError) -> Failure {
-        Failure::Operation(format!("{}: {error}", self.name))
+    /// Converts the error to a failure; the message about a failed connection names the port.
+    pub fn to_failure(&self, error: impl Into<DialogueError>) -> Failure {
+        match error.into() {
+            DialogueError::Link(error) => Failure::Operation(format!("{}: {error}", self.name)),
+            DialogueError::Io(error) => error.into(),
+            DialogueError::File(failure) => failure,
+        }
     }
 }

@@ -1,7 +1,6 @@
 //! `lizard info`: reports a board's firmware, robot, calibration and fault.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::io::{Read, Write};
 use std::time::Duration;
 
@@ -74,7 +73,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let finder = args.connection.into_finder("info")?;
     let (mut board, banner) = finder.connect()?;
     let result = BoardInfo::read(board.name.clone(), banner.as_deref(), &mut board.link);
-    let info = result.map_err(|error| board.to_failure(&error))?;
+    let info = result.map_err(|error| board.to_failure(error))?;
     json::print_json_or_text(args.json, &info, || info.to_text())
 }
 
@@ -104,54 +103,40 @@ impl BoardInfo {
     }
 
     fn to_text(&self) -> String {
-        let mut text = String::new();
-        let mut write_row = |name: &str, value: String| {
-            _ = writeln!(text, "{name:<12}{value}");
+        let unknown = || "unknown: the board was not reset".to_owned();
+        let firmware = self.firmware.as_ref();
+        let firmware = firmware.map_or_else(unknown, |version| format!("lizard {version}"));
+        let robot = match (&self.robot, &self.firmware) {
+            (Some(robot), _) => format!("{} {}", robot.name, robot.hash),
+            (None, Some(_)) => "none: lizard flash --only-robot writes one".to_owned(),
+            (None, None) => unknown(),
         };
-        write_row("port", self.port.clone());
-        write_row(
-            "firmware",
-            match &self.firmware {
-                Some(version) => format!("lizard {version}"),
-                None => "unknown: the board was not reset".to_owned(),
-            },
-        );
-        write_row(
-            "robot",
-            match (&self.robot, &self.firmware) {
-                (Some(robot), _) => format!("{} {}", robot.name, robot.hash),
-                (None, Some(_)) => "none: lizard flash --only-robot writes one".to_owned(),
-                (None, None) => "unknown: the board was not reset".to_owned(),
-            },
-        );
-        write_row("gait", self.gait.clone());
-        write_row(
-            "fault",
-            self.fault.clone().unwrap_or_else(|| "none".to_owned()),
-        );
-        if let Some(volts) = self.vcc {
-            write_row("supply", format!("{volts:.2} V"));
-        }
-        if let Some(volts) = self.rail {
-            write_row("servos", format!("{volts:.2} V"));
+        let mut rows = vec![
+            ("port", self.port.clone()),
+            ("firmware", firmware),
+            ("robot", robot),
+            ("gait", self.gait.clone()),
+            ("fault", self.fault.as_deref().unwrap_or("none").to_owned()),
+        ];
+        for (name, volts) in [("supply", self.vcc), ("servos", self.rail)] {
+            rows.extend(volts.map(|volts| (name, format!("{volts:.2} V"))));
         }
         if let Some(calibration) = &self.calibration {
-            write_row("boot", calibration.boot.clone());
-            write_row("deadman", format!("{} ms", calibration.deadman));
+            rows.push(("boot", calibration.boot.clone()));
+            rows.push(("deadman", format!("{} ms", calibration.deadman)));
             for (name, servo) in &calibration.servo {
                 let [min, max] = servo.limit;
-                let sign = servo.dir;
-                write_row(
-                    name,
-                    format!(
-                        "trim {:.2} deg, limits {min:.2} to {max:.2} deg, direction {sign}, \
-                         {:.2} us/deg",
-                        servo.trim, servo.scale
-                    ),
+                let settings = format!(
+                    "trim {:.2} deg, limits {min:.2} to {max:.2} deg, direction {}, {:.2} us/deg",
+                    servo.trim, servo.dir, servo.scale
                 );
+                rows.push((*name, settings));
             }
         }
-        text
+        let lines = rows
+            .iter()
+            .map(|(name, value)| format!("{name:<12}{value}\n"));
+        lines.collect()
     }
 }
 

@@ -7,6 +7,7 @@ use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::time::{Duration, Instant};
 
 use crossterm::event::{self, Event as TerminalEvent};
+use lizard_robot::Status;
 
 use super::connect::{BoardFinder, Connection, ConnectionArgs};
 use super::dialogue_error::DialogueError;
@@ -39,8 +40,6 @@ pub struct ConsoleArgs {
     connection: ConnectionArgs,
 }
 
-type FileRecorder = Recorder<BufWriter<File>>;
-
 /// Longest wait for a line from the robot before the keys are checked.
 const ROBOT_READ_TIMEOUT: Duration = Duration::from_millis(10);
 /// Pause before each attempt to reopen a vanished port.
@@ -64,20 +63,13 @@ fn run_dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failu
     let mut dialogue = Dialogue {
         session: Session::new(clock.now(), true, file.is_some()).with_deadman(),
         clock,
-        recorder: None,
-        status_line_prefix: "",
+        recorder: file.as_deref().map(recorder::create).transpose()?,
     };
-    if let Some(path) = file {
-        dialogue.status_line_prefix = "REC  ";
-        let mut recorder = recorder::create(&path)?;
-        let event = Event::Begin {
-            format: FORMAT.to_owned(),
-            port: board.name.clone(),
-            banner: banner.clone(),
-        };
-        recorder.write(Instant::now(), event)?;
-        dialogue.recorder = Some(recorder);
-    }
+    dialogue.record(Event::Begin {
+        format: FORMAT.to_owned(),
+        port: board.name.clone(),
+        banner: banner.clone(),
+    })?;
     let is_reset_by_opening = banner.is_some();
     let first_line = banner.unwrap_or_else(|| "(the board was not reset and continues)".to_owned());
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
@@ -96,9 +88,7 @@ struct Dialogue {
     session: Session,
     /// The session's clock, which stops with this program: a suspended program must not take the robot for silent.
     clock: Clock,
-    recorder: Option<FileRecorder>,
-    /// Prefix of the status line: `REC` while the session is recorded.
-    status_line_prefix: &'static str,
+    recorder: Option<Recorder<BufWriter<File>>>,
 }
 
 impl Dialogue {
@@ -169,7 +159,7 @@ impl Dialogue {
                 }
             }
             let outcome = self.exchange_lines(&mut board, |line| writeln!(out, "{line}"));
-            outcome.map_err(|error| to_failure(error, &board))?;
+            outcome.map_err(|error| board.to_failure(error))?;
         }
         if self.session.is_driven() {
             writeln!(out, "(no more lines: the robot now stops by itself)")?;
@@ -208,26 +198,22 @@ impl Dialogue {
                     continue;
                 }
                 Err(error) => {
-                    fatal_failure = Some(to_failure(error, connection));
+                    fatal_failure = Some(connection.to_failure(error));
                     break;
                 }
             }
-            let status = self.session.status().map(lizard_robot::Status::format_line);
+            let status = self.session.status().map(Status::format_line);
             let status = status.unwrap_or_default();
-            screen.draw(&format!("{}{status}", self.status_line_prefix), &prompt)?;
+            let prefix = if self.recorder.is_some() { "REC  " } else { "" };
+            screen.draw(&format!("{prefix}{status}"), &prompt)?;
         }
         if let (Some(board), Some(line)) = (&mut board, self.session.restore_deadman()) {
             let _ = board.link.ask(&line);
         }
         drop(screen);
         history::save(prompt.history());
-        if self
-            .session
-            .status()
-            .is_some_and(lizard_robot::Status::is_moving)
-            && board.is_some()
-            && !finder.is_simulated()
-        {
+        let is_moving = self.session.status().is_some_and(Status::is_moving);
+        if is_moving && board.is_some() && !finder.is_simulated() {
             // The terminal may be closed; a failed message is not an error.
             let _ = writeln!(io::stdout(), "the robot continues its gait");
         }
@@ -290,17 +276,8 @@ impl Dialogue {
                 Ok(Some(board))
             }
             Err(LinkError::Gone) => Ok(None),
-            Err(error) => Err(board.to_failure(&error)),
+            Err(error) => Err(board.to_failure(error)),
         }
-    }
-}
-
-/// Converts an error of the dialogue into the failure to report to the user.
-fn to_failure(error: DialogueError, board: &Connection) -> Failure {
-    match error {
-        DialogueError::Link(error) => board.to_failure(&error),
-        DialogueError::Io(error) => error.into(),
-        DialogueError::File(failure) => failure,
     }
 }
 
@@ -308,10 +285,7 @@ fn to_failure(error: DialogueError, board: &Connection) -> Failure {
 fn read_stdin_lines() -> Receiver<String> {
     let (sender, receiver) = mpsc::channel();
     std::thread::spawn(move || {
-        for line in io::stdin().lock().lines() {
-            let Ok(line) = line else {
-                break;
-            };
+        for line in io::stdin().lock().lines().map_while(Result::ok) {
             if sender.send(line).is_err() {
                 break;
             }

@@ -24,24 +24,6 @@ const STATUS_ANSWER_START: &str = "ok gait=";
 /// Length to which a received line is truncated. The firmware's lines are shorter, but noise may contain no line end.
 const MAX_LINE_BYTES: usize = 512;
 
-/// Time limits of a connection.
-#[derive(Debug, Clone, Copy)]
-pub struct Timeouts {
-    /// Time for the banner after the port was opened. A UNO's boot loader takes more than a second of this time.
-    pub banner: Duration,
-    /// Time for an answer. `save` takes longest, a third of a second.
-    pub answer: Duration,
-}
-
-impl Default for Timeouts {
-    fn default() -> Self {
-        Self {
-            banner: Duration::from_millis(3000),
-            answer: Duration::from_millis(2000),
-        }
-    }
-}
-
 /// The cause of a missing or unusable answer.
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
@@ -80,18 +62,15 @@ impl From<ConsoleError<LinkError>> for LinkError {
     }
 }
 
-impl From<LinkError> for crate::Failure {
-    fn from(error: LinkError) -> Self {
-        Self::Operation(error.to_string())
-    }
-}
-
 /// A connection to a robot. A read from `port` must end within a few milliseconds, with [`ErrorKind::TimedOut`] if
 /// nothing has arrived.
 #[derive(Debug)]
 pub struct Link<P> {
     port: P,
-    timeouts: Timeouts,
+    /// Time for the banner after the port was opened. A UNO's boot loader takes more than a second of this time.
+    banner_timeout: Duration,
+    /// Time for an answer. `save` takes longest, a third of a second.
+    answer_timeout: Duration,
     /// The partial line at the end of the received bytes.
     partial_line: Vec<u8>,
     /// The complete, unread lines.
@@ -100,10 +79,11 @@ pub struct Link<P> {
 
 impl<P: Read + Write> Link<P> {
     /// Creates a connection over an open port.
-    pub fn new(port: P, timeouts: Timeouts) -> Self {
+    pub fn new(port: P) -> Self {
         Self {
             port,
-            timeouts,
+            banner_timeout: Duration::from_millis(3000),
+            answer_timeout: Duration::from_millis(2000),
             partial_line: Vec::new(),
             lines: VecDeque::new(),
         }
@@ -115,7 +95,7 @@ impl<P: Read + Write> Link<P> {
     /// # Errors
     /// Fails if nothing answers, or if another device answers.
     pub fn wait_for_robot(&mut self) -> Result<Option<String>, LinkError> {
-        let mut deadline = Deadline::after(self.timeouts.banner);
+        let mut deadline = Deadline::after(self.banner_timeout);
         let mut first_line = None;
         while let Some(line) = self.read_line_before(&mut deadline)? {
             if line.starts_with(BANNER_START) {
@@ -124,7 +104,7 @@ impl<P: Read + Write> Link<P> {
             first_line = first_line.or(Some(line));
         }
         for _ in 0..MAX_STATUS_LINES {
-            let mut deadline = Deadline::after(self.timeouts.answer / 4);
+            let mut deadline = Deadline::after(self.answer_timeout / 4);
             self.send("status")?;
             while let Some(line) = self.read_line_before(&mut deadline)? {
                 if line.starts_with(STATUS_ANSWER_START) {
@@ -151,7 +131,7 @@ impl<P: Read + Write> Link<P> {
     /// Fails if there is no answer, or the port is gone.
     pub fn ask(&mut self, line: &str) -> Result<Reply, LinkError> {
         self.send(line)?;
-        let mut deadline = Deadline::after(self.timeouts.answer);
+        let mut deadline = Deadline::after(self.answer_timeout);
         let mut notes = Vec::new();
         while let Some(answer) = self.read_line_before(&mut deadline)? {
             if !answer.starts_with('#') {
@@ -294,11 +274,11 @@ mod tests {
             };
             port.release_piece();
             let timeout = Duration::from_millis(20);
-            let timeouts = Timeouts {
-                banner: timeout,
-                answer: timeout,
-            };
-            Link::new(port, timeouts)
+            Link {
+                banner_timeout: timeout,
+                answer_timeout: timeout,
+                ..Link::new(port)
+            }
         }
 
         /// Connects to a lizard, whose banner precedes the pieces, and reads the banner.

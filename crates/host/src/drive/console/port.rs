@@ -107,16 +107,12 @@ pub(in crate::drive) fn may_open(_: &str) -> bool {
 }
 
 fn missing_port_error(name: &str) -> PortError {
-    let ports = usb_ports::list();
-    let ports: Vec<String> = ports.iter().map(ToString::to_string).collect();
-    PortError::Missing {
-        name: name.to_owned(),
-        ports: if ports.is_empty() {
-            "none".to_owned()
-        } else {
-            ports.join(", ")
-        },
-    }
+    let ports = match usb_ports::list() {
+        ports if ports.is_empty() => "none".to_owned(),
+        ports => usb_ports::join_names(&ports),
+    };
+    let name = name.to_owned();
+    PortError::Missing { name, ports }
 }
 
 /// Returns the program that keeps the port open. Waits up to [`MAX_CLOSING_TIME`] for a program that is about to close

@@ -47,24 +47,21 @@ impl Prompt {
             return PromptEvent::Edited;
         }
         let is_control = key.modifiers.contains(KeyModifiers::CONTROL);
-        match key.code {
-            KeyCode::Char('c') if is_control => return PromptEvent::Leave,
-            KeyCode::Char('d') if is_control => {
-                if self.text().is_empty() {
-                    return PromptEvent::Leave;
-                }
+        match (key.code, is_control) {
+            (KeyCode::Char('c'), true) => return PromptEvent::Leave,
+            (KeyCode::Char('d'), true) if self.text().is_empty() => return PromptEvent::Leave,
+            (KeyCode::Char('d'), true) => {
                 self.input.handle(tui_input::InputRequest::DeleteNextChar);
             }
-            KeyCode::Char('z') if is_control => return PromptEvent::Suspend,
-            KeyCode::Up => self.go_to_entry(self.shown_index.saturating_sub(1)),
-            KeyCode::Char('p') if is_control => {
+            (KeyCode::Char('z'), true) => return PromptEvent::Suspend,
+            (KeyCode::Up, _) | (KeyCode::Char('p'), true) => {
                 self.go_to_entry(self.shown_index.saturating_sub(1))
             }
-            KeyCode::Down => self.go_to_entry(self.shown_index + 1),
-            KeyCode::Char('n') if is_control => self.go_to_entry(self.shown_index + 1),
-            KeyCode::Esc => return PromptEvent::Line("stop".to_owned()),
-            KeyCode::Enter => return self.enter(),
-            KeyCode::Char('j' | 'm') if is_control => return self.enter(),
+            (KeyCode::Down, _) | (KeyCode::Char('n'), true) => {
+                self.go_to_entry(self.shown_index + 1)
+            }
+            (KeyCode::Esc, _) => return PromptEvent::Line("stop".to_owned()),
+            (KeyCode::Enter, _) | (KeyCode::Char('j' | 'm'), true) => return self.enter(),
             _ => {
                 self.input.handle_event(&Event::Key(key));
             }
@@ -186,14 +183,7 @@ mod tests {
         type_line(&mut prompt, "walk");
         press(&mut prompt, KeyCode::Char('s'));
         let mut shown_lines = Vec::new();
-        for code in [
-            KeyCode::Up,
-            KeyCode::Up,
-            KeyCode::Up,
-            KeyCode::Down,
-            KeyCode::Down,
-            KeyCode::Down,
-        ] {
+        for code in [[KeyCode::Up; 3], [KeyCode::Down; 3]].concat() {
             press(&mut prompt, code);
             shown_lines.push(prompt.text().to_owned());
         }

@@ -1,7 +1,7 @@
 //! The file of a recorded session: one JSON object per line, with its time in ms.
 
 use std::fs::File;
-use std::io::{self, BufWriter, ErrorKind, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use std::time::Instant;
 
@@ -72,14 +72,9 @@ pub struct Recorder<W: Write> {
 /// # Errors
 /// Fails if the file already exists, or cannot be created.
 pub fn create(path: &Path) -> Result<Recorder<BufWriter<File>>, Failure> {
+    let file = files::create_new(path, "choose another file for the session")?;
     let name = path.display().to_string();
-    match File::create_new(path) {
-        Ok(file) => Ok(Recorder::new(name, BufWriter::new(file), Instant::now())),
-        Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(Failure::Input(format!(
-            "{name} already exists; choose another file for the session"
-        ))),
-        Err(error) => Err(files::write_failure(path, &error)),
-    }
+    Ok(Recorder::new(name, BufWriter::new(file), Instant::now()))
 }
 
 impl<W: Write> Recorder<W> {
@@ -124,23 +119,20 @@ impl Event {
 
     /// Escapes control characters in the event's text, which would be unsafe on a terminal.
     #[cfg(feature = "simulator")]
-    #[must_use]
-    pub fn escape_controls(self) -> Self {
-        match self {
+    pub fn escape_controls(&mut self) {
+        let texts: Vec<&mut String> = match self {
             Self::Begin {
                 format,
                 port,
                 banner,
-            } => Self::Begin {
-                format: escape_controls(&format),
-                port: escape_controls(&port),
-                banner: banner.as_deref().map(escape_controls),
-            },
-            Self::Sent(line) => Self::Sent(escape_controls(&line)),
-            Self::Answer(line) => Self::Answer(escape_controls(&line)),
-            Self::Note(line) => Self::Note(escape_controls(&line)),
-            Self::Status(line) => Self::Status(escape_controls(&line)),
-            Self::Pose { .. } | Self::Gone => self,
+            } => [format, port].into_iter().chain(banner).collect(),
+            Self::Sent(line) | Self::Answer(line) | Self::Note(line) | Self::Status(line) => {
+                vec![line]
+            }
+            Self::Pose { .. } | Self::Gone => Vec::new(),
+        };
+        for text in texts {
+            *text = escape_controls(text);
         }
     }
 }

@@ -134,28 +134,16 @@ mod tests {
 
     #[test]
     fn wrapped_lines_count_as_several_rows() {
-        assert_eq!(count_rows_above_cursor([99, 12], 100), 1, "the drawn width");
-        assert_eq!(
-            count_rows_above_cursor([99, 12], 200),
-            1,
-            "a wider terminal"
-        );
-        assert_eq!(
-            count_rows_above_cursor([99, 12], 50),
-            2,
-            "the status takes two rows"
-        );
-        assert_eq!(
-            count_rows_above_cursor([99, 60], 50),
-            3,
-            "the input line takes two rows, too"
-        );
-        assert_eq!(count_rows_above_cursor([99, 60], 33), 4);
-        assert_eq!(count_rows_above_cursor([0, 0], 1), 1);
-        assert_eq!(
-            count_rows_above_cursor([0, 0], 0),
-            1,
-            "a terminal without a size"
-        );
+        for (columns, width, row_count, case) in [
+            ([99, 12], 100, 1, "the drawn width"),
+            ([99, 12], 200, 1, "a wider terminal"),
+            ([99, 12], 50, 2, "the status takes two rows"),
+            ([99, 60], 50, 3, "the input line takes two rows, too"),
+            ([99, 60], 33, 4, "a third of the drawn width"),
+            ([0, 0], 1, 1, "a terminal of one column"),
+            ([0, 0], 0, 1, "a terminal without a size"),
+        ] {
+            assert_eq!(count_rows_above_cursor(columns, width), row_count, "{case}");
+        }
     }
 }

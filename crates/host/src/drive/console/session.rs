@@ -29,7 +29,7 @@ const LATE_ANSWER_TIME: Duration = Duration::from_millis(500);
 /// Time without an answer to `stop` before the user is informed.
 const SILENCE_TIMEOUT: Duration = Duration::from_millis(800);
 
-/// A line that waits for its answer.
+/// A line that waits to be sent, or for its answer.
 #[derive(Debug)]
 enum Request {
     /// A user's line.
@@ -38,15 +38,6 @@ enum Request {
     Status,
     /// The program's own `watch`.
     Watch,
-    /// The program's own line about `deadman`.
-    Deadman(String),
-}
-
-/// A line that waits to be sent.
-#[derive(Debug)]
-enum QueuedLine {
-    /// A user's line.
-    Line(String),
     /// The program's own line about `deadman`.
     Deadman(DeadmanLine),
 }
@@ -62,9 +53,11 @@ impl Request {
     /// True if an answer can belong to the request: after `ok`, it must begin with the request's word.
     fn is_answered_by(&self, answer: &str) -> bool {
         let line = match self {
-            Self::Line(line) | Self::Deadman(line) => line.to_ascii_lowercase(),
+            Self::Line(line) => line.to_ascii_lowercase(),
             Self::Status => "status".to_owned(),
             Self::Watch => "watch".to_owned(),
+            Self::Deadman(DeadmanLine::Read) => "cal".to_owned(),
+            Self::Deadman(_) => "deadman".to_owned(),
         };
         let word = match line.split_whitespace().next() {
             Some("status") => "gait=",
@@ -101,7 +94,7 @@ pub struct Session {
     /// The time until which answers to repeated `stop` lines may arrive.
     late_answers_until: Instant,
     /// The lines that wait to be sent, the next one first.
-    queue: VecDeque<QueuedLine>,
+    queue: VecDeque<Request>,
     /// The robot's `deadman` and its replacement; `None` unless a person drives.
     deadman: Option<Deadman>,
     /// True if the program requests the status repeatedly.
@@ -118,10 +111,8 @@ pub struct Session {
     events: Vec<Event>,
     /// Number of the user's lines that were sent or failed, including each `stop`.
     user_line_count: usize,
-    /// Number of the user's lines that were refused, not answered or not sent.
-    failed_count: usize,
-    /// The first line that failed, and the reason.
-    first_failure: Option<(String, String)>,
+    /// The user's lines that were refused, not answered or not sent, each with the reason.
+    failures: Vec<(String, String)>,
 }
 
 impl Session {
@@ -142,8 +133,7 @@ impl Session {
             status: None,
             events: Vec::new(),
             user_line_count: 0,
-            failed_count: 0,
-            first_failure: None,
+            failures: Vec::new(),
         }
     }
 
@@ -163,10 +153,10 @@ impl Session {
             Some(deadman) => deadman.plan_lines(line),
             None => (&[][..], &[][..]),
         };
-        let to_queued = |line: &DeadmanLine| QueuedLine::Deadman(*line);
-        self.queue.extend(before.iter().map(to_queued));
-        self.queue.push_back(QueuedLine::Line(line.to_owned()));
-        self.queue.extend(after.iter().map(to_queued));
+        let to_request = |line: &DeadmanLine| Request::Deadman(*line);
+        self.queue.extend(before.iter().map(to_request));
+        self.queue.push_back(Request::Line(line.to_owned()));
+        self.queue.extend(after.iter().map(to_request));
     }
 
     /// Returns the line that restores the robot's own `deadman` before the program ends, so that the robot continues
@@ -214,48 +204,39 @@ impl Session {
         if self.pending_request.is_some() || now < self.late_answers_until {
             return None;
         }
-        let (request, line) = if std::mem::take(&mut self.is_watch_due) {
-            (Request::Watch, "watch 1".to_owned())
-        } else if let Some(queued) = self.pop_queued_line() {
-            queued
+        let request = if std::mem::take(&mut self.is_watch_due) {
+            Request::Watch
+        } else if let Some(request) = self.queue.pop_front() {
+            request
         } else if self.polls_status && now >= self.next_status_time {
             let interval = match self.is_driven() {
                 true => deadman::LINE_INTERVAL,
                 false => STATUS_INTERVAL,
             };
             self.next_status_time = now + interval;
-            (Request::Status, "status".to_owned())
+            Request::Status
         } else {
             return None;
+        };
+        let line = match &request {
+            Request::Line(line) => {
+                self.user_line_count += 1;
+                self.events.push(Event::Sent(line.clone()));
+                line.clone()
+            }
+            Request::Status => "status".to_owned(),
+            Request::Watch => "watch 1".to_owned(),
+            Request::Deadman(line) => self.deadman.as_mut()?.apply_line(*line),
         };
         self.pending_request = Some((request, now));
         Some(line)
     }
 
-    fn pop_queued_line(&mut self) -> Option<(Request, String)> {
-        while let Some(queued) = self.queue.pop_front() {
-            match queued {
-                QueuedLine::Line(line) => {
-                    self.user_line_count += 1;
-                    self.events.push(Event::Sent(line.clone()));
-                    return Some((Request::Line(line.clone()), line));
-                }
-                QueuedLine::Deadman(deadman_line) => {
-                    if let Some(deadman) = &mut self.deadman {
-                        let line = deadman.apply_line(deadman_line);
-                        return Some((Request::Deadman(line.clone()), line));
-                    }
-                }
-            }
-        }
-        None
-    }
-
     /// Drops the queued lines, because the robot has not confirmed its `deadman` and would keep walking out of range.
     /// Returns the message to the user.
-    fn drop_queued_lines(&mut self) -> Option<String> {
-        for queued in std::mem::take(&mut self.queue) {
-            if let QueuedLine::Line(line) = queued {
+    fn drop_queued_lines(&mut self) -> String {
+        for request in std::mem::take(&mut self.queue) {
+            if let Request::Line(line) = request {
                 self.user_line_count += 1;
                 self.record_failure(line, "not sent");
             }
@@ -263,15 +244,14 @@ impl Session {
         if let Some(deadman) = &mut self.deadman {
             deadman.is_overridden = false;
         }
-        let message = "(not sent: the robot has not confirmed its `deadman` setting)";
-        Some(message.to_owned())
+        "(not sent: the robot has not confirmed its `deadman` setting)".to_owned()
     }
 
     /// Queues the line that restores the robot's own `deadman` if the robot neither walks nor is about to walk.
     fn end_driving(&mut self) {
         let is_walking = self.status.as_ref().is_some_and(Status::is_moving);
         if self.is_driven() && !is_walking && self.queue.is_empty() {
-            let restore = QueuedLine::Deadman(DeadmanLine::Restore);
+            let restore = Request::Deadman(DeadmanLine::Restore);
             self.queue.push_back(restore);
         }
     }
@@ -311,7 +291,7 @@ impl Session {
                 return None;
             }
             Some((Request::Deadman(_), _)) if line.starts_with("err ") => {
-                return self.drop_queued_lines();
+                return Some(self.drop_queued_lines());
             }
             Some((Request::Deadman(_) | Request::Watch, _)) => return None,
             Some((Request::Line(sent_line), _)) if line.starts_with("err ") => {
@@ -370,7 +350,7 @@ impl Session {
                 self.record_failure(line, "no answer");
                 message
             }
-            Request::Deadman(_) => return self.drop_queued_lines(),
+            Request::Deadman(_) => self.drop_queued_lines(),
             Request::Status | Request::Watch if self.is_silent => return None,
             Request::Status | Request::Watch => {
                 self.is_silent = true;
@@ -380,8 +360,7 @@ impl Session {
     }
 
     fn record_failure(&mut self, line: String, reason: &str) {
-        self.failed_count += 1;
-        self.first_failure.get_or_insert((line, reason.to_owned()));
+        self.failures.push((line, reason.to_owned()));
     }
 
     /// Succeeds if the robot accepted all lines.
@@ -389,10 +368,10 @@ impl Session {
     /// # Errors
     /// Fails if a line was refused, not answered or not sent; the message names the first such line.
     pub fn check_all_accepted(&self) -> Result<(), Failure> {
-        let Some((line, reason)) = &self.first_failure else {
+        let Some((line, reason)) = self.failures.first() else {
             return Ok(());
         };
-        let (failed_count, count) = (self.failed_count, self.user_line_count);
+        let (failed_count, count) = (self.failures.len(), self.user_line_count);
         Err(Failure::Operation(format!(
             "the robot did not accept {failed_count} of {count} lines, the first `{line}`: {reason}"
         )))

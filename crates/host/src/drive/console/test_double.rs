@@ -9,7 +9,7 @@ use lizard_core::virtual_board::RunningRobot;
 use lizard_robot::{Calibration, Robot};
 use pollster::block_on;
 
-use super::link::{Link, Timeouts};
+use super::link::Link;
 
 /// The firmware's core on a virtual board, and its output.
 pub struct ConsoleDouble {
@@ -20,18 +20,13 @@ pub struct ConsoleDouble {
     pub sent_text: String,
 }
 
-/// Connects to the paper's robot and reads its banner.
-pub fn connect_paper_robot() -> Link<ConsoleDouble> {
-    connect_robot(PAPER_TOML)
-}
-
 /// The robot.toml of the paper's robot.
 pub const PAPER_TOML: &str = include_str!("../../../../../robots/paper.toml");
 
-/// Connects to the robot described by `robot_toml` and reads its banner.
-pub fn connect_robot(robot_toml: &str) -> Link<ConsoleDouble> {
-    let robot = Robot::parse(robot_toml).expect("the robot.toml is valid");
-    let mut link = Link::new(ConsoleDouble::power_on(&robot), Timeouts::default());
+/// Connects to the paper's robot and reads its banner.
+pub fn connect_paper_robot() -> Link<ConsoleDouble> {
+    let robot = Robot::parse(PAPER_TOML).expect("the robot.toml is valid");
+    let mut link = Link::new(ConsoleDouble::power_on(&robot));
     link.wait_for_robot().expect("the robot sends a banner");
     link
 }

@@ -104,7 +104,8 @@ impl std::fmt::Display for UsbPort {
     }
 }
 
-fn join_names(ports: &[UsbPort]) -> String {
+/// Joins the ports' names with their products.
+pub(super) fn join_names(ports: &[UsbPort]) -> String {
     let names: Vec<String> = ports.iter().map(ToString::to_string).collect();
     names.join(", ")
 }

@@ -15,20 +15,17 @@ impl From<ImageError> for Failure {
     }
 }
 
-/// Builds a robot's image: the built-in code, followed by this robot's section of numbers.
+/// Builds a robot's image: the built-in code, followed by this robot's section of numbers; with `only_robot`, the
+/// section alone.
 ///
 /// # Errors
-/// Never fails for a valid robot; a test builds the image of each robot in robots/.
-pub fn build_image(robot: &Robot) -> Result<Image, ImageError> {
-    Image::firmware(CODE_HEX, &robot.section())
-}
-
-/// Builds an image with only the robot's section, without the code.
-///
-/// # Errors
-/// Never fails: flash has room for any robot's section.
-pub fn build_robot_image(robot: &Robot) -> Result<Image, ImageError> {
-    Image::robot_alone(robot.section())
+/// Never fails for a valid robot; a test builds the images of each robot in robots/.
+pub fn build_image(robot: &Robot, only_robot: bool) -> Result<Image, ImageError> {
+    if only_robot {
+        Image::robot_alone(robot.section())
+    } else {
+        Image::firmware(CODE_HEX, &robot.section())
+    }
 }
 
 /// Reads an image from an Intel HEX file.
@@ -59,13 +56,13 @@ mod tests {
         for file in std::fs::read_dir(folder).expect("the folder robots/ is readable") {
             let path = file.expect("the folder is readable").path();
             let robot = Robot::load(&path).expect("the robot.toml is valid");
-            let image = build_image(&robot).expect("the image fits the flash");
+            let image = build_image(&robot, false).expect("the image fits the flash");
             let (code_area, section) = image.bytes().split_at(START_ADDRESS.into());
             let (code_in_image, gap) = code_area.split_at(code.len());
             assert!(code_in_image == code, "{}", path.display());
             assert!(gap.iter().all(|byte| *byte == BLANK));
             assert!(section == robot.section(), "{}", path.display());
-            let robot_image = build_robot_image(&robot).expect("the image fits the flash");
+            let robot_image = build_image(&robot, true).expect("the image fits the flash");
             assert!(robot_image.bytes() == section);
             assert_eq!(robot_image.end_address(), image.end_address());
             robot_count += 1;

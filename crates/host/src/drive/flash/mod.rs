@@ -18,7 +18,7 @@ use pollster::block_on;
 use serde::Serialize;
 
 use crate::drive::console::info;
-use crate::drive::console::link::{self, Link};
+use crate::drive::console::link::Link;
 use crate::drive::console::port::BAUD_RATE;
 use crate::drive::console::usb_ports::{self, ChoiceError, UsbPort};
 use crate::shared::json;
@@ -75,8 +75,7 @@ struct FlashReport {
 pub fn run(args: Args) -> Result<(), Failure> {
     let image = match &args.image {
         Some(path) => image_source::read_hex_image(path)?,
-        None if args.only_robot => image_source::build_robot_image(&args.robot.load()?)?,
-        None => image_source::build_image(&args.robot.load()?)?,
+        None => image_source::build_image(&args.robot.load()?, args.only_robot)?,
     };
     let ports = usb_ports::list();
     let (port, board_name) = match args.port {
@@ -95,11 +94,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let port_failure = |message: String| Failure::Operation(format!("{board_name}: {message}"));
     let (board, page_counts) = write_image(board, &image, target, args.json)
         .map_err(|error| port_failure(error.to_string()))?;
-    let banner = wait_for_robot(board).map_err(|error| {
+    let banner = Link::new(board).wait_for_robot().map_err(|error| {
         port_failure(format!(
             "the flash is written and verified, but the firmware does not answer: {error}"
         ))
     })?;
+    let banner = banner.unwrap_or_else(|| "the robot answers".to_owned());
     let (firmware, robot) = info::parse_firmware_and_robot(&banner);
     let report = FlashReport {
         port,
@@ -186,7 +186,7 @@ fn to_failure(error: UploadError) -> Failure {
         UploadError::NoLizard(_) | UploadError::Format { .. } => {
             ". Omit --only-robot to write both"
         }
-        UploadError::TooLong(error) if error.is_model_uncertain() => {
+        UploadError::TooLong(error) if error.is_model_uncertain => {
             ". If the board is a UNO, pass --board uno"
         }
         _ => "",
@@ -203,13 +203,6 @@ fn format_summary(counts: PageCounts, duration: Duration) -> String {
         _ => format!("{written} bytes written and verified, {kept} already correct"),
     };
     format!("{text}; {seconds:.1} s")
-}
-
-/// Waits for the firmware's first line and returns it, or a fixed text if the firmware answers without one.
-fn wait_for_robot(board: SerialBoard) -> Result<String, link::LinkError> {
-    let mut link = Link::new(board, link::Timeouts::default());
-    let banner = link.wait_for_robot()?;
-    Ok(banner.unwrap_or_else(|| "the robot answers".to_owned()))
 }
 
 #[cfg(test)]

@@ -4,9 +4,9 @@
 //! followers, struts. Bars are thinner than the real parts, so that joints stay visible.
 
 use lizard_kinematics::Vector;
-use lizard_robot::{LegPoints, Plate};
 use svg::node::element::{Circle, Group, Line};
 
+use super::top_view::TopView;
 use crate::shared::shapes::{
     DARK, SERVO_COLOURS, add_outline, circle, line, rectangle, round_hundredths,
 };
@@ -20,35 +20,26 @@ const FOOT_RADIUS_MM: f64 = 6.5;
 /// Width of the plate's drawn edge, mm.
 const EDGE_WIDTH_MM: f64 = 0.6;
 
-/// The page of the drawing, and the robot's position on the page.
-pub struct Sheet<Projection> {
-    /// The projection from the chassis frame, mm, to the page, pixels.
-    pub project: Projection,
-    /// Scale of the drawing.
-    pub pixels_per_mm: f64,
-    /// The robot's rotation on the page, deg counter-clockwise.
-    pub rotation_deg: f64,
-}
-
-impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
+impl TopView<'_> {
     /// Draws a bar between two points.
-    pub fn draw_bar(&self, start: Vector, end: Vector, colour: &str, width_mm: f64) -> Line {
-        let [start, end] = [start, end].map(&self.project);
+    pub(super) fn draw_bar(&self, start: Vector, end: Vector, colour: &str, width_mm: f64) -> Line {
+        let [start, end] = [start, end].map(|point| self.to_page_point(point));
         line(start, end, colour, width_mm * self.pixels_per_mm)
     }
 
     /// Draws a joint: a white disc.
-    pub fn draw_joint(&self, point: Vector, radius_mm: f64) -> Circle {
+    pub(super) fn draw_joint(&self, point: Vector, radius_mm: f64) -> Circle {
         self.draw_disc(point, radius_mm, "white")
     }
 
     /// Draws a disc with an edge.
-    pub fn draw_disc(&self, point: Vector, radius_mm: f64, fill: &str) -> Circle {
-        let disc = circle((self.project)(point), radius_mm * self.pixels_per_mm, fill);
+    fn draw_disc(&self, point: Vector, radius_mm: f64, fill: &str) -> Circle {
+        let page_point = self.to_page_point(point);
+        let disc = circle(page_point, radius_mm * self.pixels_per_mm, fill);
         add_outline(disc, DARK, 0.6 * self.pixels_per_mm)
     }
 
-    /// Draws a rectangle that turns with the robot, from its centre, half its size and its corner radius, mm.
+    /// Draws a rectangle from its centre, half its size and its corner radius, mm.
     fn draw_rectangle(
         &self,
         centre: Vector,
@@ -56,39 +47,30 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
         corner_radius: f64,
         fill: &str,
     ) -> Group {
-        let (x, y) = (self.project)(centre);
+        let (x, y) = self.to_page_point(centre);
         let [half_width, half_height] =
             [half_size.x, half_size.y].map(|half| half * self.pixels_per_mm);
         let corner = (x - half_width, y - half_height);
-        let mut shape = rectangle(corner, (2.0 * half_width, 2.0 * half_height), fill)
-            .set("rx", round_hundredths(corner_radius * self.pixels_per_mm));
-        let svg_rotation_deg = round_hundredths(-self.rotation_deg);
-        if svg_rotation_deg != 0.0 {
-            let [x, y] = [x, y].map(round_hundredths);
-            shape = shape.set("transform", format!("rotate({svg_rotation_deg} {x} {y})"));
-        }
-        Group::new().add(shape)
+        let shape = rectangle(corner, (2.0 * half_width, 2.0 * half_height), fill);
+        let corner_radius = round_hundredths(corner_radius * self.pixels_per_mm);
+        Group::new().add(shape.set("rx", corner_radius))
     }
 
     /// Adds the leg parts beside and below the plate to `group`.
-    pub fn draw_feet(
-        &self,
-        mut group: Group,
-        legs: &[LegPoints; 4],
-        foot_colours: [&str; 4],
-    ) -> Group {
-        for (servo, leg) in legs.iter().enumerate() {
+    pub(super) fn draw_feet(&self, mut group: Group) -> Group {
+        for (leg, colour) in self.legs().into_iter().zip(SERVO_COLOURS) {
             let [driven_joint, idle_joint] = leg.joints;
             group = group
                 .add(self.draw_bar(idle_joint, leg.foot, LEAF_COLOUR, 2.2))
-                .add(self.draw_disc(leg.foot, FOOT_RADIUS_MM, foot_colours[servo]))
-                .add(self.draw_bar(driven_joint, idle_joint, SERVO_COLOURS[servo], 4.2));
+                .add(self.draw_disc(leg.foot, FOOT_RADIUS_MM, DARK))
+                .add(self.draw_bar(driven_joint, idle_joint, colour, 4.2));
         }
         group
     }
 
     /// Adds the plate and its servos to `group`.
-    pub fn draw_plate(&self, mut group: Group, plate: &Plate) -> Group {
+    pub(super) fn draw_plate(&self, mut group: Group) -> Group {
+        let plate = self.robot.plate();
         let centre = Vector::default();
         for (margin, colour) in [(EDGE_WIDTH_MM, EDGE_COLOUR), (0.0, PLATE_COLOUR)] {
             let arm_width = 2.0 * (plate.arm_half_width + margin);
@@ -107,13 +89,9 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
     }
 
     /// Adds the leg parts above the plate, and the servo arms that drive the struts, to `group`.
-    pub fn draw_cranks(
-        &self,
-        mut group: Group,
-        shafts: [Vector; 4],
-        legs: &[LegPoints; 4],
-    ) -> Group {
-        for ((leg, shaft), colour) in legs.iter().zip(shafts).zip(SERVO_COLOURS) {
+    pub(super) fn draw_cranks(&self, mut group: Group) -> Group {
+        let legs = self.legs().into_iter();
+        for ((leg, shaft), colour) in legs.zip(self.shafts()).zip(SERVO_COLOURS) {
             let [servo_arm_tip, crank_joint] = leg.strut_anchors;
             group = group.add(self.draw_bar(leg.pivots[0], crank_joint, colour, 3.2));
             for (pivot, joint) in leg.pivots.into_iter().zip(leg.joints) {
@@ -131,9 +109,9 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
     }
 
     /// Adds the screws that hold the struts to the servo arms. They lie above all other parts.
-    pub fn draw_strut_screws(&self, group: Group, legs: &[LegPoints; 4]) -> Group {
-        let anchors = legs.iter().map(|leg| leg.strut_anchors[0]);
+    pub(super) fn draw_strut_screws(&self, group: Group) -> Group {
+        let anchors = self.legs().map(|leg| leg.strut_anchors[0]);
         let screws = anchors.map(|anchor| self.draw_joint(anchor, 1.2));
-        screws.fold(group, Group::add)
+        screws.into_iter().fold(group, Group::add)
     }
 }

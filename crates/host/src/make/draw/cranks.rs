@@ -76,7 +76,7 @@ fn to_page_point(point: Vector, scale: f64) -> (f64, f64) {
 }
 
 /// Returns the point at a distance and in a direction (degrees counter-clockwise) from another point, on the page.
-fn offset_point(start: (f64, f64), degrees: f64, distance: f64) -> (f64, f64) {
+pub(super) fn offset_point(start: (f64, f64), degrees: f64, distance: f64) -> (f64, f64) {
     let (sin, cos) = sin_cos(degrees);
     (start.0 + distance * cos, start.1 - distance * sin)
 }

@@ -1,10 +1,11 @@
 //! Labels of the view from above.
 
-use lizard_kinematics::{Vector, sin_cos};
+use lizard_kinematics::Vector;
 use lizard_robot::servo::SERVO_NAMES;
 use svg::node::element::Group;
 
-use super::top_view::{LABEL_GAP_MM, PAGE_SIZE, Point, SKIN_REACH_MM, TopView};
+use super::cranks::offset_point;
+use super::top_view::{LABEL_GAP_MM, PAGE_SIZE, SKIN_REACH_MM, TopView};
 use crate::shared::shapes::{
     Anchor, DARK, GREY, SERVO_COLOURS, SERVO_POSITIONS, line, pin_name, text, text_middle,
     text_start,
@@ -45,7 +46,7 @@ impl TopView<'_> {
         let head = solution.head_point();
         let tail = solution.tail_point();
         let format_point =
-            |name: &str, point: Point| format!("{name} ({:.1}, {:.1}) mm", point.x, point.y);
+            |name: &str, point: Vector| format!("{name} ({:.1}, {:.1}) mm", point.x, point.y);
         let (x, y) = self.to_page_point(
             head + Vector::new(0.0, SKIN_REACH_MM * self.size_ratio() + LABEL_GAP_MM),
         );
@@ -86,12 +87,8 @@ fn outward_anchor(side: f64) -> Anchor {
 fn draw_axes_and_scale_bar(mut group: Group, scale: f64) -> Group {
     let origin = (50.0, PAGE_SIZE.1 - 50.0);
     for (degrees, name) in [(0.0, "x, right"), (90.0, "y, forward")] {
-        let (sin, cos) = sin_cos(degrees);
-        let tip = (origin.0 + 62.0 * cos, origin.1 - 62.0 * sin);
-        let barb_end = |lean_deg: f64| {
-            let (sin, cos) = sin_cos(degrees + lean_deg);
-            (tip.0 + 11.0 * cos, tip.1 - 11.0 * sin)
-        };
+        let tip = offset_point(origin, degrees, 62.0);
+        let barb_end = |lean_deg: f64| offset_point(tip, degrees + lean_deg, 11.0);
         let name_point = match degrees == 0.0 {
             true => (tip.0 + 10.0, tip.1 + 6.0),
             false => (tip.0 - 10.0, tip.1 - 12.0),

@@ -1,6 +1,6 @@
 //! `lizard draw`: draws the robot from above, its wiring, and the angles of its cranks.
 
-pub mod body;
+mod body;
 mod cranks;
 mod labels;
 mod route;

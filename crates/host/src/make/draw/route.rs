@@ -32,12 +32,6 @@ pub fn route_between_rows(
     (0..starts.len()).map(route_wire).collect()
 }
 
-/// Returns the end of a path down a board's right side to a pin in its lower row, from the [`turn_point`] on.
-pub fn path_end(corner: (f64, f64), index: usize, pin: (f64, f64)) -> Path {
-    let (x, y) = turn_point(corner, index);
-    vec![(x, y), (pin.0, y), pin]
-}
-
 /// Returns the point near a board's lower right corner (`corner`) where a wire to the lower row of pins turns; `index`
 /// counts these wires from the board outwards.
 pub fn turn_point(corner: (f64, f64), index: usize) -> (f64, f64) {

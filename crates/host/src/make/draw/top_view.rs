@@ -4,7 +4,6 @@ use lizard_kinematics::{End, Side, Solution, Vector};
 use lizard_robot::{LegPoints, Robot};
 use svg::node::element::{Group, Path};
 
-use super::body::Sheet;
 use crate::shared::shapes::{DARK, SERVO_COLOURS, add_outline, circle, render_svg};
 
 /// Width and height of the page, pixels.
@@ -23,24 +22,20 @@ const PAPER_PLATE_HALF_LENGTH_MM: f64 = 80.4;
 const SKIN_COLOUR: &str = "#e3ecdc";
 const STEEL_COLOUR: &str = "#555555";
 
-/// A point in the chassis frame, mm.
-pub(super) type Point = Vector;
-
 /// Draws the robot at a solved pose, as SVG text; with names, angles and dimensions if `has_labels` is true.
 pub fn draw_top_view(robot: &Robot, solution: &Solution, has_labels: bool) -> String {
     let view = TopView::new(robot, solution);
     let mut group = view.draw_skin(Group::new());
-    let (legs, sheet) = (view.legs(), view.sheet());
-    group = sheet.draw_feet(group, &legs, [DARK; 4]);
-    group = sheet.draw_plate(group, &robot.plate());
-    group = sheet.draw_cranks(group, view.shafts(), &legs);
+    group = view.draw_feet(group);
+    group = view.draw_plate(group);
+    group = view.draw_cranks(group);
     for side in Side::ALL {
         group = view.draw_slider(group, side);
     }
     for end in End::ALL {
         group = view.draw_five_bar(group, end);
     }
-    group = sheet.draw_strut_screws(group, &legs);
+    group = view.draw_strut_screws(group);
     if has_labels {
         group = view.draw_labels(group);
     }
@@ -80,7 +75,7 @@ impl<'a> TopView<'a> {
     }
 
     /// Returns the position on the page of a point in the chassis frame.
-    pub(super) fn to_page_point(&self, point: Point) -> (f64, f64) {
+    pub(super) fn to_page_point(&self, point: Vector) -> (f64, f64) {
         let (centre_x, centre_y) = (PAGE_SIZE.0 / 2.0, PAGE_SIZE.1 / 2.0);
         let scale = self.pixels_per_mm;
         (centre_x + scale * point.x, centre_y - scale * point.y)
@@ -91,25 +86,12 @@ impl<'a> TopView<'a> {
         self.robot.plate().half_size.y / PAPER_PLATE_HALF_LENGTH_MM
     }
 
-    fn sheet(&self) -> Sheet<impl Fn(Point) -> (f64, f64)> {
-        Sheet {
-            project: |point| self.to_page_point(point),
-            pixels_per_mm: self.pixels_per_mm,
-            rotation_deg: 0.0,
-        }
-    }
-
     pub(super) fn angles(&self) -> [f64; 4] {
         self.solution.pose.into()
     }
 
-    pub(super) fn shafts(&self) -> [Point; 4] {
+    pub(super) fn shafts(&self) -> [Vector; 4] {
         self.robot.lizard().shafts()
-    }
-
-    /// Returns the tip of a servo's crank.
-    fn crank_tip(&self, servo: usize) -> Point {
-        self.solution.crank_tips()[servo]
     }
 
     /// Draws a lizard's pale outline, so that the mechanism looks like an animal.
@@ -169,15 +151,14 @@ impl<'a> TopView<'a> {
         };
         let direction = (front_tip - rear_tip) * (1.0 / slider.d);
         let tube_end = rear_tip + direction * tube_length;
-        let sheet = self.sheet();
         group = group
-            .add(sheet.draw_bar(rear_tip, front_tip, STEEL_COLOUR, 1.8))
-            .add(sheet.draw_bar(rear_tip, tube_end, "#9a9a9a", 5.0));
+            .add(self.draw_bar(rear_tip, front_tip, STEEL_COLOUR, 1.8))
+            .add(self.draw_bar(rear_tip, tube_end, "#9a9a9a", 5.0));
         for (servo, tip) in [(front, front_tip), (rear, rear_tip)] {
-            let arm = sheet.draw_bar(self.shafts()[servo], tip, SERVO_COLOURS[servo], 3.0);
+            let arm = self.draw_bar(self.shafts()[servo], tip, SERVO_COLOURS[servo], 3.0);
             group = group
                 .add(arm.set("stroke-opacity", 0.75))
-                .add(sheet.draw_joint(tip, 2.0));
+                .add(self.draw_joint(tip, 2.0));
         }
         group
     }
@@ -185,16 +166,17 @@ impl<'a> TopView<'a> {
     /// Draws the five-bar of the head or tail: two cranks, two couplers, and the end point.
     fn draw_five_bar(&self, mut group: Group, end: End) -> Group {
         let (servos, point) = (end.servos(), self.solution.point(end));
-        let (sheet, scale) = (self.sheet(), self.pixels_per_mm);
+        let scale = self.pixels_per_mm;
+        let crank_tips = self.solution.crank_tips();
         for servo in servos {
-            group = group.add(sheet.draw_bar(self.crank_tip(servo), point, STEEL_COLOUR, 3.4));
+            group = group.add(self.draw_bar(crank_tips[servo], point, STEEL_COLOUR, 3.4));
         }
         for servo in servos {
-            let (shaft, tip) = (self.shafts()[servo], self.crank_tip(servo));
+            let (shaft, tip) = (self.shafts()[servo], crank_tips[servo]);
             let shaft_point = self.to_page_point(shaft);
             group = group
-                .add(sheet.draw_bar(shaft, tip, SERVO_COLOURS[servo], 4.6))
-                .add(sheet.draw_joint(tip, 2.3))
+                .add(self.draw_bar(shaft, tip, SERVO_COLOURS[servo], 4.6))
+                .add(self.draw_joint(tip, 2.3))
                 .add(circle(shaft_point, 3.4 * scale, DARK))
                 .add(circle(shaft_point, 1.2 * scale, "white"));
         }
@@ -202,7 +184,7 @@ impl<'a> TopView<'a> {
         group.add(add_outline(end_disc, DARK, 2.5))
     }
 
-    pub(super) fn foot(&self, servo: usize) -> Point {
+    pub(super) fn foot(&self, servo: usize) -> Vector {
         self.legs()[servo].foot
     }
 
@@ -235,7 +217,7 @@ mod tests {
         for pose in [None, Some(ASYMMETRIC_POSE.into())] {
             with_view(pose, |view| {
                 for servo in 0..4 {
-                    let tip = view.crank_tip(servo);
+                    let tip = view.solution.crank_tips()[servo];
                     let crank = tip - view.shafts()[servo];
                     assert!((crank.length() - 30.0).abs() < 1e-9);
                     assert!((wrap(crank.angle() - view.angles()[servo])).abs() < 1e-9);

@@ -18,24 +18,14 @@ const UPPER_ROW_Y: f64 = 20.0;
 /// Height of the lower row of pins above the board's lower edge, in tenths of an inch.
 const LOWER_ROW_Y: f64 = 1.0;
 
-/// A row of pins.
-struct Header<const N: usize> {
-    /// The first pin's distance from the left edge, tenths of an inch.
-    first_x: f64,
-    /// The names printed beside the pins.
-    names: [&'static str; N],
-}
-
-/// The power header.
-const POWER_HEADER: Header<7> = Header {
-    first_x: 12.0,
-    names: ["IOREF", "RESET", "3.3V", "5V", "GND", "GND", "VIN"],
-};
-/// The pins to the left of D13, including the analogue reference.
-const REFERENCE_HEADER: Header<4> = Header {
-    first_x: 7.4,
-    names: ["SCL", "SDA", "AREF", "GND"],
-};
+/// Distance of the power header's first pin from the left edge, tenths of an inch.
+const POWER_HEADER_X: f64 = 12.0;
+/// The names printed beside the pins of the power header.
+const POWER_PINS: [&str; 7] = ["IOREF", "RESET", "3.3V", "5V", "GND", "GND", "VIN"];
+/// Distance from the left edge, tenths of an inch, of the first pin to the left of D13.
+const REFERENCE_HEADER_X: f64 = 7.4;
+/// The names printed beside the pins to the left of D13, including the analogue reference.
+const REFERENCE_PINS: [&str; 4] = ["SCL", "SDA", "AREF", "GND"];
 
 /// Distance of D13 from the left edge, tenths of an inch; D12 to D8 are counted from D13.
 const D13_X: f64 = 11.4;
@@ -74,7 +64,7 @@ impl Uno {
 
     /// Returns the position of the 5V pin.
     pub fn five_volt_point(&self) -> (f64, f64) {
-        self.to_page_point(POWER_HEADER.first_x + 3.0, LOWER_ROW_Y)
+        self.to_page_point(POWER_HEADER_X + 3.0, LOWER_ROW_Y)
     }
 
     /// Draws the board and emphasizes the pins in `used_pins`.
@@ -84,15 +74,13 @@ impl Uno {
         let group = Group::new().add(add_outline(board, DARK, 1.5));
         let mut group = self.draw_components(group);
         for number in 0..=19 {
-            let name = pin_name(number);
+            let (name, point) = (pin_name(number), self.pin_point(number));
             let is_used = used_pins.contains(&number);
-            let hole = draw_hole(self.pin_point(number), is_used).set("id", format!("pin-{name}"));
-            group = group
-                .add(hole)
-                .add(self.draw_label(self.pin_point(number), &name, is_used));
+            let hole = draw_hole(point, is_used).set("id", format!("pin-{name}"));
+            group = group.add(hole).add(self.draw_label(point, &name, is_used));
         }
-        for (index, name) in REFERENCE_HEADER.names.iter().enumerate() {
-            let point = self.to_page_point(REFERENCE_HEADER.first_x + index as f64, UPPER_ROW_Y);
+        for (index, name) in REFERENCE_PINS.into_iter().enumerate() {
+            let point = self.to_page_point(REFERENCE_HEADER_X + index as f64, UPPER_ROW_Y);
             let is_used = point == self.ground_point();
             let mut hole = draw_hole(point, is_used);
             if is_used {
@@ -100,8 +88,8 @@ impl Uno {
             }
             group = group.add(hole).add(self.draw_label(point, name, is_used));
         }
-        for (index, name) in POWER_HEADER.names.iter().enumerate() {
-            let point = self.to_page_point(POWER_HEADER.first_x + index as f64, LOWER_ROW_Y);
+        for (index, name) in POWER_PINS.into_iter().enumerate() {
+            let point = self.to_page_point(POWER_HEADER_X + index as f64, LOWER_ROW_Y);
             group = group
                 .add(draw_hole(point, false))
                 .add(self.draw_label(point, name, false));

@@ -50,11 +50,8 @@ mod tests {
             ("a.xml.URDF", ModelFormat::Urdf),
             ("a.sdf", ModelFormat::Sdf),
         ] {
-            assert_eq!(
-                ModelFormat::from_path(Path::new(path)).expect(path),
-                format,
-                "{path}"
-            );
+            let result = ModelFormat::from_path(Path::new(path));
+            assert_eq!(result.expect(path), format, "{path}");
         }
         let refusal = ModelFormat::from_path(Path::new("out/a.urfd"))
             .expect_err("an unknown extension must be refused");

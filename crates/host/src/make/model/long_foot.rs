@@ -18,36 +18,24 @@ pub(super) struct FootOffset {
     offset_mm: f64,
 }
 
-/// An error in the value of `--long-foot`.
-#[derive(Debug, thiserror::Error)]
-pub(super) enum FootOffsetError {
-    #[error("expected LEG=MM, for example LF=0.6 for a left front foot that is 0.6 mm too long")]
-    InvalidForm,
-    #[error("unknown leg `{0}`; allowed values: LF, RF, RH, LH")]
-    UnknownLeg(String),
-    #[error("`{0}` is not a length in mm")]
-    NotANumber(String),
-    #[error(
-        "the length error must be between -{MAX_FOOT_ERROR_MM} and {MAX_FOOT_ERROR_MM} mm, but is {0} mm"
-    )]
-    TooLarge(f64),
-}
-
 impl FromStr for FootOffset {
-    type Err = FootOffsetError;
+    type Err = String;
 
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let (leg_name, length_text) = text.split_once('=').ok_or(FootOffsetError::InvalidForm)?;
-        let index = LEG_NAMES
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (leg_name, length_text) = text.split_once('=').ok_or(
+            "expected LEG=MM, for example LF=0.6 for a left front foot that is 0.6 mm too long",
+        )?;
+        let leg = LEG_NAMES
             .iter()
-            .position(|name| name.eq_ignore_ascii_case(leg_name));
-        let leg = index.ok_or_else(|| FootOffsetError::UnknownLeg(leg_name.to_owned()))?;
+            .position(|name| name.eq_ignore_ascii_case(leg_name))
+            .ok_or_else(|| format!("unknown leg `{leg_name}`; allowed values: LF, RF, RH, LH"))?;
         let number = length_text.parse().ok().filter(|mm: &f64| mm.is_finite());
-        let offset_mm =
-            number.ok_or_else(|| FootOffsetError::NotANumber(length_text.to_owned()))?;
+        let offset_mm = number.ok_or_else(|| format!("`{length_text}` is not a length in mm"))?;
         match offset_mm.abs() <= MAX_FOOT_ERROR_MM {
             true => Ok(Self { leg, offset_mm }),
-            false => Err(FootOffsetError::TooLarge(offset_mm)),
+            false => Err(format!(
+                "the length error must be between -{MAX_FOOT_ERROR_MM} and {MAX_FOOT_ERROR_MM} mm, but is {offset_mm} mm"
+            )),
         }
     }
 }
@@ -81,21 +69,21 @@ mod tests {
 
     #[test]
     fn an_invalid_foot_offset_is_refused_with_the_reason() {
-        let parse_error = |text: &str| text.parse::<FootOffset>().expect_err(text).to_string();
-        assert_eq!(
-            parse_error("0.6"),
-            "expected LEG=MM, for example LF=0.6 for a left front foot that is 0.6 mm too long"
-        );
-        assert_eq!(
-            parse_error("FL=1"),
-            "unknown leg `FL`; allowed values: LF, RF, RH, LH"
-        );
-        assert_eq!(parse_error("LF="), "`` is not a length in mm");
-        assert_eq!(parse_error("LF=nan"), "`nan` is not a length in mm");
-        assert_eq!(
-            parse_error("LF=6"),
-            "the length error must be between -5 and 5 mm, but is 6 mm"
-        );
+        for (text, reason) in [
+            (
+                "0.6",
+                "expected LEG=MM, for example LF=0.6 for a left front foot that is 0.6 mm too long",
+            ),
+            ("FL=1", "unknown leg `FL`; allowed values: LF, RF, RH, LH"),
+            ("LF=", "`` is not a length in mm"),
+            ("LF=nan", "`nan` is not a length in mm"),
+            (
+                "LF=6",
+                "the length error must be between -5 and 5 mm, but is 6 mm",
+            ),
+        ] {
+            assert_eq!(text.parse::<FootOffset>(), Err(reason.to_owned()));
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ mod format;
 mod long_foot;
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use lizard_parts::{Assembly, Pieces, Scene, Trajectory};
 use lizard_robot::Robot;
@@ -69,21 +69,16 @@ pub fn run(args: Args) -> Result<(), Failure> {
     assembly.check_dimensions()?;
     let neutral = robot.lizard().solve(&robot.neutral_pose())?;
     let mut scene = Scene::for_assembly(&assembly);
-    for (excess, error) in scene
-        .excess_lengths
-        .iter_mut()
-        .zip(long_foot::list_in_servo_order(&args.long_foot)?)
-    {
+    let foot_errors = long_foot::list_in_servo_order(&args.long_foot)?;
+    for (excess, error) in scene.excess_lengths.iter_mut().zip(foot_errors) {
         *excess += error;
     }
     scene.trajectory = record_drive(&args, &robot)?;
     let pieces = Pieces::compute(&assembly, &scene)?;
-    let folder = mesh_folder_name(&args.file);
-    let address = match &args.mesh_address {
-        Some(address) => address.trim_end_matches('/'),
-        None => &folder,
-    };
-    let address = format!("{address}/");
+    let stem = args.file.file_stem().unwrap_or_default();
+    let folder = format!("{}-meshes", stem.to_string_lossy());
+    let address = args.mesh_address.as_ref().unwrap_or(&folder);
+    let address = format!("{}/", address.trim_end_matches('/'));
     let text = match format {
         ModelFormat::Mjcf => pieces.format_mjcf(&neutral, &scene),
         ModelFormat::Urdf => pieces.format_urdf(&neutral, &scene, &address),
@@ -91,14 +86,13 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     // The check comes before the meshes are written, because a later failure would leave meshes without a model.
     files::check_replaceable(&args.file)?;
-    let mut summary_suffix = String::new();
-    if let Some(trajectory) = &scene.trajectory {
-        summary_suffix = format!(
-            ", and {} frames of `{}`",
-            trajectory.frames.len(),
-            trajectory.gait_name
-        );
-    }
+    let mut summary_suffix = match &scene.trajectory {
+        Some(trajectory) => {
+            let frame_count = trajectory.frames.len();
+            format!(", and {frame_count} frames of `{}`", trajectory.gait_name)
+        }
+        None => String::new(),
+    };
     if format != ModelFormat::Mjcf {
         let meshes = pieces.make_meshes(&scene);
         let folder = args.file.with_file_name(folder);
@@ -134,11 +128,10 @@ fn check_options(args: &Args, format: ModelFormat) -> Result<(), Failure> {
 /// Records the servo angles for `--drive`; `None` if this option is not given.
 #[cfg(feature = "simulator")]
 fn record_drive(args: &Args, robot: &Robot) -> Result<Option<Trajectory>, Failure> {
-    let gait = args.drive.as_deref();
-    let trajectory = gait.map(|gait| {
+    let record = |gait: &str| {
         crate::simulate::trajectory::record(robot, &args.robot, gait, args.elf.as_deref())
-    });
-    trajectory.transpose()
+    };
+    args.drive.as_deref().map(record).transpose()
 }
 
 #[cfg(not(feature = "simulator"))]
@@ -149,10 +142,4 @@ fn record_drive(args: &Args, _: &Robot) -> Result<Option<Trajectory>, Failure> {
             "--drive is missing: this program was built without the simulator".to_owned(),
         )),
     }
-}
-
-/// Returns the name of the meshes' folder beside the model's file.
-fn mesh_folder_name(file: &Path) -> String {
-    let name = file.file_stem().unwrap_or_default().to_string_lossy();
-    format!("{name}-meshes")
 }

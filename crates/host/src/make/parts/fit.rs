@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::shared::json;
+use crate::shared::number::format_or_dash;
 use crate::shared::progress::create_progress_bar;
 use crate::shared::spread::{SpreadArgs, Spreadable};
 
@@ -187,7 +188,7 @@ fn format_proof(proof: &Proof, prints_all: bool) -> String {
 fn format_row(pair: &NearestPair) -> String {
     let witness = pair.witness.as_ref();
     let parts = format!("{}, {}", pair.first, pair.second);
-    let seen = witness.map_or("-".to_owned(), |clearance| format!("{:.2}", clearance.mm));
+    let seen = format_or_dash(witness.map(|clearance| clearance.mm), 2);
     let mut row = format!("{:6.2} {seen:>6}   {parts:<44}", pair.lower_bound);
     let pose = witness.map(|clearance| clearance.pose);
     for angle in pose.or(pair.unproved_angles).into_iter().flatten() {

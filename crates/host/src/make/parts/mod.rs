@@ -3,12 +3,10 @@
 pub mod fit;
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use lizard_parts::{
-    Assembly, Bill, BuildError, OutputFile, build_coupon, make_documents, make_part_files,
-};
-use lizard_robot::{Body, Robot};
+use lizard_parts::{Assembly, Bill, BuildError, build_coupon, make_documents, make_part_files};
+use lizard_robot::Robot;
 use serde::Serialize;
 
 use crate::shared::files;
@@ -78,7 +76,6 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let kerf = robot.parts().kerf;
     let assembly = Assembly::new(&robot);
-    let is_whole_robot = !args.coupon && !args.corner;
     let mut parts = Vec::new();
     if !args.corner {
         parts.extend(build_coupon(robot.parts()));
@@ -110,15 +107,16 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     bar.finish_and_clear();
     let mut weight_note = None;
-    if is_whole_robot {
+    if !args.coupon && !args.corner {
         let pose = robot.lizard().solve(&robot.neutral_pose())?;
         let bill = Bill::compute(&assembly, &assembly.collect_parts(), &pose);
         files.extend(make_documents(&assembly, &bill, &pose)?);
-        weight_note = bill
-            .differs_from(&robot.ground().body)
-            .then(|| format_weight_note(&bill, &robot));
+        let differs = bill.differs_from(&robot.ground().body);
+        weight_note = differs.then(|| format_weight_note(&bill, &robot));
     }
-    write_files(&args.folder, &files)?;
+    for file in &files {
+        files::write(&args.folder.join(&file.path), &file.bytes)?;
+    }
     let mut out = io::stdout().lock();
     if args.json {
         serde_json::to_writer_pretty(&mut out, &entries)?;
@@ -142,10 +140,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
 /// Formats a note that the mass or the centre of mass in robot.toml differs from the parts.
 fn format_weight_note(bill: &Bill, robot: &Robot) -> String {
-    let Body {
-        mass,
-        centre_of_mass: centre,
-    } = robot.ground().body;
+    let body = &robot.ground().body;
+    let (mass, centre) = (body.mass, body.centre_of_mass);
     format!(
         "The parts weigh {:.0} g, and their centre of mass is {}; robot.toml has {mass} g and \
          {centre:?} mm. For predictions with these parts, change robot.toml to:\n\n{}",
@@ -153,13 +149,4 @@ fn format_weight_note(bill: &Bill, robot: &Robot) -> String {
         bill.describe_centre(),
         bill.format_body_toml()
     )
-}
-
-/// Writes all files below `folder`.
-fn write_files(folder: &Path, files: &[OutputFile]) -> Result<(), Failure> {
-    for file in files {
-        let path = folder.join(&file.path);
-        files::write(&path, &file.bytes)?;
-    }
-    Ok(())
 }

@@ -14,6 +14,7 @@ use serde::Serialize;
 
 use crate::make::draw;
 use crate::paper::design;
+use crate::shared::plot::Plot;
 use crate::shared::{files, json};
 use crate::{Failure, PoseArgs, RobotArgs};
 
@@ -95,4 +96,14 @@ pub fn draw_charts(robot: &Robot) -> Vec<(&'static str, String)> {
         ("singularity", singularity::draw_singularities(robot)),
         ("stroke", stroke::draw_stroke(robot)),
     ]
+}
+
+/// Returns a square plot of this width, px, whose axes have the same range.
+fn square_plot(corner: (f64, f64), width: f64, range: (f64, f64)) -> Plot {
+    Plot {
+        corner,
+        size: (width, width),
+        x_range: range,
+        y_range: range,
+    }
 }

@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use lizard_paper::design::{ChartPoint, PROPORTION_SUM, Proportions};
 use svg::node::element::Group;
 
-use crate::shared::plot::{Axis, ColourScale, Plot, VIRIDIS};
+use super::square_plot;
+use crate::shared::plot::{Axis, ColourScale, VIRIDIS};
 use crate::shared::shapes::{add_outline, add_title, render_svg, text_start};
 
 /// Width and height of the page, px.
@@ -36,12 +37,8 @@ pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
         "every design r1 + r2 + r3 = 0.9 (crank, coupler, half base, in units of D); dashed: r3 = 0.1 to 0.4; white: no design; ring: the paper's design",
     );
     for (i, (name, get_value, max, decimals)) in panels.into_iter().enumerate() {
-        let plot = Plot {
-            corner: (90.0 + 480.0 * i as f64, 150.0),
-            size: (PANEL_SIZE, PANEL_SIZE),
-            x_range: (0.0, PROPORTION_SUM),
-            y_range: (0.0, PROPORTION_SUM),
-        };
+        let corner = (90.0 + 480.0 * i as f64, 150.0);
+        let plot = square_plot(corner, PANEL_SIZE, (0.0, PROPORTION_SUM));
         let scale = ColourScale {
             min: 0.0,
             max,
@@ -51,12 +48,8 @@ pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
         // Cells are centred on the grid points, so the map extends half a cell beyond the axes.
         let map_size = PANEL_SIZE * (PROPORTION_SUM + step) / PROPORTION_SUM;
         let map_range = (-step / 2.0, PROPORTION_SUM + step / 2.0);
-        let map_plot = Plot {
-            corner: plot.to_page_point(map_range.0, map_range.1),
-            size: (map_size, map_size),
-            x_range: map_range,
-            y_range: map_range,
-        };
+        let map_corner = plot.to_page_point(map_range.0, map_range.1);
+        let map_plot = square_plot(map_corner, map_size, map_range);
         let x_axis = Axis::new(0.1, "r1, crank");
         let y_axis = Axis::new(0.1, if i == 0 { "r2, coupler" } else { "" });
         group = plot.draw_grid(group, &x_axis, &y_axis);
@@ -75,8 +68,8 @@ pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
             group = group.add(add_outline(ring, colour, width));
         }
         group = plot.draw_axes(group, &x_axis, &y_axis);
-        group = group.add(text_start(name, (plot.corner.0, 128.0), 17.0));
-        let key_corner = (plot.corner.0 + PANEL_SIZE + 20.0, 150.0);
+        group = group.add(text_start(name, (corner.0, 128.0), 17.0));
+        let key_corner = (corner.0 + PANEL_SIZE + 20.0, 150.0);
         group = scale.draw_key(group, key_corner, PANEL_SIZE, "", decimals);
     }
     render_svg(PAGE_SIZE, group)

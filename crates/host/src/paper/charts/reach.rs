@@ -6,11 +6,12 @@
 
 use std::collections::HashSet;
 
-use lizard_kinematics::{End, Pose, Side, Solution, Vector, Workspace};
+use lizard_kinematics::{End, Pose, Side, SliderPose, Solution, Vector, Workspace};
 use lizard_robot::Robot;
 use svg::node::element::Group;
 
-use crate::shared::plot::{Axis, Plot, draw_legend_entry};
+use super::square_plot;
+use crate::shared::plot::{Axis, draw_legend_entry};
 use crate::shared::shapes::{
     DARK, GREY, add_outline, add_title, circle, rectangle, render_svg, text_start,
 };
@@ -47,12 +48,7 @@ fn to_cell(point: Vector) -> (i32, i32) {
 
 /// Draws the workspaces of tail, both sliders and all feet.
 pub fn draw_workspaces(robot: &Robot) -> String {
-    let plot = Plot {
-        corner: (90.0, 90.0),
-        size: (720.0, 720.0),
-        x_range: (-HALF_WIDTH, HALF_WIDTH),
-        y_range: (-HALF_WIDTH, HALF_WIDTH),
-    };
+    let plot = square_plot((90.0, 90.0), 720.0, (-HALF_WIDTH, HALF_WIDTH));
     let tail_cells = find_accepted_tail_cells(robot);
     let linkage_cells = find_linkage_slider_cells(robot);
     let slider_cells = find_accepted_slider_cells(robot);
@@ -147,17 +143,14 @@ fn find_accepted_tail_cells(robot: &Robot) -> Cells {
 fn find_accepted_slider_cells(robot: &Robot) -> Cells {
     let solutions = find_accepted_solutions(robot, |a, b| [a, -a, -b, b]);
     let points = solutions.iter().flat_map(|solution| {
-        Side::ALL.map(|side| {
-            let slider = solution.side(side);
-            compute_slider_middle(robot, side, slider.rear_tip, slider.front_tip)
-        })
+        Side::ALL.map(|side| compute_slider_middle(robot, side, solution.side(side)))
     });
     points.map(to_cell).collect()
 }
 
 /// Returns a slider's middle from the tips of its arms, which are relative to its rear shaft.
-fn compute_slider_middle(robot: &Robot, side: Side, rear_tip: Vector, front_tip: Vector) -> Vector {
-    robot.lizard().shafts()[side.servos()[1]] + (rear_tip + front_tip) * 0.5
+fn compute_slider_middle(robot: &Robot, side: Side, pose: &SliderPose) -> Vector {
+    robot.lizard().shafts()[side.servos()[1]] + (pose.rear_tip + pose.front_tip) * 0.5
 }
 
 /// Returns the cells that the sliders' middles reach at all arm angles for which the travel is within the stroke.
@@ -166,16 +159,12 @@ fn find_linkage_slider_cells(robot: &Robot) -> Cells {
     let mut cells = Cells::new();
     for side in Side::ALL {
         let slider = robot.lizard().side(side);
-        let shaft = Vector::new(slider.front_offset, slider.base);
         let directions = || (0..180).map(|step| Vector::from_angle(2.0 * f64::from(step)));
         let pairs = directions().flat_map(|front| directions().map(move |rear| (front, rear)));
         for (front, rear) in pairs {
-            let rear_tip = rear * slider.rear_arm;
-            let front_tip = shaft + front * slider.front_arm;
-            let travel = (front_tip - rear_tip).length() - slider.nominal_length;
-            if (limits.stroke_min..=limits.stroke_max).contains(&travel) {
-                let middle = compute_slider_middle(robot, side, rear_tip, front_tip);
-                cells.insert(to_cell(middle));
+            let pose = slider.pose_unchecked(rear, front);
+            if (limits.stroke_min..=limits.stroke_max).contains(&pose.s) {
+                cells.insert(to_cell(compute_slider_middle(robot, side, &pose)));
             }
         }
     }
@@ -184,10 +173,7 @@ fn find_linkage_slider_cells(robot: &Robot) -> Cells {
 
 /// True if a point in the chassis frame is behind the tail's base and within reach of both arms.
 fn is_in_tail_workspace(robot: &Robot, point: Vector) -> bool {
-    let [left, right] = End::Tail.servos();
-    let shafts = robot.lizard().shafts();
-    let offset = point - (shafts[left] + shafts[right]) * 0.5;
-    let local_point = Vector::new(offset.x, -offset.y);
+    let local_point = robot.lizard().to_end(End::Tail, point);
     local_point.y >= 0.0
         && Workspace::for_five_bar(&robot.lizard().end(End::Tail)).contains(local_point)
 }

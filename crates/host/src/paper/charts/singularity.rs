@@ -4,6 +4,7 @@ use lizard_kinematics::{Check, End, FiveBar, Margins, Pose, SingularPose, Singul
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
+use super::square_plot;
 use crate::shared::plot::{Axis, BLUES, ColourScale, IMPOSSIBLE_COLOUR, Plot, draw_legend_entry};
 use crate::shared::shapes::{
     DARK, add_outline, add_title, circle, cross, rectangle, render_svg, text_start,
@@ -44,18 +45,14 @@ pub fn draw_singularities(robot: &Robot) -> String {
             ["theta1 (A1), deg", "theta4 (A2), deg"].map(|name| Axis::new(step, name));
         plot.draw_axes(group, &x_axis, &y_axis)
     };
-    let left_plot = Plot {
-        corner: (90.0, 110.0),
-        size: (600.0, 600.0),
-        x_range: ANGLE_RANGE,
-        y_range: ANGLE_RANGE,
-    };
+    let left_plot = square_plot((90.0, 110.0), 600.0, ANGLE_RANGE);
     let paths = compute_gait_paths(robot);
-    let path_square = enclose_paths(&paths);
+    let [x_range, y_range] = enclose_paths(&paths);
     let right_plot = Plot {
         corner: (800.0, 110.0),
         size: (400.0, 400.0),
-        ..path_square
+        x_range,
+        y_range,
     };
     let mut group = Group::new();
     for (plot, cell_count) in [(&left_plot, 360), (&right_plot, 200)] {
@@ -66,8 +63,8 @@ pub fn draw_singularities(robot: &Robot) -> String {
     }
     group = draw_singular_curves(group, &left_plot, robot);
     // The left panel shows the outline of the right panel.
-    let (left, top) = left_plot.to_page_point(path_square.x_range.0, path_square.y_range.1);
-    let (right, bottom) = left_plot.to_page_point(path_square.x_range.1, path_square.y_range.0);
+    let (left, top) = left_plot.to_page_point(x_range.0, y_range.1);
+    let (right, bottom) = left_plot.to_page_point(x_range.1, y_range.0);
     let outline = rectangle((left, top), (right - left, bottom - top), "none");
     group = group.add(add_outline(outline, DARK, 2.0));
     let styled_paths = || paths.iter().zip(PATH_STYLES.into_iter().cycle());
@@ -183,8 +180,8 @@ fn are_same_path(first: &[(f64, f64)], second: &[(f64, f64)]) -> bool {
         && second.iter().all(|point| is_near(point, first))
 }
 
-/// Returns a square plot that contains all paths.
-fn enclose_paths(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
+/// Returns the ranges of theta1 and theta4 of a square that contains all paths.
+fn enclose_paths(paths: &[(String, Vec<(f64, f64)>)]) -> [(f64, f64); 2] {
     let all_points = || paths.iter().flat_map(|(_, path)| path);
     let middle_and_half_range = |coordinate: fn(&(f64, f64)) -> f64| {
         let values = || all_points().map(coordinate);
@@ -195,12 +192,7 @@ fn enclose_paths(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
     let (x, half_width) = middle_and_half_range(|point| point.0);
     let (y, half_height) = middle_and_half_range(|point| point.1);
     let half_size = (half_width.max(half_height) + 5.0).ceil();
-    Plot {
-        corner: (0.0, 0.0),
-        size: (1.0, 1.0),
-        x_range: (x.round() - half_size, x.round() + half_size),
-        y_range: (y.round() - half_size, y.round() + half_size),
-    }
+    [x, y].map(|middle| (middle.round() - half_size, middle.round() + half_size))
 }
 
 /// Draws the singular curves within the plot, as short segments.

@@ -5,6 +5,7 @@ use lizard_paper::design::{CLAIMED_LCI, Performance, lci};
 use lizard_robot::Robot;
 use svg::node::element::{Circle, Group};
 
+use super::square_plot;
 use crate::shared::plot::{Axis, ColourScale, IMPOSSIBLE_COLOUR, Plot, VIRIDIS, draw_legend_entry};
 use crate::shared::shapes::{DARK, GREY, add_outline, add_title, render_svg, text_start};
 
@@ -21,12 +22,7 @@ pub fn draw_workspace(robot: &Robot) -> String {
     let five_bar = robot.lizard().end(End::Head);
     let workspace = Workspace::for_five_bar(&five_bar);
     let half_range = (workspace.outer_radius / 20.0).ceil() * 20.0 + 20.0;
-    let plot = Plot {
-        corner: (90.0, 90.0),
-        size: (720.0, 720.0),
-        x_range: (-half_range, half_range),
-        y_range: (-half_range, half_range),
-    };
+    let plot = square_plot((90.0, 90.0), 720.0, (-half_range, half_range));
     let mut group = plot.draw_grid(Group::new(), &X_AXIS, &Y_AXIS);
     group = plot.draw_map(group, (480, 480), |x, y| {
         workspace

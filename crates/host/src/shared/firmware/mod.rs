@@ -12,7 +12,7 @@
 pub use lizard_upload::format_robot_label;
 
 #[cfg(feature = "simulator")]
-pub use simulated::{Firmware, ReadError, built_in_image, read_image, read_with_robot};
+pub use simulated::{Firmware, built_in_image, read_image, read_with_robot};
 
 #[cfg(feature = "simulator")]
 pub(crate) use simulated::{count_code_bytes, remove_contacts, select_firmware};

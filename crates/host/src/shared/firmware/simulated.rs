@@ -1,6 +1,6 @@
 //! The firmware for a simulated UNO.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use lizard_core::numbers::section::{REGION_BYTES, START_ADDRESS};
 use lizard_robot::Robot;
@@ -20,53 +20,20 @@ pub struct Firmware {
     pub image: Image,
 }
 
-/// The error for a file that cannot be read, or is not a program for an AVR.
-#[derive(Debug, thiserror::Error)]
-#[error("{}: {error}; `make firmware` builds the firmware", path.display())]
-pub struct ReadError {
-    path: PathBuf,
-    error: LoadError,
-}
-
-impl From<ReadError> for Failure {
-    fn from(error: ReadError) -> Self {
-        Self::Input(error.to_string())
-    }
-}
-
 /// Reads the program of an ELF or HEX file.
 ///
 /// # Errors
 /// Fails if the file cannot be read, or is not a program for an AVR.
-pub fn read_image(path: &Path) -> Result<Image, ReadError> {
-    Image::read(record_input(path)).map_err(|error| ReadError {
-        path: path.to_owned(),
-        error,
-    })
+pub fn read_image(path: &Path) -> Result<Image, Failure> {
+    Image::read(record_input(path)).map_err(|error| read_failure(path, &error))
 }
 
-/// An error in the selection of a firmware.
-#[derive(Debug, thiserror::Error)]
-enum FirmwareError {
-    #[error("{0} does not exist; omit --elf to run the built-in firmware")]
-    Missing(String),
-    #[error(
-        "{} contains the robot {elf_robot}, expected {robot}, which is {robot_label}; omit --elf \
-         to run the built-in firmware with any robot",
-        elf.display()
-    )]
-    OtherRobot {
-        elf: PathBuf,
-        robot: String,
-        elf_robot: String,
-        robot_label: String,
-    },
-}
-
-impl From<FirmwareError> for Failure {
-    fn from(error: FirmwareError) -> Self {
-        Self::Input(error.to_string())
-    }
+/// Returns the failure for a file that cannot be read, or is not a program for an AVR.
+fn read_failure(path: &Path, error: &LoadError) -> Failure {
+    let name = path.display();
+    Failure::Input(format!(
+        "{name}: {error}; `make firmware` builds the firmware"
+    ))
 }
 
 /// Returns the firmware for a robot: the file `elf`, which must contain this robot, or the built-in code followed by
@@ -86,22 +53,24 @@ pub(crate) fn select_firmware(
         let image = built_in_image(robot);
         return Ok(Firmware { name, image });
     };
+    let name = elf.display().to_string();
     if !elf.is_file() {
-        return Err(FirmwareError::Missing(elf.display().to_string()).into());
+        return Err(Failure::Input(format!(
+            "{name} does not exist; omit --elf to run the built-in firmware"
+        )));
     }
     let image = read_image(elf)?;
     if let Some(robot_in_image) = find_robot(&image.flash())
         && robot_in_image.hash() != robot.firmware().hash()
     {
-        return Err(FirmwareError::OtherRobot {
-            robot: robot_args.name()?,
-            elf_robot: format_robot_label(&robot_in_image),
-            robot_label: format_robot_label(robot.firmware()),
-            elf: elf.to_owned(),
-        }
-        .into());
+        return Err(Failure::Input(format!(
+            "{name} contains the robot {}, expected {}, which is {}; omit --elf to run the \
+             built-in firmware with any robot",
+            format_robot_label(&robot_in_image),
+            robot_args.name()?,
+            format_robot_label(robot.firmware())
+        )));
     }
-    let name = elf.display().to_string();
     Ok(Firmware { name, image })
 }
 
@@ -139,13 +108,10 @@ pub(crate) fn remove_contacts(mut image: Image, robot: &Robot) -> Image {
 ///
 /// # Errors
 /// Fails if the file cannot be read, or is not a program for an AVR.
-pub fn read_with_robot(path: &Path, robot: &Robot) -> Result<Image, ReadError> {
+pub fn read_with_robot(path: &Path, robot: &Robot) -> Result<Image, Failure> {
     let mut image = read_image(path)?;
     if find_robot(&image.flash()).is_some() {
-        replace_robot(&mut image, robot).map_err(|error| ReadError {
-            path: path.to_owned(),
-            error,
-        })?;
+        replace_robot(&mut image, robot).map_err(|error| read_failure(path, &error))?;
     }
     Ok(image)
 }

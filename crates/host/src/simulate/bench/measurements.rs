@@ -4,9 +4,14 @@ use std::iter::zip;
 use std::path::Path;
 use std::time::Instant;
 
+use lizard_core::numbers::section::{REGION_BYTES, START_ADDRESS};
 use lizard_robot::{CheckedGait, Robot, to_command};
 use simulated_uno::{Call, Fidelity, Pin};
 
+use super::budget::{
+    Bound, BudgetRow, MAIN_FRACTION, MAX_OTHER_INTERRUPT_CYCLES, MAX_WALL_S, TICK_BUDGET_CYCLES,
+    TICK_BUDGET_WITHOUT_MAPS_CYCLES, TICK_DEADLINE_CYCLES,
+};
 use super::exactness::Exactness;
 use super::stack::StackDepth;
 use crate::Failure;
@@ -15,72 +20,6 @@ use crate::simulate::board::{BoardError, SimulatedBoard};
 use crate::simulate::patrol::PATROL;
 use crate::simulate::sim::frame::FRAME_CYCLES;
 use crate::simulate::sim::gait_choice;
-
-/// The firmware's costs and exactness. A cycle is 62.5 ns. A value that could not be measured is `None`: the values of
-/// a gait if the robot has no moving gait, and the width errors if the firmware was built from another source, because
-/// its commanded widths are then not known.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Measurements {
-    /// The measured gait: the robot's first moving gait.
-    pub gait: Option<String>,
-    /// Flash bytes of the code, including its tables and initial values.
-    pub code_bytes: u32,
-    /// Flash bytes of the robot's section.
-    pub section_bytes: u32,
-    /// True if the section has maps of certified cells; otherwise the guard checks every pose.
-    pub has_maps: bool,
-    /// Bytes of static data in RAM.
-    pub static_ram: u16,
-    /// Smallest measured number of bytes between the stack and static data.
-    pub measured_stack_margin: u16,
-    /// Number of bytes between static data and the deepest possible stack, computed by [`StackDepth`]; negative if they
-    /// collide.
-    pub predicted_stack_margin: i32,
-    /// Mean cycles of the control tick, without interrupts, in the gait with the largest mean.
-    pub mean_tick_cycles: Option<f64>,
-    /// Cycles of the longest control tick in any motion, without interrupts.
-    pub max_tick_cycles: u64,
-    /// Mean cycles of the control tick in a routine with inputs, without interrupts; `None` if there is no such
-    /// routine.
-    pub mean_routine_tick_cycles: Option<f64>,
-    /// Cycles of the longest control tick in a routine with inputs, without interrupts; `None` if there is no such
-    /// routine.
-    pub max_routine_tick_cycles: Option<u64>,
-    /// Most cycles from a control tick to the end of its computation while the serial line is saturated in both
-    /// directions, including interrupts and answers.
-    pub max_tick_latency: u64,
-    /// Cycles of main's longest step except the control tick, without interrupts. A step writes a line, executes a
-    /// received line, or saves or loads a part of the settings.
-    pub max_step_cycles: u64,
-    /// Mean cycles of the guard in a control tick of the gait.
-    pub mean_guard_cycles: Option<f64>,
-    /// Mean cycles of main in a frame of the gait, including the control tick.
-    pub mean_main_cycles: Option<f64>,
-    /// Mean cycles of the servo interrupts in a frame.
-    pub mean_servo_interrupt_cycles: f64,
-    /// Cycles of the longest serial interrupt, which is also the longest delay of a servo interrupt.
-    pub max_serial_interrupt_cycles: u64,
-    /// Time in which the CPU is asleep during the gait, percent.
-    pub asleep_percent: Option<f64>,
-    /// Peak-to-peak error of the widths on an idle serial line, cycles.
-    pub jitter_idle: Option<u64>,
-    /// Peak-to-peak error of the widths while the serial line is saturated in both directions, cycles.
-    pub jitter_saturated: Option<u64>,
-    /// Largest deviation of a width from its command, on the idle and the saturated line, cycles.
-    pub max_width_error: Option<u64>,
-    /// Largest deviation of a servo's period from 20 ms, on the idle and the saturated line, cycles.
-    pub max_period_error: u64,
-    /// Largest number of servo pins high at the same time, on the idle and the saturated line.
-    pub max_pins_high: u32,
-    /// The greatest common divisor of all width changes in the gait, cycles.
-    pub width_resolution: Option<u64>,
-    /// Edges that the firmware counts as late.
-    pub late_edges: u64,
-    /// Bytes that the firmware counts as lost while the sender waits for answers.
-    pub lost_bytes: u64,
-    /// Wall time of ten simulated minutes of the gait, s.
-    pub wall_s: f64,
-}
 
 /// The firmware's function that computes a frame: the control tick.
 const TICK_FUNCTION: &str = "Controller::compute_frame";
@@ -126,107 +65,138 @@ const INTERRUPT_ENTRY_CYCLES: u64 = 7;
 /// Simulated time of the long run, ms: ten minutes.
 const LONG_RUN_MS: u64 = 600_000;
 
-impl Measurements {
-    /// Measures the firmware in an ELF with `robot`. `patrol_robot` is the same robot with the routine [`PATROL`];
-    /// without it, no routine is measured. `report_progress` receives each measurement's name before the measurement.
-    ///
-    /// # Errors
-    /// Fails if the firmware cannot be loaded, stops or does not answer, or if its stack depth cannot be computed.
-    pub fn measure(
-        elf: &Path,
-        robot: &Robot,
-        patrol_robot: Option<&Robot>,
-        report_progress: impl Fn(&'static str),
-    ) -> Result<Self, Failure> {
-        let gaits = list_demonstration_commands(robot);
-        // A robot without a moving gait is measured while it stands.
-        let gait = gaits.first().map_or("stand", String::as_str);
-        let turn_gait = gaits.last().map_or("stand", String::as_str);
-        let is_moving = !gaits.is_empty();
-        let boot_board = || run_first_second(elf, robot);
-        report_progress("the stack's depth");
-        let image = firmware::read_image(elf)?;
-        let stack =
-            StackDepth::compute(&image).map_err(|error| Failure::Operation(error.to_string()))?;
-        report_progress("pulses on an idle line");
-        let mut idle_run = GaitRun::record(boot_board()?, gait, 20_000)?;
-        let command_bytes = idle_run.board.uno.received_by_uno().len();
-        let idle_exactness =
-            Exactness::measure(&mut idle_run.board, robot.firmware(), command_bytes)?;
-        report_progress("pulses on a saturated line");
-        let (mut saturated_board, command_bytes) =
-            run_gait_on_saturated_line(boot_board()?, turn_gait)?;
-        let saturated_exactness =
-            Exactness::measure(&mut saturated_board, robot.firmware(), command_bytes)?;
-        report_progress("every command");
-        let mut session_board = run_all_commands(boot_board()?, robot)?;
-        report_progress("the control tick in every motion");
-        let tick_calls =
-            time_calls_per_command(boot_board()?, TICK_FUNCTION, &list_motion_commands(robot))?;
-        let gait_calls = tick_calls.iter().take(robot.gaits().len());
-        report_progress("the control tick in a routine");
-        let routine_calls = patrol_robot.map(|robot| time_patrol(elf, robot));
-        let routine_calls = routine_calls.transpose()?;
-        report_progress("the guard");
-        let guard_calls = time_calls_per_command(boot_board()?, GUARD_FUNCTION, &[gait])?.concat();
-        report_progress("the control tick on a saturated line");
-        let max_tick_latency = measure_longest_tick_latency(boot_board()?, turn_gait)?;
-        report_progress("every other step");
-        let max_step_cycles = measure_longest_step(elf, robot)?;
-        report_progress("serial interrupts");
-        let max_serial_interrupt_cycles = measure_longest_serial_interrupt(boot_board, turn_gait)?;
-        report_progress("ten minutes of a gait");
-        let start = Instant::now();
-        let long_run = GaitRun::record(boot_board()?, gait, LONG_RUN_MS)?;
-        let wall_s = start.elapsed().as_secs_f64();
+/// Measures the firmware in an ELF with `robot`, and returns each measurement with its budget. A value that could not be
+/// measured is `None`: the values of a gait if the robot has no moving gait, and the width errors if the firmware was
+/// built from another source, because its commanded widths are then not known. `patrol_robot` is the same robot with
+/// the routine [`PATROL`]; without it, no routine is measured. `report_progress` receives each measurement's name before
+/// the measurement.
+///
+/// A cycle is 62.5 ns. The cycles of a control tick, of the guard and of a step exclude interrupts; the cycles from a
+/// tick to its frame include them. The longest serial interrupt is also the longest delay of a servo interrupt.
+///
+/// # Errors
+/// Fails if the firmware cannot be loaded, stops or does not answer, or if its stack depth cannot be computed.
+pub fn measure(
+    elf: &Path,
+    robot: &Robot,
+    patrol_robot: Option<&Robot>,
+    report_progress: impl Fn(&'static str),
+) -> Result<Vec<BudgetRow>, Failure> {
+    use Bound::{AtLeast, AtMost};
+    let gaits = list_demonstration_commands(robot);
+    // A robot without a moving gait is measured while it stands.
+    let gait = gaits.first().map_or("stand", String::as_str);
+    let turn_gait = gaits.last().map_or("stand", String::as_str);
+    let is_moving = !gaits.is_empty();
+    let boot_board = || run_first_second(elf, robot);
+    report_progress("the stack's depth");
+    let image = firmware::read_image(elf)?;
+    let stack =
+        StackDepth::compute(&image).map_err(|error| Failure::Operation(error.to_string()))?;
+    report_progress("pulses on an idle line");
+    let mut idle_run = GaitRun::record(boot_board()?, gait, 20_000)?;
+    let command_bytes = idle_run.board.uno.received_by_uno().len();
+    let idle = Exactness::measure(&mut idle_run.board, robot.firmware(), command_bytes)?;
+    report_progress("pulses on a saturated line");
+    let (mut saturated_board, command_bytes) =
+        run_gait_on_saturated_line(boot_board()?, turn_gait)?;
+    let saturated = Exactness::measure(&mut saturated_board, robot.firmware(), command_bytes)?;
+    report_progress("every command");
+    let mut session_board = run_all_commands(boot_board()?, robot)?;
+    report_progress("the control tick in every motion");
+    let tick_calls =
+        time_calls_per_command(boot_board()?, TICK_FUNCTION, &list_motion_commands(robot))?;
+    let gait_calls = tick_calls.iter().take(robot.gaits().len());
+    report_progress("the control tick in a routine");
+    let routine_calls = patrol_robot.map(|robot| time_patrol(elf, robot));
+    let routine_calls = routine_calls.transpose()?;
+    report_progress("the guard");
+    let guard_calls = time_calls_per_command(boot_board()?, GUARD_FUNCTION, &[gait])?.concat();
+    report_progress("the control tick on a saturated line");
+    let tick_latency = measure_longest_tick_latency(boot_board()?, turn_gait)?;
+    report_progress("every other step");
+    let step_cycles = measure_longest_step(elf, robot)?;
+    report_progress("serial interrupts");
+    let serial_cycles = measure_longest_serial_interrupt(boot_board, turn_gait)?;
+    report_progress("ten minutes of a gait");
+    let start = Instant::now();
+    let long_run = GaitRun::record(boot_board()?, gait, LONG_RUN_MS)?;
+    let wall_s = start.elapsed().as_secs_f64();
 
-        let frame_count = idle_run.cycles as f64 / FRAME_CYCLES as f64;
-        let some_if_moving = |value: f64| is_moving.then_some(value);
-        let (idle, saturated) = (&idle_exactness, &saturated_exactness);
-        let max_width_errors = idle.max_width_error().zip(saturated.max_width_error());
-        let [session_spare, saturated_spare] =
-            [&session_board, &saturated_board].map(|board| board.uno.stack_spare());
-        let image = long_run.board.uno.image();
-        let mean_gait_cycles = gait_calls.map(|calls| compute_mean_cycles(calls));
-        let asleep_percent = 100.0 - 100.0 * idle_run.awake_cycles as f64 / idle_run.cycles as f64;
-        let main_cycles = (idle_run.awake_cycles - idle_run.handler_cycles) as f64;
-        Ok(Self {
-            code_bytes: firmware::count_code_bytes(image, robot),
-            section_bytes: robot.section().len() as u32,
-            has_maps: robot.has_room_for_maps(),
-            static_ram: image.static_ram(),
-            measured_stack_margin: session_spare.min(saturated_spare),
-            predicted_stack_margin: stack.margin(),
-            mean_tick_cycles: some_if_moving(mean_gait_cycles.fold(0.0, f64::max)),
-            max_tick_cycles: compute_max_cycles(&tick_calls.concat()),
-            mean_routine_tick_cycles: routine_calls.as_deref().map(compute_mean_cycles),
-            max_routine_tick_cycles: routine_calls.as_deref().map(compute_max_cycles),
-            max_tick_latency,
-            max_step_cycles,
-            mean_guard_cycles: some_if_moving(compute_mean_cycles(&guard_calls)),
-            mean_main_cycles: some_if_moving(main_cycles / frame_count),
-            mean_servo_interrupt_cycles: idle_run.servo_handler_cycles as f64 / frame_count,
-            max_serial_interrupt_cycles,
-            asleep_percent: some_if_moving(asleep_percent),
-            jitter_idle: idle.jitter(),
-            jitter_saturated: saturated.jitter(),
-            max_width_error: max_width_errors.map(|(idle, saturated)| idle.max(saturated)),
-            max_period_error: idle.max_period_error.max(saturated.max_period_error),
-            max_pins_high: idle.max_pins_high.max(saturated.max_pins_high),
-            width_resolution: idle.width_step,
-            late_edges: session_board.read_counter("late")?
-                + saturated_board.read_counter("late")?,
-            lost_bytes: session_board.read_counter("rx_lost")?,
-            wall_s,
-            gait: gaits.first().cloned(),
-        })
-    }
+    let some_if_moving = |value: f64| is_moving.then_some(value);
+    let measured_if_known = |value: Option<u64>| value.map(|value| value as f64);
+    let always_measured = |value: u64| Some(value as f64);
+    let width_errors = idle.max_width_error.zip(saturated.max_width_error);
+    let width_error = width_errors.map(|(idle, saturated)| idle.max(saturated));
+    let period_error = idle.max_period_error.max(saturated.max_period_error);
+    let pins_high = idle.max_pins_high.max(saturated.max_pins_high);
+    let [session_spare, saturated_spare] =
+        [&session_board, &saturated_board].map(|board| board.uno.stack_spare());
+    let late_edges = session_board.read_counter("late")? + saturated_board.read_counter("late")?;
+    let lost_bytes = session_board.read_counter("rx_lost")?;
+    let image = long_run.board.uno.image();
+    let code_bytes = firmware::count_code_bytes(image, robot);
+    let frame_count = idle_run.cycles as f64 / FRAME_CYCLES as f64;
+    // The mean of the gait with the largest mean, and the longest tick in any motion.
+    let mean_tick = gait_calls.map(|calls| compute_mean_cycles(calls));
+    let mean_tick = some_if_moving(mean_tick.fold(0.0, f64::max));
+    let max_tick = compute_max_cycles(&tick_calls.concat());
+    let mean_routine_tick = routine_calls.as_deref().map(compute_mean_cycles);
+    let max_routine_tick = routine_calls.as_deref().map(compute_max_cycles);
+    let mean_guard = some_if_moving(compute_mean_cycles(&guard_calls));
+    // Main's cycles include the control tick.
+    let main_cycles = (idle_run.awake_cycles - idle_run.handler_cycles) as f64;
+    let mean_main = some_if_moving(main_cycles / frame_count);
+    let mean_servo_interrupts = idle_run.servo_handler_cycles as f64 / frame_count;
+    let asleep_percent = 100.0 - 100.0 * idle_run.awake_cycles as f64 / idle_run.cycles as f64;
+    let asleep_percent = some_if_moving(asleep_percent);
+    let [mean_tick_budget, max_tick_budget] = if robot.has_room_for_maps() {
+        TICK_BUDGET_CYCLES
+    } else {
+        TICK_BUDGET_WITHOUT_MAPS_CYCLES
+    };
+    let step_budget = MAIN_FRACTION * TICK_DEADLINE_CYCLES - max_tick_budget;
+    let row = BudgetRow::new;
+    let wall_row = |name, unit, measured, budget| BudgetRow {
+        is_machine_dependent: true,
+        ..row(name, unit, Some(measured), budget, None)
+    };
+    #[rustfmt::skip]
+    let rows = vec![
+        row("pulse jitter, idle line", "cycles", measured_if_known(idle.jitter), AtMost(0.0), Some("77-113")),
+        row("pulse jitter, line saturated", "cycles", measured_if_known(saturated.jitter), AtMost(0.0), Some("121-135")),
+        row("width minus command, worst", "cycles", measured_if_known(width_error), AtMost(0.0), None),
+        row("width resolution", "cycles", measured_if_known(idle.width_step), AtMost(1.0), Some("16")),
+        row("period minus 20 ms, worst", "cycles", always_measured(period_error), AtMost(0.0), None),
+        row("servo pins high at once", "", always_measured(pins_high.into()), AtMost(1.0), None),
+        row("late edges counted", "", always_measured(late_edges), AtMost(0.0), None),
+        row("bytes lost, sender waits", "bytes", always_measured(lost_bytes), AtMost(0.0), None),
+        row("control tick, mean in any gait", "cycles", mean_tick, AtMost(mean_tick_budget), None),
+        row("  of which the guard", "cycles", mean_guard, Bound::None, Some("35 400, float solve")),
+        row("control tick, worst", "cycles", always_measured(max_tick), AtMost(max_tick_budget), None),
+        row("  in a routine, mean", "cycles", mean_routine_tick, AtMost(mean_tick_budget), None),
+        row("  in a routine, worst", "cycles", measured_if_known(max_routine_tick), AtMost(max_tick_budget), None),
+        row("tick to frame, line saturated", "cycles", always_measured(tick_latency), AtMost(TICK_DEADLINE_CYCLES), None),
+        row("any other step, worst", "cycles", always_measured(step_cycles), AtMost(step_budget), None),
+        row("main, mean per frame of a gait", "cycles", mean_main, Bound::None, None),
+        row("servo interrupts per frame", "cycles", Some(mean_servo_interrupts), Bound::None, Some("1 513")),
+        row("longest serial interrupt", "cycles", always_measured(serial_cycles), AtMost(MAX_OTHER_INTERRUPT_CYCLES), None),
+        row("CPU asleep in a gait", "%", asleep_percent, AtLeast(90.0), Some("0")),
+        row("flash, code", "bytes", Some(code_bytes.into()), AtMost(START_ADDRESS.into()), Some("5 994")),
+        row("flash, the robot's section", "bytes", Some(robot.section().len() as f64), AtMost(REGION_BYTES.into()), None),
+        row("static RAM", "bytes", Some(image.static_ram().into()), AtMost(900.0), Some("365")),
+        row("between stack and static RAM", "bytes", Some(session_spare.min(saturated_spare).into()), AtLeast(400.0), None),
+        row("  with the deepest stack", "bytes", Some(stack.margin().into()), AtLeast(400.0), None),
+        wall_row("ten simulated minutes", "s", wall_s, AtMost(MAX_WALL_S)),
+        wall_row("  times faster than a board", "", LONG_RUN_MS as f64 / 1000.0 / wall_s, Bound::None),
+    ];
+    Ok(rows)
 }
 
 /// Measures the cycles of main's longest step except the control tick, without interrupts.
 ///
 /// # Errors
-/// See [`Measurements::measure`].
+/// See [`measure`].
 pub fn measure_longest_step(elf: &Path, robot: &Robot) -> Result<u64, BoardError> {
     let gaits = list_demonstration_commands(robot);
     let gait = gaits.first().map_or("stand", String::as_str);
@@ -240,7 +210,7 @@ pub fn measure_longest_step(elf: &Path, robot: &Robot) -> Result<u64, BoardError
 }
 
 /// Lists the commands of the demonstration gaits.
-fn list_demonstration_commands(robot: &Robot) -> Vec<String> {
+pub(super) fn list_demonstration_commands(robot: &Robot) -> Vec<String> {
     let gaits = gait_choice::choose_demonstration_gaits(robot);
     gaits.into_iter().map(to_command).collect()
 }
@@ -406,8 +376,7 @@ fn measure_longest_call(
     board.say(gait)?;
     let mut max_cycles = 0;
     for line in lines {
-        board.uno.send(line.as_bytes());
-        board.uno.send(b"\n");
+        board.send(line);
         let calls = board.time_calls(function, 400)?;
         max_cycles = max_cycles.max(compute_max_cycles(&calls));
     }

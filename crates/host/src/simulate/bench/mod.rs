@@ -15,8 +15,8 @@ use crate::shared::progress::create_spinner;
 use crate::simulate::patrol::add_patrol;
 use crate::{Failure, RobotArgs};
 
-pub use budget::{Bound, BudgetRow, list_rows};
-pub use measurements::{Measurements, measure_longest_step};
+pub use budget::{Bound, BudgetRow};
+pub use measurements::{measure, measure_longest_step};
 pub use stack::{StackDepth, StackError};
 
 /// Measure the firmware on a simulated Arduino UNO against its budgets
@@ -38,22 +38,6 @@ pub struct Args {
     robot: RobotArgs,
 }
 
-/// A row and its verdict; the field names are the JSON keys.
-#[derive(serde::Serialize)]
-struct JudgedRow<'a> {
-    #[serde(flatten)]
-    row: &'a BudgetRow,
-    /// True if the value is within its budget.
-    met: bool,
-}
-
-impl<'a> JudgedRow<'a> {
-    fn new(row: &'a BudgetRow) -> Self {
-        let met = row.is_within_budget();
-        Self { row, met }
-    }
-}
-
 /// Measures the firmware and prints the table.
 ///
 /// # Errors
@@ -72,20 +56,18 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let patrol_robot = add_patrol(&args.robot.text()?, &[]).ok();
     let spinner = create_spinner("");
     let show_measurement = |measurement: &'static str| spinner.set_message(measurement);
-    let measurements =
-        Measurements::measure(&elf, &robot, patrol_robot.as_ref(), show_measurement)?;
+    let rows = measure(&elf, &robot, patrol_robot.as_ref(), show_measurement)?;
     drop(spinner);
 
-    let rows = list_rows(&measurements);
     let mut out = io::stdout().lock();
     if args.json {
-        let rows: Vec<_> = rows.iter().map(JudgedRow::new).collect();
         let elf = elf.display().to_string();
         writeln!(out, "{}", serde_json::json!({ "elf": elf, "rows": rows }))?;
     } else {
-        table::print(&rows, measurements.gait.as_deref(), &mut out)?;
+        let gaits = measurements::list_demonstration_commands(&robot);
+        table::print(&rows, gaits.first().map(String::as_str), &mut out)?;
     }
-    let rows_over_budget = rows.iter().filter(|row| !row.is_within_budget());
+    let rows_over_budget = rows.iter().filter(|row| !row.is_within_budget);
     let names_over_budget: Vec<&str> = rows_over_budget.map(|row| row.name).collect();
     if names_over_budget.is_empty() {
         return Ok(());

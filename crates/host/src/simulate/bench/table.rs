@@ -21,24 +21,21 @@ pub fn print(rows: &[BudgetRow], gait: Option<&str>, out: &mut impl Write) -> io
             Bound::AtLeast(min) => format!("at least {}", group_digits(min, 0)),
             Bound::None => "-".to_owned(),
         };
-        let decimals = if row.unit == "%" || row.unit == "s" {
-            1
+        let decimals = match row.unit {
+            "%" | "s" => 1,
+            _ => 0,
+        };
+        let measured = row.measured.map(|value| group_digits(value, decimals));
+        let measured = measured.as_deref().unwrap_or("-");
+        let servo_library = row.servo_library.unwrap_or("");
+        let mark = if row.is_within_budget {
+            ""
         } else {
-            0
+            "  OVER BUDGET"
         };
         let line = format!(
-            "{:<30} {:>10} {:<7} {:>16}   {}{}",
-            row.name,
-            row.measured
-                .map_or("-".to_owned(), |measured| group_digits(measured, decimals)),
-            row.unit,
-            budget,
-            row.servo_library.unwrap_or(""),
-            if row.is_within_budget() {
-                ""
-            } else {
-                "  OVER BUDGET"
-            },
+            "{:<30} {measured:>10} {:<7} {budget:>16}   {servo_library}{mark}",
+            row.name, row.unit
         );
         writeln!(out, "{}", line.trim_end())?;
     }
@@ -46,10 +43,9 @@ pub fn print(rows: &[BudgetRow], gait: Option<&str>, out: &mut impl Write) -> io
         Some(gait) => format!("The gait is {gait}."),
         None => "-: not measured, because this robot has no moving gait.".to_owned(),
     };
-    if rows
-        .iter()
-        .any(|row| row.name == "width minus command, worst" && row.measured.is_none())
-    {
+    let lacks_commands =
+        |row: &BudgetRow| row.name == "width minus command, worst" && row.measured.is_none();
+    if rows.iter().any(lacks_commands) {
         writeln!(
             out,
             "\nThis firmware was not built from the same source and robot.toml as this program; \
@@ -65,14 +61,8 @@ mod tests {
 
     #[test]
     fn a_value_over_its_budget_is_marked() {
-        let row = BudgetRow {
-            name: "flash",
-            unit: "bytes",
-            measured: Some(20_000.0),
-            budget: Bound::AtMost(16_384.0),
-            servo_library: Some("5 994"),
-            is_machine_dependent: false,
-        };
+        let budget = Bound::AtMost(16_384.0);
+        let row = BudgetRow::new("flash", "bytes", Some(20_000.0), budget, Some("5 994"));
         let mut text = Vec::new();
         print(&[row], None, &mut text).expect("writing to a vector succeeds");
         let text = String::from_utf8(text).expect("the table is UTF-8");

@@ -10,6 +10,7 @@ use simulated_uno::{CYCLES_PER_US, FREQUENCY};
 use super::frame::{FRAME_CYCLES, Frame};
 use super::frame_log::FrameLog;
 use super::spans::Span;
+use crate::shared::displacement::Displacement;
 use crate::shared::shapes::pin_name;
 
 /// The servo angles of one frame.
@@ -74,25 +75,15 @@ pub struct Safety {
     pub first_violation: Option<String>,
 }
 
-/// The robot's displacement during one command, according to the contact model; the serialized field names are the
-/// JSON keys.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// The robot's displacement during one command, according to the contact model.
+#[derive(Debug, Clone, Serialize)]
 pub struct CommandPath {
-    /// The command in effect.
-    pub command: String,
-    /// Start of the command, s since power-on.
-    #[serde(rename = "from")]
-    pub start_s: f64,
-    /// End of the command, s since power-on.
-    #[serde(rename = "to")]
-    pub end_s: f64,
-    /// Displacement forward, mm; `None` if the contact model cannot determine it because two feet balance the other two
-    /// (a tie).
-    pub forward: Option<f64>,
-    /// Displacement to the left, mm; `None` if a tie leaves it undetermined.
-    pub left: Option<f64>,
-    /// Turn counter-clockwise, deg; `None` if a tie leaves it undetermined.
-    pub turn: Option<f64>,
+    /// The command in effect, and its time span.
+    #[serde(flatten)]
+    pub span: Span,
+    /// The displacement during the time span.
+    #[serde(flatten)]
+    pub displacement: Displacement,
 }
 
 impl ServoFrame {
@@ -255,10 +246,7 @@ impl Safety {
 /// rigid here, so that repeated pairs of frames are computed only once; in `lizard twin`, legs lag. Feet are never
 /// lifted; see [`lizard_robot::GroundContact`].
 pub fn compute_command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
-    let mut travel_cache = TravelCache {
-        run,
-        travels: HashMap::new(),
-    };
+    let mut travel_cache = HashMap::new();
     let mut total = NO_TRAVEL;
     let mut are_all_determined = [true; 3];
     let mut determined_by_command = HashMap::new();
@@ -266,7 +254,7 @@ pub fn compute_command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
     for span in spans {
         let mut travel = NO_TRAVEL;
         for index in run.log.index_at(span.start_s)..run.log.index_at(span.end_s) {
-            let frame_travel = travel_cache.compute_travel(index);
+            let frame_travel = compute_frame_travel(run, index, &mut travel_cache);
             travel = compose_travel(travel, frame_travel);
             total = compose_travel(total, frame_travel);
         }
@@ -274,11 +262,16 @@ pub fn compute_command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
             .entry(span.command.as_str())
             .or_insert_with(|| find_determined_components(run.robot, &span.command));
         are_all_determined = std::array::from_fn(|i| are_all_determined[i] && are_determined[i]);
-        paths.push(CommandPath::new(span, travel, are_determined));
+        paths.push(CommandPath {
+            span: span.clone(),
+            displacement: Displacement::from_travel(travel, are_determined),
+        });
     }
     let end_s = spans.last().map_or(0.0, |span| span.end_s);
-    let complete_span = Span::new("all", 0.0, end_s);
-    paths.push(CommandPath::new(&complete_span, total, are_all_determined));
+    paths.push(CommandPath {
+        span: Span::new("all", 0.0, end_s),
+        displacement: Displacement::from_travel(total, are_all_determined),
+    });
     paths
 }
 
@@ -286,23 +279,8 @@ pub fn compute_command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
 /// component that depends on a tie is not determined.
 fn find_determined_components(robot: &Robot, command: &str) -> [bool; 3] {
     robot.find_gait_in_line(command).map_or([true; 3], |gait| {
-        let prediction = robot.predict(gait);
-        [prediction.forward, prediction.left, prediction.turn].map(|component| component.is_some())
+        Displacement::from(robot.predict(gait)).are_determined()
     })
-}
-
-impl CommandPath {
-    fn new(span: &Span, travel: Travel, are_determined: [bool; 3]) -> Self {
-        let keep_determined = |index: usize, value| are_determined[index].then_some(value);
-        Self {
-            command: span.command.clone(),
-            start_s: span.start_s,
-            end_s: span.end_s,
-            forward: keep_determined(0, travel.forward),
-            left: keep_determined(1, travel.left),
-            turn: keep_determined(2, travel.turn),
-        }
-    }
 }
 
 /// The travel of a standing robot.
@@ -312,37 +290,30 @@ const NO_TRAVEL: Travel = Travel {
     turn: 0.0,
 };
 
-/// Pulse widths of a frame and the next frame, cycles.
-type WidthPair = [[u16; 4]; 2];
-
-/// The robot's displacements from one frame to the next, computed on demand and cached, because a gait repeats its
-/// frames.
-struct TravelCache<'a> {
-    run: Run<'a>,
-    travels: HashMap<WidthPair, Travel>,
-}
-
-impl TravelCache<'_> {
-    /// Computes the displacement from frame `index` to the next; zero while the robot rests, and for the last frame.
-    fn compute_travel(&mut self, index: usize) -> Travel {
-        /// Largest number of frame pairs in the cache, a few megabytes.
-        const MAX_CACHED_PAIRS: usize = 100_000;
-        let frames = &self.run.log.widths;
-        let Some(next) = frames.get(index + 1) else {
-            return NO_TRAVEL;
-        };
-        let pair = [frames[index], *next];
-        if let Some(travel) = self.travels.get(&pair) {
-            return *travel;
-        }
-        let servo_frames = self.run.servo_frames_in(index..index + 2);
-        let sweeps = servo_frames.filter_map(|servo_frame| servo_frame.sweeps);
-        let travel = self.run.robot.ground().with_rigid_drive().travel(sweeps);
-        if self.travels.len() < MAX_CACHED_PAIRS {
-            self.travels.insert(pair, travel);
-        }
-        travel
+/// Computes the displacement from frame `index` to the next; zero while the robot rests, and for the last frame.
+/// `travels` caches the displacements by the pulse widths of both frames, because a gait repeats its frames.
+fn compute_frame_travel(
+    run: Run<'_>,
+    index: usize,
+    travels: &mut HashMap<[[u16; 4]; 2], Travel>,
+) -> Travel {
+    /// Largest number of frame pairs in the cache, a few megabytes.
+    const MAX_CACHED_PAIRS: usize = 100_000;
+    let frames = &run.log.widths;
+    let Some(next) = frames.get(index + 1) else {
+        return NO_TRAVEL;
+    };
+    let pair = [frames[index], *next];
+    if let Some(travel) = travels.get(&pair) {
+        return *travel;
     }
+    let servo_frames = run.servo_frames_in(index..index + 2);
+    let sweeps = servo_frames.filter_map(|servo_frame| servo_frame.sweeps);
+    let travel = run.robot.ground().with_rigid_drive().travel(sweeps);
+    if travels.len() < MAX_CACHED_PAIRS {
+        travels.insert(pair, travel);
+    }
+    travel
 }
 
 /// Composes two displacements; `second` is relative to the end of `first`.

@@ -31,58 +31,40 @@ const MAX_READING_CYCLES: u64 = 3_000;
 /// Largest number of frames from power-on to A1's first pulse.
 const MAX_FRAMES_TO_WAKE: usize = 500;
 
-/// The firmware's main loop on a virtual board.
-struct CoreRun {
-    running_robot: RunningRobot,
+/// Starts a robot's main loop on a virtual board with healthy supplies.
+fn power_on(robot: Robot<'static>) -> RunningRobot {
+    let supplies = robot.supplies();
+    let mut board = VirtualBoard::default();
+    board.transmitter = Transmitter::new(CYCLES_PER_BYTE, SERIAL_CAPACITY_BYTES);
+    board.adc = Adc::new(
+        supplies::healthy_reading(&supplies),
+        supplies.rail_reference_mv != 0,
+    );
+    RunningRobot::with_flash(robot.section(), board)
 }
 
-impl CoreRun {
-    fn new(robot: Robot<'static>) -> Self {
-        let supplies = robot.supplies();
-        let mut board = VirtualBoard::default();
-        board.transmitter = Transmitter::new(CYCLES_PER_BYTE, SERIAL_CAPACITY_BYTES);
-        board.adc = Adc::new(
-            supplies::healthy_reading(&supplies),
-            supplies.rail_reference_mv != 0,
-        );
-        Self {
-            running_robot: RunningRobot::with_flash(robot.section(), board),
-        }
-    }
+/// Runs the main loop from `cycle` until it has nothing left to do.
+fn wake(run: &mut RunningRobot, cycle: u64) {
+    run.board.transmitter.set_cycle(cycle);
+    run.settle();
+}
 
-    /// Runs the main loop from `cycle` until it has nothing left to do.
-    fn wake(&mut self, cycle: u64) {
-        self.running_robot.board.transmitter.set_cycle(cycle);
-        self.running_robot.settle();
-    }
+/// Runs a control tick at `cycle` and returns the pulse widths of its frame, cycles.
+fn tick(run: &mut RunningRobot, cycle: u64) -> [u16; 4] {
+    wake(run, cycle);
+    run.board.tick();
+    _ = run.main.step(&mut run.board);
+    let widths = run.board.submitted_pulses().0.map(|width| width.0);
+    // The output of a frame is written as soon as the frame is computed.
+    wake(run, cycle + FRAME_COMPUTE_CYCLES);
+    widths
+}
 
-    /// Runs a control tick at `cycle` and returns the pulse widths of its frame, cycles.
-    fn tick(&mut self, cycle: u64) -> [u16; 4] {
-        self.wake(cycle);
-        self.running_robot.board.tick();
-        _ = self.running_robot.main.step(&mut self.running_robot.board);
-        let widths = self
-            .running_robot
-            .board
-            .submitted_pulses()
-            .0
-            .map(|width| width.0);
-        // The output of a frame is written as soon as the frame is computed.
-        self.wake(cycle + FRAME_COMPUTE_CYCLES);
-        widths
-    }
-
-    /// Returns the cycle for writing waiting lines and reading waiting bytes; `None` if nothing waits.
-    fn compute_next_wake_cycle(&self) -> Option<u64> {
-        let board = &self.running_robot.board;
-        let is_waiting = board.unread_count() > 0 || self.running_robot.has_output();
-        is_waiting.then(|| {
-            board
-                .transmitter
-                .idle_from_cycle()
-                .saturating_sub(MAX_QUEUED_BYTES * CYCLES_PER_BYTE)
-        })
-    }
+/// Returns the cycle for writing waiting lines and reading waiting bytes; `None` if nothing waits.
+fn compute_next_wake_cycle(run: &RunningRobot) -> Option<u64> {
+    let is_waiting = run.board.unread_count() > 0 || run.has_output();
+    let idle_from_cycle = run.board.transmitter.idle_from_cycle();
+    is_waiting.then(|| idle_from_cycle.saturating_sub(MAX_QUEUED_BYTES * CYCLES_PER_BYTE))
 }
 
 /// The core's pulse widths and text.
@@ -94,20 +76,10 @@ pub struct CoreOutput {
     pub text: String,
 }
 
-/// Runs a robot's core on a recording: `received` are the bytes that reached the UNO, `first_pulse_cycle` is the cycle
-/// of A1's first pulse, and `frame_count` is the number of frames from this pulse on. The result is exact except for
-/// the effects of the lines that [`find_undetermined_lines`] returns.
+/// Runs a robot's core on a recording: `received` are the bytes that reached the UNO, `contacts` are the contacts that
+/// closed and opened, `first_pulse_cycle` is the cycle of A1's first pulse, and `frame_count` is the number of frames
+/// from this pulse on. The result is exact except for the effects of the lines that [`find_undetermined_lines`] returns.
 pub fn play(
-    robot: Robot<'static>,
-    received: &[SerialByte],
-    first_pulse_cycle: u64,
-    frame_count: usize,
-) -> CoreOutput {
-    play_with_contacts(robot, received, &[], first_pulse_cycle, frame_count)
-}
-
-/// Runs a robot's core like [`play`], but with contacts that close and open.
-pub fn play_with_contacts(
     robot: Robot<'static>,
     received: &[SerialByte],
     contacts: &[ContactChange],
@@ -116,7 +88,7 @@ pub fn play_with_contacts(
 ) -> CoreOutput {
     let mut contacts = contacts.iter().peekable();
     let silent_count = count_frames_before_waking(robot);
-    let mut run = CoreRun::new(robot);
+    let mut run = power_on(robot);
     let mut received = received.iter().peekable();
     let mut widths = Vec::with_capacity(frame_count);
     for frame_index in 0..silent_count + frame_count {
@@ -124,39 +96,37 @@ pub fn play_with_contacts(
         // A control tick comes one slot before the first pulse of its frame.
         let tick_cycle = start.saturating_sub(silent_count as u64 * FRAME_CYCLES + SLOT_CYCLES);
         loop {
-            let next_wake_cycle = run
-                .compute_next_wake_cycle()
+            let next_wake_cycle = compute_next_wake_cycle(&run)
                 .filter(|next_wake_cycle| *next_wake_cycle < tick_cycle);
             let is_due = |byte: &&SerialByte| {
                 byte.cycle < tick_cycle
                     && next_wake_cycle.is_none_or(|next_wake_cycle| byte.cycle < next_wake_cycle)
             };
             if let Some(byte) = received.next_if(is_due) {
-                run.running_robot.board.send(&[byte.byte]);
-                run.wake(byte.cycle);
+                run.board.send(&[byte.byte]);
+                wake(&mut run, byte.cycle);
             } else if let Some(next_wake_cycle) = next_wake_cycle {
-                run.wake(next_wake_cycle);
+                wake(&mut run, next_wake_cycle);
             } else {
                 break;
             }
         }
         while let Some(change) = contacts.next_if(|change| change.ms * CYCLES_PER_MS < tick_cycle) {
             let bit = 1 << change.pin;
-            let closed_pins = &mut run.running_robot.board.closed_pins;
-            *closed_pins = if change.is_closed {
-                *closed_pins | bit
+            if change.is_closed {
+                run.board.closed_pins |= bit;
             } else {
-                *closed_pins & !bit
-            };
+                run.board.closed_pins &= !bit;
+            }
         }
-        let pulse_widths = run.tick(tick_cycle);
+        let pulse_widths = tick(&mut run, tick_cycle);
         if frame_index >= silent_count {
             widths.push(pulse_widths);
         }
     }
     CoreOutput {
         widths,
-        text: run.running_robot.board.transmitter.text,
+        text: run.board.transmitter.text,
     }
 }
 
@@ -177,8 +147,8 @@ pub fn find_undetermined_lines(
 
 /// Counts the frames before A1's first pulse if no command arrives.
 fn count_frames_before_waking(robot: Robot<'static>) -> usize {
-    let mut run = CoreRun::new(robot);
+    let mut run = power_on(robot);
     (0..MAX_FRAMES_TO_WAKE)
-        .take_while(|_| run.tick(0)[0] == 0)
+        .take_while(|_| tick(&mut run, 0)[0] == 0)
         .count()
 }

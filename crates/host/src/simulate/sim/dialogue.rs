@@ -45,12 +45,8 @@ impl DialoguePrinter {
             Sender::User => ">",
             Sender::Robot => " ",
         };
-        writeln!(
-            out,
-            "{:>9.3} s  {mark} {}",
-            line.ms / 1000.0,
-            escape_controls(&line.text)
-        )?;
+        let (seconds, text) = (line.ms / 1000.0, escape_controls(&line.text));
+        writeln!(out, "{seconds:>9.3} s  {mark} {text}")?;
         out.flush()
     }
 
@@ -80,13 +76,11 @@ mod tests {
         for (from, text) in lines {
             let (ms, from, text) = (1500.0, *from, (*text).to_owned());
             let line = DialogueLine { ms, from, text };
-            printer
-                .print(&line, &mut out)
-                .expect("writing to a vector succeeds");
+            let result = printer.print(&line, &mut out);
+            result.expect("writing to a vector succeeds");
         }
-        printer
-            .finish(&mut out)
-            .expect("writing to a vector succeeds");
+        let result = printer.finish(&mut out);
+        result.expect("writing to a vector succeeds");
         String::from_utf8(out).expect("the output is UTF-8")
     }
 
@@ -100,11 +94,8 @@ mod tests {
         lines.push((Sender::User, "# t=0"));
         lines.extend(&watch_lines[..4]);
         let shortened_text = print_lines(false, &lines);
-        assert_eq!(
-            shortened_text.matches("# t=1").count(),
-            9,
-            "{shortened_text}"
-        );
+        let watch_line_count = shortened_text.matches("# t=1").count();
+        assert_eq!(watch_line_count, 9, "{shortened_text}");
         assert!(
             shortened_text
                 .contains("(2 more lines `# t=`; --all prints them)\n    1.500 s    # hold")

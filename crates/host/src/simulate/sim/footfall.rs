@@ -95,9 +95,8 @@ mod tests {
     /// Returns the movement of a servo's foot at a time in [`create_gait_frames`]; `None` while the robot rests.
     fn find_phase(gait: &str, servo: usize, seconds: f64) -> Option<Phase> {
         let spans = list_foot_spans(create_gait_frames(gait).into_iter(), servo);
-        let span = spans
-            .iter()
-            .find(|span| (span.start_s..span.end_s).contains(&seconds));
+        let mut spans = spans.iter();
+        let span = spans.find(|span| (span.start_s..span.end_s).contains(&seconds));
         span.map(|span| span.phase)
     }
 
@@ -113,16 +112,10 @@ mod tests {
                     .sum::<f64>()
             };
             // In these three cycles, a foot is still only where it reverses.
-            assert!(
-                (sum_seconds(Phase::Stance) - 2.25).abs() < 0.13,
-                "{}",
-                sum_seconds(Phase::Stance)
-            );
-            assert!(
-                (sum_seconds(Phase::Swing) - 0.75).abs() < 0.13,
-                "{}",
-                sum_seconds(Phase::Swing)
-            );
+            for (phase, expected) in [(Phase::Stance, 2.25), (Phase::Swing, 0.75)] {
+                let seconds = sum_seconds(phase);
+                assert!((seconds - expected).abs() < 0.13, "{phase:?} {seconds}");
+            }
         }
     }
 

@@ -57,20 +57,15 @@ pub fn first_cycle(start: u64) -> u64 {
 /// Returns the start of the first frame whose [`first_cycle`] is `current_cycle` or later. Frames start at cycle
 /// `anchor` and every 20 ms thereafter.
 pub fn next_start(anchor: u64, current_cycle: u64) -> u64 {
-    anchor
-        + (current_cycle + SLOT_CYCLES / 2)
-            .saturating_sub(anchor)
-            .div_ceil(FRAME_CYCLES)
-            * FRAME_CYCLES
+    let passed_cycles = (current_cycle + SLOT_CYCLES / 2).saturating_sub(anchor);
+    anchor + passed_cycles.div_ceil(FRAME_CYCLES) * FRAME_CYCLES
 }
 
 /// Returns the cycle of the latest rising edge at A1's pin; `None` if there is none.
 pub fn latest_frame_start(edges: &[Edge], a1_pin: Pin) -> Option<u64> {
-    edges
-        .iter()
-        .rev()
-        .find(|edge| edge.is_rising && edge.pin == a1_pin)
-        .map(|edge| edge.cycle)
+    let mut edges = edges.iter();
+    let latest_rise = edges.rfind(|edge| edge.is_rising && edge.pin == a1_pin);
+    latest_rise.map(|edge| edge.cycle)
 }
 
 /// Groups the pulses in `edges` into the `count` frames from cycle `start` on.
@@ -97,33 +92,27 @@ pub fn group_frames(edges: &[Edge], pins: [Pin; 4], start: u64, count: u64) -> V
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     const PINS: [Pin; 4] = [Pin::d(9), Pin::d(10), Pin::d(11), Pin::d(3)];
 
-    fn pulse_edges(start: u64, width: u64, pin: Pin) -> [Edge; 2] {
-        [
-            Edge {
-                cycle: start,
-                pin,
-                is_rising: true,
-            },
-            Edge {
-                cycle: start + width,
-                pin,
-                is_rising: false,
-            },
-        ]
+    /// Returns the edges of a pulse.
+    pub fn pulse_edges(pin: Pin, start: u64, width: u64) -> [Edge; 2] {
+        [(start, true), (start + width, false)].map(|(cycle, is_rising)| Edge {
+            cycle,
+            pin,
+            is_rising,
+        })
     }
 
     #[test]
     fn a_slightly_early_pulse_belongs_to_the_next_frame() {
         let start = 1_000_000;
         let mut edges = Vec::new();
-        edges.extend(pulse_edges(start, 24_000, PINS[0]));
-        edges.extend(pulse_edges(start + 3 * SLOT_CYCLES, 25_000, PINS[3]));
-        edges.extend(pulse_edges(start + FRAME_CYCLES - 1, 26_000, PINS[0]));
+        edges.extend(pulse_edges(PINS[0], start, 24_000));
+        edges.extend(pulse_edges(PINS[3], start + 3 * SLOT_CYCLES, 25_000));
+        edges.extend(pulse_edges(PINS[0], start + FRAME_CYCLES - 1, 26_000));
         let frames = group_frames(&edges, PINS, start, 3);
         assert_eq!(frames[0].widths, [Some(24_000), None, None, Some(25_000)]);
         assert_eq!(frames[1].widths, [Some(26_000), None, None, None]);
@@ -134,13 +123,12 @@ mod tests {
     #[test]
     fn next_start_returns_the_first_frame_that_has_not_begun() {
         assert_eq!(next_start(500, 0), 500 + FRAME_CYCLES);
-        assert_eq!(next_start(1_000_000, 0), 1_000_000);
-        let next = next_start(1_000_000, 1_000_000);
-        assert_eq!(next, 1_000_000 + FRAME_CYCLES);
-        assert_eq!(next_start(1_000_000, first_cycle(next)), next);
-        assert_eq!(
-            next_start(1_000_000, first_cycle(next) + 1),
-            next + FRAME_CYCLES
-        );
+        let anchor = 1_000_000;
+        assert_eq!(next_start(anchor, 0), anchor);
+        let next = next_start(anchor, anchor);
+        assert_eq!(next, anchor + FRAME_CYCLES);
+        assert_eq!(next_start(anchor, first_cycle(next)), next);
+        let next_but_one = next_start(anchor, first_cycle(next) + 1);
+        assert_eq!(next_but_one, next + FRAME_CYCLES);
     }
 }

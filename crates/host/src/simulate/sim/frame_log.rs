@@ -18,6 +18,15 @@ pub struct FrameLog {
 }
 
 impl FrameLog {
+    /// Creates a log of pulses with exact periods.
+    pub fn new(first_start: u64, widths: Vec<[u16; 4]>) -> Self {
+        Self {
+            first_start,
+            widths,
+            ..Self::default()
+        }
+    }
+
     /// Returns the seconds from power-on to the start of the frame at `index`.
     pub fn seconds_at(&self, index: usize) -> f64 {
         (self.first_start + index as u64 * FRAME_CYCLES) as f64 / FREQUENCY as f64
@@ -46,15 +55,11 @@ pub struct FrameReader {
 }
 
 impl FrameReader {
-    /// Creates a reader for the pulses of `pins`, the pins of the servos A1 to A4, with memory for `frame_count`
-    /// frames.
-    pub fn new(pins: [Pin; 4], frame_count: usize) -> Self {
+    /// Creates a reader for the pulses of `pins`, the pins of the servos A1 to A4.
+    pub fn new(pins: [Pin; 4]) -> Self {
         Self {
             pins,
-            log: FrameLog {
-                widths: Vec::with_capacity(frame_count),
-                ..FrameLog::default()
-            },
+            log: FrameLog::default(),
             rise_cycles: [None; 4],
             latest_pulses: [None; 4],
             has_started: false,
@@ -120,21 +125,13 @@ impl FrameReader {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulate::sim::frame::SLOT_CYCLES;
+    use crate::simulate::sim::frame::{SLOT_CYCLES, tests::pulse_edges};
 
     const PINS: [Pin; 4] = [Pin::d(9), Pin::d(10), Pin::a(0), Pin::d(3)];
 
-    fn pulse_edges(pin: Pin, start: u64, width: u64) -> [Edge; 2] {
-        [(start, true), (start + width, false)].map(|(cycle, is_rising)| Edge {
-            cycle,
-            pin,
-            is_rising,
-        })
-    }
-
     /// Reads the edges in two batches, split at `split_index`.
     fn read_in_two_batches(edges: &[Edge], split_index: usize, cycle: u64) -> FrameLog {
-        let mut reader = FrameReader::new(PINS, 0);
+        let mut reader = FrameReader::new(PINS);
         reader.read(edges[..split_index].to_vec());
         reader.read(edges[split_index..].to_vec());
         reader.finish(cycle)
@@ -154,13 +151,10 @@ mod tests {
         let end = start + 4 * FRAME_CYCLES;
         for split_index in 0..edges.len() {
             let log = read_in_two_batches(&edges, split_index, end);
-            let [a, b, c] = [24_000, 26_000, 27_000];
+            let [a, b, c]: [u16; 3] = [24_000, 26_000, 27_000];
             let widths = [[a, 0, 25_000, 0], [b, 0, 0, 0], [0; 4], [c, 0, 0, 0]];
-            assert_eq!(
-                (log.first_start, &log.widths[..]),
-                (start, &widths[..]),
-                "{split_index}"
-            );
+            assert_eq!(log.first_start, start, "{split_index}");
+            assert_eq!(log.widths, widths, "{split_index}");
             assert_eq!(log.max_period_error, [7, 0, 0, 0], "a gap is not a period");
             assert_eq!(log.max_pins_high, 1);
         }
@@ -178,16 +172,10 @@ mod tests {
 
     #[test]
     fn index_at_finds_frames_by_start_time() {
-        let log = FrameLog {
-            first_start: FREQUENCY,
-            widths: vec![[0; 4]; 50],
-            ..FrameLog::default()
-        };
-        assert_eq!(
-            (log.index_at(0.0), log.index_at(1.0), log.index_at(1.01)),
-            (0, 0, 1)
-        );
-        assert_eq!((log.index_at(1.02), log.index_at(9.0)), (1, 50));
+        let log = FrameLog::new(FREQUENCY, vec![[0; 4]; 50]);
+        for (seconds, index) in [(0.0, 0), (1.0, 0), (1.01, 1), (1.02, 1), (9.0, 50)] {
+            assert_eq!(log.index_at(seconds), index, "{seconds}");
+        }
         assert_eq!(log.seconds_at(25), 1.5);
     }
 }

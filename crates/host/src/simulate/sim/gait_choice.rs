@@ -22,12 +22,8 @@ pub fn choose_demonstration_gaits(robot: &Robot) -> Vec<&str> {
         Some(best) if predict_turn(name) <= predict_turn(best) + 1e-6 => Some(best),
         _ => Some(name),
     });
-    gaits
-        .first()
-        .copied()
-        .into_iter()
-        .chain(turning_gait)
-        .collect()
+    let first_gait = gaits.first().copied();
+    first_gait.into_iter().chain(turning_gait).collect()
 }
 
 #[cfg(test)]

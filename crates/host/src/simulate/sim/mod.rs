@@ -22,7 +22,6 @@ pub(crate) mod timeline;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use indicatif::ProgressBar;
 use lizard_robot::Robot;
 use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 #[cfg(target_os = "linux")]
@@ -128,9 +127,9 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
 /// Fails if robot.toml or the script is invalid, if the firmware is missing, contains another robot or crashes, if a
 /// gait or an input is unknown, or if a file cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
-    let fidelity = match args.fidelity {
-        FidelityArg::DataSheet => Fidelity::DataSheet,
-        FidelityArg::Stock => Fidelity::Stock,
+    let (fidelity, fidelity_name) = match args.fidelity {
+        FidelityArg::DataSheet => (Fidelity::DataSheet, "data-sheet"),
+        FidelityArg::Stock => (Fidelity::Stock, "stock"),
     };
     let robot = args.robot.load()?;
     let contacts = press::list_contact_changes(&args.press, &robot)?;
@@ -154,44 +153,36 @@ pub fn run(args: Args) -> Result<(), Failure> {
         });
         return served::serve_until_interrupted(uno, link.as_deref(), radio, &contacts);
     }
-    let script = Script {
-        contacts,
-        ..choose_script(&args, &robot)?
-    };
+    let mut script = choose_script(&args, &robot)?;
+    script.contacts = contacts;
     let Firmware { name, image } =
         firmware::select_firmware(args.elf.as_deref(), &args.robot, &robot)?;
     let mut uno = Uno::with_image(image, fidelity);
-    supplies::connect(&mut uno, &robot);
-    let mut dialogue_lines = Vec::new();
-    let recording = record(&mut uno, &robot, &script, &args, &mut dialogue_lines)?;
+    let (recording, dialogue) = record(&mut uno, &robot, &script, &args)?;
 
     let spinner = create_spinner("analysing every frame");
     let spans = spans::list_command_spans(&script, &recording.answers);
     let commanded_widths = compute_core_widths(&robot, &recording, &script.contacts);
-    let (robot, log) = (&robot, &recording.frames);
-    let run = Run { robot, log };
+    let run = Run::new(&robot, &recording.frames);
     let picture = timeline::draw(run, &spans, &timeline::SIMULATED_CAPTION);
     files::write(&args.svg, picture.as_bytes())?;
     let report = Report {
         firmware_name: name,
-        fidelity: match fidelity {
-            Fidelity::DataSheet => "data-sheet",
-            Fidelity::Stock => "stock",
-        },
+        fidelity: fidelity_name,
         seconds: recording.cycles as f64 / FREQUENCY as f64,
         wall_seconds: recording.wall_time.as_secs_f64(),
         servos: analysis::compute_servo_reports(run, commanded_widths.as_deref()),
         safety: analysis::check_safety(run),
         paths: analysis::compute_command_paths(run, &spans),
-        max_pins_high: log.max_pins_high,
+        max_pins_high: run.log.max_pins_high,
         asleep_percent: 100.0 * uno.sleep_cycles() as f64 / uno.cycle().max(1) as f64,
-        flash: firmware::count_code_bytes(uno.image(), robot) + robot.section().len() as u32,
+        flash: firmware::count_code_bytes(uno.image(), &robot) + robot.section().len() as u32,
         ram: RamUse::measure(&uno),
         overruns: uno.overrun_count(),
         resets: uno.watchdog_resets(),
         ended: describe_end(&recording.state),
-        svg: Some(args.svg.display().to_string()),
-        dialogue: dialogue_lines,
+        svg: args.svg.display().to_string(),
+        dialogue,
         frames: run,
     };
     drop(spinner);
@@ -207,31 +198,50 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
 }
 
-/// Plays the script. Prints the dialogue as it happens; with `--json`, collects it in `dialogue_lines` instead.
+/// Plays the script. Prints the dialogue as it happens; with `--json`, returns its lines instead.
 fn record(
     uno: &mut Uno,
     robot: &Robot,
     script: &Script,
     args: &Args,
-    dialogue_lines: &mut Vec<DialogueLine>,
-) -> io::Result<Recording> {
-    let time_bar = create_time_bar(script.end_ms);
+) -> io::Result<(Recording, Vec<DialogueLine>)> {
     let mut printer = DialoguePrinter::new(args.all);
+    let mut dialogue_lines = Vec::new();
     let mut out = io::stdout();
-    let pins = frame::servo_pins(robot);
-    let recording = session::play(uno, pins, script, |event| {
-        match event {
-            Event::Time(ms) => time_bar.set_position(ms),
-            Event::Line(line) if args.json => dialogue_lines.push(line.clone()),
-            Event::Line(line) => return time_bar.suspend(|| printer.print(line, &mut out)),
+    let recording = play_with_progress(uno, robot, script, |line| {
+        if !args.json {
+            return printer.print(line, &mut out);
         }
+        dialogue_lines.push(line.clone());
         Ok(())
     })?;
-    time_bar.finish_and_clear();
     if !args.json {
         printer.finish(&mut out)?;
         writeln!(out)?;
     }
+    Ok((recording, dialogue_lines))
+}
+
+/// Plays a script with a progress bar. Calls `on_line` for each line of the dialogue.
+///
+/// # Errors
+/// Returns the errors of `on_line`, which end the run.
+pub(crate) fn play_with_progress(
+    uno: &mut Uno,
+    robot: &Robot,
+    script: &Script,
+    mut on_line: impl FnMut(&DialogueLine) -> io::Result<()>,
+) -> io::Result<Recording> {
+    let template = "{bar:40} {pos}/{len} ms simulated, {elapsed}";
+    let time_bar = create_progress_bar(script.end_ms as usize, template);
+    let recording = session::play(uno, robot, script, |event| match event {
+        Event::Line(line) => time_bar.suspend(|| on_line(line)),
+        Event::Time(ms) => {
+            time_bar.set_position(ms);
+            Ok(())
+        }
+    })?;
+    time_bar.finish_and_clear();
     Ok(recording)
 }
 
@@ -243,7 +253,7 @@ fn compute_core_widths(
     contacts: &[ContactChange],
 ) -> Option<Vec<[u16; 4]>> {
     let log = &recording.frames;
-    let output = core_run::play_with_contacts(
+    let output = core_run::play(
         *robot.firmware(),
         &recording.received_by_uno,
         contacts,
@@ -275,11 +285,9 @@ fn describe_end(state: &State) -> String {
 fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     let duration_ms = args.duration.map(|seconds| (seconds * 1000.0) as u64);
     if let Some(path) = &args.script {
-        let script = read_script(path)?;
-        return Ok(Script {
-            end_ms: duration_ms.unwrap_or(script.end_ms),
-            ..script
-        });
+        let mut script = read_script(path)?;
+        script.end_ms = duration_ms.unwrap_or(script.end_ms);
+        return Ok(script);
     }
     if let Some(gait) = &args.gait
         && robot.gait(gait).is_none()
@@ -305,12 +313,4 @@ pub(crate) fn read_script(path: &Path) -> Result<Script, Failure> {
     let name = path.display();
     let text = files::read_text(path)?;
     Script::parse(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))
-}
-
-/// Creates a progress bar for the simulated time.
-pub(crate) fn create_time_bar(end_ms: u64) -> ProgressBar {
-    create_progress_bar(
-        end_ms as usize,
-        "{bar:40} {pos}/{len} ms simulated, {elapsed}",
-    )
 }

@@ -53,9 +53,8 @@ impl FromStr for Press {
         if end_ms <= start_ms {
             return Err("the end must be after the start".to_owned());
         }
-        let input = input.to_owned();
         Ok(Self {
-            input,
+            input: input.to_owned(),
             start_ms,
             end_ms,
         })
@@ -78,11 +77,9 @@ pub fn list_contact_changes(
             let message = format!("robot.toml has no [input.{name}] for --press");
             return Err(Failure::Input(message));
         };
-        let new_change = |ms, is_closed| ContactChange { ms, pin, is_closed };
-        changes.extend([
-            new_change(press.start_ms, true),
-            new_change(press.end_ms, false),
-        ]);
+        for (ms, is_closed) in [(press.start_ms, true), (press.end_ms, false)] {
+            changes.push(ContactChange { ms, pin, is_closed });
+        }
     }
     changes.sort_by_key(|change| (change.ms, change.is_closed));
     Ok(changes)
@@ -92,17 +89,13 @@ pub fn list_contact_changes(
 mod tests {
     use super::*;
 
-    fn press(input: &str, start_ms: u64, end_ms: u64) -> Press {
-        let input = input.to_owned();
-        Press {
-            input,
-            start_ms,
-            end_ms,
-        }
-    }
-
     #[test]
     fn a_press_is_parsed_from_a_name_and_a_time_or_time_span() {
+        let press = |input: &str, start_ms, end_ms| Press {
+            input: input.to_owned(),
+            start_ms,
+            end_ms,
+        };
         assert_eq!("button@2".parse(), Ok(press("button", 2_000, 2_200)));
         assert_eq!("nose@5.5-8".parse(), Ok(press("nose", 5_500, 8_000)));
         for (invalid_text, reason) in [
@@ -111,11 +104,8 @@ mod tests {
             ("button@3-2", "the end must be after the start"),
             ("button@-1-2", "it is not a number"),
         ] {
-            assert_eq!(
-                invalid_text.parse::<Press>(),
-                Err(reason.to_owned()),
-                "{invalid_text}"
-            );
+            let result = invalid_text.parse::<Press>();
+            assert_eq!(result, Err(reason.to_owned()), "{invalid_text}");
         }
     }
 }

@@ -8,7 +8,7 @@ use simulated_uno::Uno;
 
 use super::analysis::{CommandPath, Run, Safety, ServoReport};
 use super::session::DialogueLine;
-use crate::shared::number::round_to_decimals;
+use crate::shared::number::{format_or_dash, round_to_decimals};
 
 /// All results of a run; the serialized field names are the JSON keys.
 #[derive(Debug, Serialize)]
@@ -48,7 +48,7 @@ pub struct Report<'a> {
     /// The firmware's final state, as a message.
     pub ended: String,
     /// The picture's file.
-    pub svg: Option<String>,
+    pub svg: String,
     /// The servo angles of every frame.
     pub frames: Run<'a>,
 }
@@ -65,16 +65,14 @@ impl Report<'_> {
     }
 
     fn print_servos(&self, out: &mut impl Write) -> io::Result<()> {
-        writeln!(
-            out,
-            "servo         pulses    min us    max us   width error  period error   fastest"
-        )?;
-        writeln!(
-            out,
-            "                                              (cycles)      (cycles)   (deg/s)"
-        )?;
+        for heading in [
+            "servo         pulses    min us    max us   width error  period error   fastest",
+            "                                              (cycles)      (cycles)   (deg/s)",
+        ] {
+            writeln!(out, "{heading}")?;
+        }
         for row in &self.servos {
-            let error_text = row
+            let width_error = row
                 .width_error
                 .map_or("?".to_owned(), |error| error.to_string());
             writeln!(
@@ -86,7 +84,7 @@ impl Report<'_> {
                 row.pulse_count,
                 row.min_us,
                 row.max_us,
-                error_text,
+                width_error,
                 row.period_error,
                 row.slew
             )?;
@@ -106,20 +104,19 @@ impl Report<'_> {
             "predicted path       from      to   forward      left      turn"
         )?;
         for path in &self.paths {
-            let format_cell = |value: Option<f64>, digits: usize| {
-                let format_value =
-                    |value| format!("{:.digits$}", round_to_decimals(value, digits as i32));
-                value.map_or("-".to_owned(), format_value)
+            let format_cell = |value: Option<f64>, decimals: usize| {
+                let rounded = value.map(|value| round_to_decimals(value, decimals as i32));
+                format_or_dash(rounded, decimals)
             };
             writeln!(
                 out,
                 "{:<16} {:>6.2} s {:>5.2} s {:>6} mm {:>6} mm {:>6} deg",
-                path.command,
-                path.start_s,
-                path.end_s,
-                format_cell(path.forward, 1),
-                format_cell(path.left, 1),
-                format_cell(path.turn, 2)
+                path.span.command,
+                path.span.start_s,
+                path.span.end_s,
+                format_cell(path.displacement.forward, 1),
+                format_cell(path.displacement.left, 1),
+                format_cell(path.displacement.turn, 2)
             )?;
         }
         if self.frames.robot.drive().can_lag() {
@@ -128,8 +125,7 @@ impl Report<'_> {
                 "Here the legs follow their servos exactly; in `lizard twin` they lag."
             )?;
         }
-        let is_undetermined =
-            |path: &CommandPath| [path.forward, path.left, path.turn].contains(&None);
+        let is_undetermined = |path: &CommandPath| path.displacement.components().contains(&None);
         if self.paths.iter().any(is_undetermined) {
             write!(out, "{UNDETERMINED_NOTE}")?;
         }
@@ -169,10 +165,7 @@ impl Report<'_> {
             "{:.1} s simulated ({}) in {:.2} s; {}",
             self.seconds, self.fidelity, self.wall_seconds, self.ended
         )?;
-        if let Some(svg) = &self.svg {
-            writeln!(out, "picture: {svg}")?;
-        }
-        Ok(())
+        writeln!(out, "picture: {}", self.svg)
     }
 }
 

@@ -22,7 +22,7 @@ impl Step {
 }
 
 /// The commands of a run, the changes of the robot's contacts, and the end of the run.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Script {
     /// The commands in order of time.
     pub steps: Vec<Step>,
@@ -30,27 +30,6 @@ pub struct Script {
     pub contacts: Vec<ContactChange>,
     /// The end of the run, ms since power-on.
     pub end_ms: u64,
-}
-
-/// An error in a line of a script. Line numbers start at 1.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum ScriptError {
-    /// The line does not begin with a time.
-    #[error("line {0}: expected a time in whole milliseconds, got `{1}`")]
-    NoTime(usize, String),
-    /// No command follows the time.
-    #[error("line {0}: the command after the time is missing")]
-    NoCommand(usize),
-    /// The line's time is before the previous command's time.
-    #[error("line {line}: {ms} ms is before the previous command's {previous_ms} ms")]
-    OutOfOrder {
-        /// The line number.
-        line: usize,
-        /// The line's time, ms.
-        ms: u64,
-        /// The previous command's time, ms.
-        previous_ms: u64,
-    },
 }
 
 /// Standing time before the first command of a built-in script, ms.
@@ -62,6 +41,15 @@ impl Script {
     /// Shortest allowed length of a built-in script, ms.
     pub const MIN_MS: u64 = STAND_MS + CLOSING_MS + 1000;
 
+    /// Creates a script without contacts.
+    pub fn new(steps: Vec<Step>, end_ms: u64) -> Self {
+        Self {
+            steps,
+            contacts: Vec::new(),
+            end_ms,
+        }
+    }
+
     /// Creates a script of `ms` milliseconds, at least [`Self::MIN_MS`]: a second of standing, then the gaits one after
     /// another, `stop`, `status` and `rest`.
     pub fn from_gaits(gaits: &[&str], ms: u64) -> Self {
@@ -70,19 +58,15 @@ impl Script {
         let compute_start = |index: usize| {
             STAND_MS + gaits_ms * 5 * index as u64 / (4 + 5 * (gaits.len() as u64 - 1))
         };
-        let mut steps: Vec<Step> = gaits
-            .iter()
-            .enumerate()
-            .map(|(index, gait)| Step::new(compute_start(index), to_command(gait)))
-            .collect();
-        steps.push(Step::new(ms - CLOSING_MS, "stop"));
-        steps.push(Step::new(ms - CLOSING_MS / 2 - 200, "status"));
-        steps.push(Step::new(ms - CLOSING_MS / 2, "rest"));
-        Self {
-            steps,
-            end_ms: ms,
-            ..Self::default()
-        }
+        let gait_steps = gaits.iter().enumerate();
+        let gait_steps =
+            gait_steps.map(|(index, gait)| Step::new(compute_start(index), to_command(gait)));
+        let closing_steps = [
+            Step::new(ms - CLOSING_MS, "stop"),
+            Step::new(ms - CLOSING_MS / 2 - 200, "status"),
+            Step::new(ms - CLOSING_MS / 2, "rest"),
+        ];
+        Self::new(gait_steps.chain(closing_steps).collect(), ms)
     }
 
     /// Parses lines of the form `<ms> <command>`. Skips blank lines, lines that begin with `#`, and a byte order mark.
@@ -90,7 +74,7 @@ impl Script {
     ///
     /// # Errors
     /// Fails if a line has no time or no command, or if the lines are out of order.
-    pub fn parse(text: &str) -> Result<Self, ScriptError> {
+    pub fn parse(text: &str) -> Result<Self, String> {
         let mut steps: Vec<Step> = Vec::new();
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         for (index, line) in text.lines().enumerate() {
@@ -98,30 +82,27 @@ impl Script {
             if line.is_empty() || line.starts_with('#') {
                 continue;
             }
-            let line_number = index + 1;
+            let number = index + 1;
             let (time_text, command) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-            let ms = time_text
-                .parse()
-                .map_err(|_| ScriptError::NoTime(line_number, time_text.to_owned()))?;
+            let ms: u64 = time_text.parse().map_err(|_| {
+                format!("line {number}: expected a time in whole milliseconds, got `{time_text}`")
+            })?;
             let command = command.trim();
             if command.is_empty() {
-                return Err(ScriptError::NoCommand(line_number));
+                return Err(format!(
+                    "line {number}: the command after the time is missing"
+                ));
             }
-            if let Some(previous_step) = steps.last().filter(|step| step.ms > ms) {
-                return Err(ScriptError::OutOfOrder {
-                    line: line_number,
-                    ms,
-                    previous_ms: previous_step.ms,
-                });
+            let previous_ms = steps.last().map_or(0, |step| step.ms);
+            if ms < previous_ms {
+                return Err(format!(
+                    "line {number}: {ms} ms is before the previous command's {previous_ms} ms"
+                ));
             }
             steps.push(Step::new(ms, command));
         }
         let end_ms = steps.last().map_or(0, |last_step| last_step.ms) + 1000;
-        Ok(Self {
-            steps,
-            end_ms,
-            ..Self::default()
-        })
+        Ok(Self::new(steps, end_ms))
     }
 }
 
@@ -133,40 +114,26 @@ mod tests {
     fn a_script_is_parsed_into_timed_commands() {
         let text = "\u{feff}500 walk\r\n# a comment\n\n 1500\tspeed 50\r\n1500 stop";
         let script = Script::parse(text);
-        let steps = vec![
-            Step::new(500, "walk"),
-            Step::new(1500, "speed 50"),
-            Step::new(1500, "stop"),
-        ];
-        assert_eq!(
-            script,
-            Ok(Script {
-                steps,
-                end_ms: 2500,
-                ..Script::default()
-            })
-        );
+        let steps = [(500, "walk"), (1500, "speed 50"), (1500, "stop")];
+        let steps = steps.map(|(ms, command)| Step::new(ms, command));
+        assert_eq!(script, Ok(Script::new(steps.to_vec(), 2500)));
     }
 
     #[test]
     fn an_error_names_its_line() {
-        let parse_error = |text| {
-            Script::parse(text)
-                .expect_err("the script must be refused")
-                .to_string()
-        };
-        assert_eq!(
-            parse_error("100 walk\nsoon stop"),
-            "line 2: expected a time in whole milliseconds, got `soon`"
-        );
-        assert_eq!(
-            parse_error("100"),
-            "line 1: the command after the time is missing"
-        );
-        assert_eq!(
-            parse_error("100 walk\n\n90 stop"),
-            "line 3: 90 ms is before the previous command's 100 ms"
-        );
+        for (text, error) in [
+            (
+                "100 walk\nsoon stop",
+                "line 2: expected a time in whole milliseconds, got `soon`",
+            ),
+            ("100", "line 1: the command after the time is missing"),
+            (
+                "100 walk\n\n90 stop",
+                "line 3: 90 ms is before the previous command's 100 ms",
+            ),
+        ] {
+            assert_eq!(Script::parse(text), Err(error.to_owned()));
+        }
     }
 
     #[test]
@@ -179,9 +146,7 @@ mod tests {
             assert!(script.steps.is_sorted_by_key(|step| step.ms));
             assert!(script.steps.iter().all(|step| step.ms < script.end_ms));
         }
-        assert_eq!(
-            Script::from_gaits(&["arc-left"], 9000).steps[0].command,
-            "arc left"
-        );
+        let script = Script::from_gaits(&["arc-left"], 9000);
+        assert_eq!(script.steps[0].command, "arc left");
     }
 }

@@ -68,20 +68,15 @@ pub(super) fn serve_until_interrupted(
         let wait_ms = contacts
             .peek()
             .map_or(f64::MAX, |change| change.ms as f64 - uno.ms());
-        port.serve(
-            &mut uno,
-            Duration::from_secs_f64(wait_ms.clamp(1.0, 1_000.0) / 1_000.0),
-        )
-        .map_err(|error| Failure::Operation(format!("the pseudo terminal: {error}")))?;
+        let wait = Duration::from_secs_f64(wait_ms.clamp(1.0, 1_000.0) / 1_000.0);
+        port.serve(&mut uno, wait)
+            .map_err(|error| Failure::Operation(format!("the pseudo terminal: {error}")))?;
         uno.take_edges();
         uno.take_marks();
         if *uno.state() != printed_state {
             printed_state = uno.state().clone();
-            writeln!(
-                out,
-                "{}",
-                describe_state(&printed_state, uno.flash(), &port_name)
-            )?;
+            let description = describe_state(&printed_state, uno.flash(), &port_name);
+            writeln!(out, "{description}")?;
         }
     }
 }
@@ -119,12 +114,6 @@ fn remove_link_on_signal(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
 /// Creates the symbolic link `link` to `port`. Replaces a link to another pseudo terminal, left by a killed run.
 fn create_link(link: &Path, port: &Path) -> Result<(), Failure> {
     let to_failure = |error: io::Error| files::write_failure(link, &error);
-    let occupied_failure = || {
-        let name = link.display();
-        Failure::Input(format!(
-            "{name} already exists and is not a link to a pseudo terminal"
-        ))
-    };
     if fs::read_link(link).is_ok_and(|target| target.starts_with("/dev/pts")) {
         fs::remove_file(link).map_err(to_failure)?;
     }
@@ -132,7 +121,10 @@ fn create_link(link: &Path, port: &Path) -> Result<(), Failure> {
         fs::create_dir_all(folder).map_err(to_failure)?;
     }
     symlink(port, link).map_err(|error| match error.kind() {
-        io::ErrorKind::AlreadyExists => occupied_failure(),
+        io::ErrorKind::AlreadyExists => Failure::Input(format!(
+            "{} already exists and is not a link to a pseudo terminal",
+            link.display()
+        )),
         _ => to_failure(error),
     })
 }

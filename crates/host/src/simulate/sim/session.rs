@@ -3,12 +3,14 @@
 use std::io;
 use std::time::{Duration, Instant};
 
-use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Pin, SerialByte, State, Uno};
+use lizard_robot::Robot;
+use simulated_uno::{CYCLES_PER_MS, FREQUENCY, SerialByte, State, Uno};
 
-use super::frame::FRAME_CYCLES;
+use super::frame::{FRAME_CYCLES, servo_pins};
 use super::frame_log::{FrameLog, FrameReader};
 use super::lines::LineReader;
 use super::script::Script;
+use super::supplies;
 
 /// The sender of a line of text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -59,25 +61,26 @@ pub struct Recording {
     pub wall_time: Duration,
 }
 
-/// Plays a script from power-on. Calls `on_event` for each event, in order of time.
+/// Connects a robot's supplies and contacts to the UNO, and plays a script from power-on. Calls `on_event` for each
+/// event, in order of time.
 ///
 /// # Errors
 /// Returns the errors of `on_event`, which end the run.
 pub fn play(
     uno: &mut Uno,
-    pins: [Pin; 4],
+    robot: &Robot,
     script: &Script,
     on_event: impl FnMut(Event<'_>) -> io::Result<()>,
 ) -> io::Result<Recording> {
+    supplies::connect(uno, robot);
     let start = Instant::now();
-    let frame_count = script.end_ms as usize / 20 + 1;
     let mut dialogue = Dialogue {
         reader: LineReader::default(),
         banner: None,
         answers: Vec::with_capacity(script.steps.len()),
         on_event,
     };
-    let mut frame_reader = FrameReader::new(pins, frame_count);
+    let mut frame_reader = FrameReader::new(servo_pins(robot));
     let mut steps = script.steps.iter().peekable();
     let mut contacts = script.contacts.iter().peekable();
     let mut ms = 0;

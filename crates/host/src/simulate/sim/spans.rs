@@ -4,14 +4,16 @@ use lizard_core::console::word::{Effect, Word};
 
 use super::script::Script;
 
-/// The time span of a command's effect.
-#[derive(Debug, Clone, PartialEq)]
+/// The time span of a command's effect; the serialized field names are the JSON keys.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Span {
     /// The command that begins the span.
     pub command: String,
     /// Time when the command was sent, s since power-on.
+    #[serde(rename = "from")]
     pub start_s: f64,
     /// Time when the next command was sent or the run ended, s since power-on.
+    #[serde(rename = "to")]
     pub end_s: f64,
 }
 

@@ -17,6 +17,10 @@ const WIDTH: f64 = 1280.0;
 const LEFT_MARGIN: f64 = 200.0;
 /// Width of the right margin, px.
 const RIGHT_MARGIN: f64 = 36.0;
+/// Width of the strips, px.
+const STRIP_WIDTH: f64 = WIDTH - LEFT_MARGIN - RIGHT_MARGIN;
+/// Horizontal middle of the strips, px.
+const MIDDLE_X: f64 = LEFT_MARGIN + STRIP_WIDTH / 2.0;
 /// Upper edge of the band with the commands, px.
 const COMMANDS_Y: f64 = 88.0;
 /// Upper edge of the first servo's strip, px.
@@ -87,7 +91,7 @@ struct Chart<'a> {
 impl Chart<'_> {
     /// Returns the horizontal position of a time, px.
     fn to_x(&self, seconds: f64) -> f64 {
-        LEFT_MARGIN + (WIDTH - LEFT_MARGIN - RIGHT_MARGIN) * seconds / self.end_s
+        LEFT_MARGIN + STRIP_WIDTH * seconds / self.end_s
     }
 
     /// Adds the band with the commands in effect.
@@ -129,11 +133,11 @@ impl Chart<'_> {
         let neutral = self.run.robot.servos()[servo].neutral;
         let to_y =
             |angle: f64| top + STRIP_HEIGHT / 2.0 * (1.0 - (angle - neutral) / half_range_deg);
-        let (start_x, end_x) = (self.to_x(0.0), self.to_x(self.end_s));
+        let (start_x, end_x) = (LEFT_MARGIN, LEFT_MARGIN + STRIP_WIDTH);
         let name = format!("{} {}", SERVO_NAMES[servo], SERVO_POSITIONS[servo]);
         let pin = pin_name(self.run.robot.servos()[servo].pin);
         let (middle_y, colour) = (top + STRIP_HEIGHT / 2.0, SERVO_COLOURS[servo]);
-        let size = (end_x - start_x, STRIP_HEIGHT);
+        let size = (STRIP_WIDTH, STRIP_HEIGHT);
         let name_text = text(&name, (14.0, middle_y - 2.0), 17.0, colour, Anchor::Start);
         let pin_text = text(&pin, (14.0, middle_y + 18.0), 14.0, GREY, Anchor::Start);
         group = group
@@ -165,8 +169,7 @@ impl Chart<'_> {
     /// Returns a servo's angle as points (seconds, degrees), with one curve for each time span with pulses. If there
     /// are many frames per pixel column, only the lowest and the highest angle in each column are kept.
     fn compute_angle_curves(&self, servo: usize) -> Vec<Vec<(f64, f64)>> {
-        let is_dense =
-            self.run.log.widths.len() as f64 > 4.0 * (WIDTH - LEFT_MARGIN - RIGHT_MARGIN);
+        let is_dense = self.run.log.widths.len() as f64 > 4.0 * STRIP_WIDTH;
         let mut curves = vec![Curve::default()];
         for servo_frame in self.run.servo_frames() {
             match (servo_frame.angles, curves.last_mut()) {
@@ -185,23 +188,22 @@ impl Chart<'_> {
     /// Adds the row with the footfalls of a servo's foot; the first row also gets the heading and the legend.
     fn draw_foot_row(&self, mut group: Group, servo: usize) -> Group {
         let top = FEET_Y + servo as f64 * (FOOT_HEIGHT + FOOT_GAP);
-        let (start_x, end_x) = (self.to_x(0.0), self.to_x(self.end_s));
         if servo == 0 {
             let position = (14.0, FEET_Y - 12.0);
             group = group.add(text_start("Footfalls", position, 17.0).set("font-weight", "bold"));
             group = self.draw_legend(group);
         }
-        let size = (end_x - start_x, FOOT_HEIGHT);
         let text_y = top + FOOT_HEIGHT / 2.0 + 5.0;
         let (name, colour) = (SERVO_POSITIONS[servo], SERVO_COLOURS[servo]);
         let name_point = (LEFT_MARGIN - 12.0, text_y);
         let name_text = text(name, name_point, 15.0, colour, Anchor::End);
+        let size = (STRIP_WIDTH, FOOT_HEIGHT);
         group = group
-            .add(rectangle((start_x, top), size, PANEL_COLOUR))
+            .add(rectangle((LEFT_MARGIN, top), size, PANEL_COLOUR))
             .add(name_text);
         let foot_spans = list_foot_spans(self.run.servo_frames(), servo);
-        if foot_spans.len() as f64 > (end_x - start_x) / 2.0 {
-            let position = ((start_x + end_x) / 2.0, text_y);
+        if foot_spans.len() as f64 > STRIP_WIDTH / 2.0 {
+            let position = (MIDDLE_X, text_y);
             let note = "steps are narrower than a pixel; simulate a shorter time to see them";
             return group.add(text(note, position, 13.0, GREY, Anchor::Middle));
         }
@@ -241,8 +243,8 @@ impl Chart<'_> {
             .into_iter()
             .find(|tick_interval_s| self.end_s / tick_interval_s <= 15.0)
             .unwrap_or(7200.0);
-        let (start_x, end_x) = (self.to_x(0.0), self.to_x(self.end_s));
-        group = group.add(line((start_x, AXIS_Y), (end_x, AXIS_Y), DARK, 1.2));
+        let end_x = LEFT_MARGIN + STRIP_WIDTH;
+        group = group.add(line((LEFT_MARGIN, AXIS_Y), (end_x, AXIS_Y), DARK, 1.2));
         for tick in 0..=(self.end_s / tick_interval_s + 1e-9) as u32 {
             let seconds = f64::from(tick) * tick_interval_s;
             let x = self.to_x(seconds);
@@ -252,7 +254,7 @@ impl Chart<'_> {
                 .add(line((x, AXIS_Y), (x, AXIS_Y + 7.0), DARK, 1.2))
                 .add(text_middle(&label, (x, AXIS_Y + 25.0), 14.0));
         }
-        let label_point = ((start_x + end_x) / 2.0, AXIS_Y + 50.0);
+        let label_point = (MIDDLE_X, AXIS_Y + 50.0);
         group.add(text_middle(self.caption.axis_label, label_point, 15.0))
     }
 }
@@ -291,18 +293,11 @@ impl Curve {
     fn add_point(&mut self, column: Option<i64>, point: (f64, f64)) {
         if column.is_none() {
             self.points.push(point);
-            return;
-        }
-        if column != self.column {
+        } else if column != self.column {
             self.column = column;
             self.points.extend([point, point]);
-            return;
-        }
-        if let [.., first, last] = self.points.as_mut_slice() {
-            let (min, max) = match first.1 <= last.1 {
-                true => (first, last),
-                false => (last, first),
-            };
+        } else if let [.., min, max] = self.points.as_mut_slice() {
+            // Both points of a column are the same at first, so the first of them stays the lowest.
             if point.1 < min.1 {
                 *min = point;
             } else if point.1 > max.1 {
@@ -324,10 +319,7 @@ mod tests {
     ) -> String {
         let robot = crate::shared::robot_args::built_in_robot("paper");
         let widths = (0..frame_count).map(|index| [pulse_width(index); 4]);
-        let log = FrameLog {
-            widths: widths.collect(),
-            ..FrameLog::default()
-        };
+        let log = FrameLog::new(0, widths.collect());
         draw(Run::new(&robot, &log), spans, &SIMULATED_CAPTION)
     }
 

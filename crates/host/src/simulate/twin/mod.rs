@@ -10,17 +10,16 @@ use std::path::PathBuf;
 
 use lizard_robot::{OPEN_INPUTS_NOTE, Robot, Routine, RoutineRow, to_command};
 use lizard_twin::ServoModel;
-use simulated_uno::{Fidelity, State, Uno};
+use simulated_uno::{Fidelity, Image, State, Uno};
 
-use crate::shared::firmware;
 use crate::shared::progress::create_spinner;
 use crate::shared::robot_args::find_moving_gait;
+use crate::shared::{firmware, json};
 use crate::simulate::sim::script::{Script, Step};
-use crate::simulate::sim::session::{self, Event, Recording};
-use crate::simulate::sim::{create_time_bar, frame, gait_choice, read_script, spans, supplies};
+use crate::simulate::sim::session::Recording;
+use crate::simulate::sim::{gait_choice, play_with_progress, read_script, spans};
 use crate::{Failure, RobotArgs};
 use replay::Replay;
-use report::Report;
 
 /// Simulate the robot with the firmware's pulses: servos, linkage, springs, feet, its path
 ///
@@ -84,27 +83,26 @@ pub fn run(args: Args) -> Result<(), Failure> {
     if has_inputs {
         image = firmware::remove_contacts(image, &robot);
     }
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    let recording = record(&mut uno, &robot, &script)?;
+    let recording = record(image, &robot, &script)?;
     let model = match args.servo {
         ServoArg::Own => ServoModel::for_robot(&robot),
         ServoArg::Ideal => ServoModel::Ideal,
     };
     let spans = spans::list_command_spans(&script, &recording.answers);
-    let changes_speed = script
-        .steps
-        .iter()
-        .any(|step| step.command.starts_with("speed"));
+    let mut steps = script.steps.iter();
+    let changes_speed = steps.any(|step| step.command.starts_with("speed"));
     let spinner = create_spinner("simulating every frame");
-    let replay = Replay::simulate(&robot, &recording.frames, spans, model);
-    let report = Report::compute(&robot, &replay, model, changes_speed);
+    let replay = Replay::simulate(&robot, recording.frames, spans, model);
+    let rows = report::compute_rows(&robot, &replay, model, changes_speed);
     drop(spinner);
 
     let mut out = io::stdout().lock();
     if args.json {
-        report.write_json(&mut out)?;
+        for row in &rows {
+            json::write_line(&mut out, row)?;
+        }
     } else {
-        report.print(&mut out)?;
+        report::print(&rows, &mut out)?;
         if has_inputs {
             write!(out, "\n{OPEN_INPUTS_NOTE}")?;
         }
@@ -115,21 +113,13 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-/// Plays the script without printing anything.
+/// Plays the script on a simulated UNO without printing anything.
 ///
 /// # Errors
 /// Fails if the firmware stops before the end of the script.
-pub(crate) fn record(uno: &mut Uno, robot: &Robot, script: &Script) -> Result<Recording, Failure> {
-    supplies::connect(uno, robot);
-    let bar = create_time_bar(script.end_ms);
-    let pins = frame::servo_pins(robot);
-    let recording = session::play(uno, pins, script, |event| {
-        if let Event::Time(ms) = event {
-            bar.set_position(ms);
-        }
-        Ok(())
-    })?;
-    bar.finish_and_clear();
+pub(crate) fn record(image: Image, robot: &Robot, script: &Script) -> Result<Recording, Failure> {
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    let recording = play_with_progress(&mut uno, robot, script, |_| Ok(()))?;
     match recording.state {
         State::Alive => Ok(recording),
         _ => Err(Failure::Operation(
@@ -160,14 +150,11 @@ const STAND_MS: u64 = 1000;
 fn build_round_script(robot: &Robot, routine: &Routine) -> Script {
     let round = RoutineRow::simulate(robot, routine);
     let round_end_ms = STAND_MS + (1000.0 * round.seconds).ceil() as u64;
-    Script {
-        steps: vec![
-            Step::new(STAND_MS, format!("{} 1", routine.command())),
-            Step::new(round_end_ms + STAND_MS, "stop"),
-        ],
-        end_ms: round_end_ms + 2 * STAND_MS,
-        ..Script::default()
-    }
+    let steps = vec![
+        Step::new(STAND_MS, format!("{} 1", routine.command())),
+        Step::new(round_end_ms + STAND_MS, "stop"),
+    ];
+    Script::new(steps, round_end_ms + 2 * STAND_MS)
 }
 
 /// Builds a script of three cycles of each gait, each after a second for taking the gait's first pose. The robot stands
@@ -182,9 +169,5 @@ pub(crate) fn build_walk_script(robot: &Robot, gaits: &[&str]) -> Script {
         ms += STAND_MS + (1000.0 * CYCLES_PER_GAIT * period).ceil() as u64;
     }
     steps.push(Step::new(ms, "stop"));
-    Script {
-        steps,
-        end_ms: ms + STAND_MS,
-        ..Script::default()
-    }
+    Script::new(steps, ms + STAND_MS)
 }

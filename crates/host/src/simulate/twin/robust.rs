@@ -64,10 +64,8 @@ impl Utilisation {
             }),
         };
         let compute_at_pace = |pace| robot.reported_volts().map(|volts| compute_one(pace, volts));
-        PACES_PERCENT
-            .into_iter()
-            .flat_map(compute_at_pace)
-            .collect()
+        let paces = PACES_PERCENT.into_iter();
+        paces.flat_map(compute_at_pace).collect()
     }
 }
 
@@ -84,15 +82,9 @@ pub fn run(
     is_json: bool,
     out: &mut impl Write,
 ) -> Result<(), Failure> {
-    let gaits: Vec<&CheckedGait> = replay
-        .stages
-        .iter()
-        .filter_map(|stage| {
-            robot
-                .gait(&stage.command)
-                .filter(|gait| gait.has_movement())
-        })
-        .collect();
+    let gaits = replay.spans.iter();
+    let gaits = gaits.filter_map(|span| robot.gait(&span.command));
+    let gaits: Vec<&CheckedGait> = gaits.filter(|gait| gait.has_movement()).collect();
     let bar = create_progress_bar(
         variation_count as usize * gaits.len(),
         "{bar:40} {pos}/{len} walks, {eta}",
@@ -109,11 +101,17 @@ pub fn run(
                 .simulate_cycle(robot, gait, model)
         };
         let paths: Vec<Travel> = (0..u64::from(variation_count)).map(simulate).collect();
-        spreads.push(Spread::from_paths(
-            gait.name(),
-            &paths,
-            Utilisation::compute_all(robot, gait),
-        ));
+        let component_quantiles = |component: fn(&Travel) -> f64| {
+            compute_quantiles(paths.iter().map(component).collect(), [0.05, 0.5, 0.95])
+        };
+        spreads.push(Spread {
+            gait: gait.name().to_owned(),
+            variation_count: paths.len(),
+            forward: component_quantiles(|path| path.forward),
+            left: component_quantiles(|path| path.left),
+            turn: component_quantiles(|path| path.turn),
+            utilisations: Utilisation::compute_all(robot, gait),
+        });
     }
     bar.finish_and_clear();
     if is_json {
@@ -126,44 +124,16 @@ pub fn run(
     Ok(())
 }
 
-impl Spread {
-    /// Computes a gait's spread over the displacements of its variations.
-    fn from_paths(gait: &str, paths: &[Travel], utilisations: Vec<Utilisation>) -> Self {
-        let component_quantiles = |component: fn(&Travel) -> f64| {
-            compute_quantiles(paths.iter().map(component).collect(), [0.05, 0.5, 0.95])
-        };
-        Self {
-            gait: gait.to_owned(),
-            variation_count: paths.len(),
-            forward: component_quantiles(|path| path.forward),
-            left: component_quantiles(|path| path.left),
-            turn: component_quantiles(|path| path.turn),
-            utilisations,
-        }
-    }
-}
-
 /// Prints a table of the spreads and a table of the utilisation.
 fn print_tables(spreads: &[Spread], variation_count: u32, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
         "\n{variation_count} robots and floors: {SPREAD_TEXT}, {PLAY_SPREAD_TEXT}; a cycle, mm and deg:\n"
     )?;
-    let columns = [
-        "ahead  5 %",
-        "50 %",
-        "95 %",
-        "left  5 %",
-        "50 %",
-        "95 %",
-        "turn  5 %",
-        "50 %",
-        "95 %",
-    ];
     write!(out, "{:<12}", "gait")?;
-    columns
-        .iter()
-        .try_for_each(|name| write!(out, "{name:>11}"))?;
+    for first_column in ["ahead  5 %", "left  5 %", "turn  5 %"] {
+        write!(out, "{first_column:>11}{:>11}{:>11}", "50 %", "95 %")?;
+    }
     writeln!(out)?;
     for spread in spreads {
         write!(out, "{:<12}", spread.gait)?;

@@ -43,12 +43,12 @@ impl Element {
             }
             "polyline" | "polygon" => {
                 let parse = |text: &str| text.parse().expect("a coordinate is a number");
-                let pairs = self
-                    .attribute("points")
-                    .split(' ')
-                    .map(|pair| pair.split_once(','));
-                let pairs = pairs.map(|pair| pair.expect("a point is written as x,y"));
-                pairs.map(|(x, y)| (parse(x), parse(y))).collect()
+                let parse_pair = |pair: &str| {
+                    let (x, y) = pair.split_once(',').expect("a point is written as x,y");
+                    (parse(x), parse(y))
+                };
+                let pairs = self.attribute("points").split(' ');
+                pairs.map(parse_pair).collect()
             }
             _ => vec![],
         }
@@ -84,10 +84,8 @@ impl Drawing {
     }
 
     pub fn element_by_id(&self, id: &str) -> &Element {
-        let elements = self
-            .elements
-            .iter()
-            .filter(|element| element.attribute("id") == id);
+        let elements = self.elements.iter();
+        let elements = elements.filter(|element| element.attribute("id") == id);
         match elements.collect::<Vec<_>>()[..] {
             [element] => element,
             ref elements => panic!("the drawing has {} elements {id}", elements.len()),

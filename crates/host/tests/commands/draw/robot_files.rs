@@ -10,10 +10,7 @@ use super::drawing::Drawing;
 pub fn read_robot_files() -> Vec<(String, String)> {
     let folder = std::fs::read_dir(repo_root().join("robots")).expect("robots/ is readable");
     let paths = folder.map(|entry| entry.expect("robots/ is readable").path());
-    let paths = paths.filter(|path| {
-        path.extension()
-            .is_some_and(|extension| extension == "toml")
-    });
+    let paths = paths.filter(|path| path.extension() == Some("toml".as_ref()));
     let files = paths.map(|path| {
         let text = std::fs::read_to_string(&path).expect("the file is readable");
         (path.display().to_string(), text)

@@ -117,11 +117,12 @@ impl<'a> Nets<'a> {
         }
     }
 
-    /// Checks that all names are in one net.
+    /// Checks that all names in a list, which are separated by spaces, are in one net.
     #[track_caller]
-    fn assert_joined(&self, names: &[&str]) {
+    fn assert_joined(&self, names: &str) {
+        let names: Vec<&str> = names.split(' ').collect();
         let root = self.find_root(names[0]);
-        for name in names {
+        for name in &names {
             // Panics if the drawing does not have the name.
             self.drawing.element_by_id(name);
             let actual = self.find_root(name);
@@ -135,28 +136,19 @@ fn every_component_is_joined_to_the_nets_that_it_needs() {
     for (name, text) in robot_files_with_many_pin_sets() {
         let drawing = draw_robot_wiring(&text);
         let nets = Nets::from_drawing(&drawing);
-        let servo_grounds = SERVO_NAMES.map(|servo| format!("end-{servo}-ground"));
-        let grounds = [
-            "end-battery-minus",
-            "end-converter-in-minus",
-            "end-converter-out-minus",
-            "end-capacitor-minus",
-            "end-round-plug-minus",
-            "end-signals-3-servo",
-            "pin-GND",
-        ];
-        nets.assert_joined(&[&grounds[..], &servo_grounds.each_ref().map(String::as_str)].concat());
-        let supplies = ["end-converter-out-plus", "end-capacitor-plus"];
-        let servo_supplies = ["end-A1-plus", "end-A2-plus", "end-A3-plus", "end-A4-plus"];
-        nets.assert_joined(&[&supplies[..], &servo_supplies].concat());
-        nets.assert_joined(&["end-battery-plus", "end-fuse-2"]);
-        nets.assert_joined(&["end-fuse-1", "end-switch-2"]);
-        nets.assert_joined(&["end-switch-1", "end-converter-in-plus"]);
-        nets.assert_joined(&["end-switch-1", "end-round-plug-plus"]);
-        for number in 1..=3 {
-            let [battery, alarm] =
-                ["battery-balance", "alarm"].map(|component| format!("end-{component}-{number}"));
-            nets.assert_joined(&[&battery, &alarm]);
+        for names in [
+            "end-battery-minus end-converter-in-minus end-converter-out-minus end-capacitor-minus",
+            "end-battery-minus end-round-plug-minus end-signals-3-servo pin-GND",
+            "pin-GND end-A1-ground end-A2-ground end-A3-ground end-A4-ground",
+            "end-converter-out-plus end-capacitor-plus end-A1-plus end-A2-plus end-A3-plus end-A4-plus",
+            "end-battery-plus end-fuse-2",
+            "end-fuse-1 end-switch-2",
+            "end-switch-1 end-converter-in-plus end-round-plug-plus",
+            "end-battery-balance-1 end-alarm-1",
+            "end-battery-balance-2 end-alarm-2",
+            "end-battery-balance-3 end-alarm-3",
+        ] {
+            nets.assert_joined(names);
         }
         let ends = [
             "end-battery-plus",
@@ -169,7 +161,7 @@ fn every_component_is_joined_to_the_nets_that_it_needs() {
         for servo in SERVO_NAMES {
             let pin = read_servo_value(&text, servo, "pin");
             let signal = format!("end-{servo}-signal");
-            nets.assert_joined(&[&signal, &format!("pin-{pin}")]);
+            nets.assert_joined(&format!("{signal} pin-{pin}"));
             net_roots.push(nets.find_root(&signal));
             let label = format!("to {pin}");
             assert!(drawing.texts().any(|text| text == label), "{name}");
@@ -180,12 +172,9 @@ fn every_component_is_joined_to_the_nets_that_it_needs() {
             let expected_nets = [nets.find_root(&signal), nets.find_root("pin-GND")];
             assert_eq!(ends, expected_nets, "{name} {servo}");
         }
-        let distinct_roots = BTreeSet::from_iter(&net_roots);
-        assert_eq!(
-            distinct_roots.len(),
-            net_roots.len(),
-            "{name}: two nets are joined"
-        );
+        let distinct_count = BTreeSet::from_iter(&net_roots).len();
+        let net_count = net_roots.len();
+        assert_eq!(distinct_count, net_count, "{name}: two nets are joined");
         // Spare positions are not joined to ground.
         for position in ["end-ground-11-wire", "end-ground-12-wire"] {
             assert_ne!(nets.find_root(position), nets.find_root("pin-GND"));
@@ -195,20 +184,18 @@ fn every_component_is_joined_to_the_nets_that_it_needs() {
 
 #[test]
 fn the_removal_of_any_link_splits_its_strip() {
-    let links = (1..10).map(|link| format!("link-ground-{link}"));
-    let links = links.chain((1..6).map(|link| format!("link-supply-{link}")));
-    for link in links {
-        let mut drawing = draw_robot_wiring(&paper_toml());
-        assert!(drawing.has_element(&link), "{link}");
-        drawing
-            .elements
-            .retain(|element| element.attribute("id") != link);
-        let nets = Nets::from_drawing(&drawing);
-        let ends = match link.starts_with("link-ground") {
-            true => ["end-ground-1-wire", "end-ground-10-wire"],
-            false => ["end-supply-1-wire", "end-supply-6-wire"],
-        };
-        assert_ne!(nets.find_root(ends[0]), nets.find_root(ends[1]), "{link}");
+    for (strip, position_count) in [("ground", 10), ("supply", 6)] {
+        for number in 1..position_count {
+            let link = format!("link-{strip}-{number}");
+            let mut drawing = draw_robot_wiring(&paper_toml());
+            assert!(drawing.has_element(&link), "{link}");
+            let elements = &mut drawing.elements;
+            elements.retain(|element| element.attribute("id") != link);
+            let nets = Nets::from_drawing(&drawing);
+            let [first_root, last_root] = [1, position_count]
+                .map(|position| nets.find_root(&format!("end-{strip}-{position}-wire")));
+            assert_ne!(first_root, last_root, "{link}");
+        }
     }
 }
 
@@ -219,7 +206,6 @@ fn wires_may_cross_but_never_touch_or_overlap() {
         // The wires in the radio's panel may touch each other, so they are ignored.
         let mut wires = drawing.wires();
         wires.retain(|(name, _)| !name.starts_with("radio-"));
-        let is_vertical = |segment: &[Point]| segment[0].0 == segment[1].0;
         for (wire, path) in &wires {
             let is_straight =
                 |segment: &[Point]| is_vertical(segment) || segment[0].1 == segment[1].1;
@@ -229,40 +215,48 @@ fn wires_may_cross_but_never_touch_or_overlap() {
             for (other_wire, other_path) in &wires[index + 1..] {
                 for segment in path.windows(2) {
                     for other_segment in other_path.windows(2) {
-                        let compute_gap = |axis: fn(&Point) -> f64| {
-                            let sorted_ends = |segment: &[Point]| {
-                                let (start, end) = (axis(&segment[0]), axis(&segment[1]));
-                                (start.min(end), start.max(end))
-                            };
-                            let (min, max) = sorted_ends(segment);
-                            let (other_min, other_max) = sorted_ends(other_segment);
-                            (min - other_max).max(other_min - max)
-                        };
-                        let x_gap = compute_gap(|point| point.0);
-                        let y_gap = compute_gap(|point| point.1);
-                        let has_shared_end = segment.iter().any(|end| other_segment.contains(end));
-                        if is_vertical(segment) == is_vertical(other_segment) {
-                            // Parallel wires keep their distance, unless they share an end or are both links.
-                            let are_links =
-                                wire.starts_with("link-") && other_wire.starts_with("link-");
-                            let are_near = x_gap < 3.0 && y_gap < 3.0;
-                            assert!(
-                                !are_near || are_links || has_shared_end,
-                                "{wire} is too near to {other_wire}: {segment:?}, {other_segment:?}"
-                            );
-                        } else if x_gap <= 0.0 && y_gap <= 0.0 {
-                            // Crossing wires cross away from their ends, unless they share an end.
-                            let depth = (-x_gap).min(-y_gap);
-                            assert!(
-                                depth > 2.0 || has_shared_end,
-                                "{wire} touches {other_wire}: {segment:?}, {other_segment:?}"
-                            );
-                        }
+                        check_distance(wire, segment, other_wire, other_segment);
                     }
                 }
             }
         }
     }
+}
+
+fn is_vertical(segment: &[Point]) -> bool {
+    segment[0].0 == segment[1].0
+}
+
+/// Checks that the segments of two wires neither overlap nor touch, except at a shared end.
+fn check_distance(wire: &str, segment: &[Point], other_wire: &str, other_segment: &[Point]) {
+    let x_gap = compute_gap(segment, other_segment, |point| point.0);
+    let y_gap = compute_gap(segment, other_segment, |point| point.1);
+    let has_shared_end = segment.iter().any(|end| other_segment.contains(end));
+    if is_vertical(segment) == is_vertical(other_segment) {
+        // Parallel wires keep their distance, unless they share an end or are both links.
+        let are_links = wire.starts_with("link-") && other_wire.starts_with("link-");
+        let are_near = x_gap < 3.0 && y_gap < 3.0;
+        assert!(
+            !are_near || are_links || has_shared_end,
+            "{wire} is too near to {other_wire}: {segment:?}, {other_segment:?}"
+        );
+    } else if x_gap <= 0.0 && y_gap <= 0.0 {
+        // Crossing wires cross away from their ends, unless they share an end.
+        let depth = (-x_gap).min(-y_gap);
+        assert!(
+            depth > 2.0 || has_shared_end,
+            "{wire} touches {other_wire}: {segment:?}, {other_segment:?}"
+        );
+    }
+}
+
+/// Returns the distance between two segments along an axis, negative if they overlap.
+fn compute_gap(first: &[Point], second: &[Point], axis: fn(&Point) -> f64) -> f64 {
+    let [(min, max), (other_min, other_max)] = [first, second].map(|segment| {
+        let (start, end) = (axis(&segment[0]), axis(&segment[1]));
+        (start.min(end), start.max(end))
+    });
+    (min - other_max).max(other_min - max)
 }
 
 #[test]

@@ -1,24 +1,22 @@
 //! Tests of `lizard measure keys` with hand-written outputs of `lizard measure --json`.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use crate::program::{Outcome, read_file, robot_path, run_in, scratch_folder};
+use serde_json::{Value, json};
+
+use crate::program::{Outcome, read_file, robot_path, run, scratch_folder};
 
 /// Formats a gait's movement per cycle as `lizard measure --json` does; all errors are 0.05.
-fn format_gait(gait: &str, [forward, left, turn]: [f64; 3]) -> String {
-    let format_component = |mean: f64| format!(r#"{{"mean":{mean},"sd":0.1,"error":0.05}}"#);
-    format!(
-        r#"{{"gait":"{gait}","speed":100,"forward":{},"left":{},"turn":{}}}"#,
-        format_component(forward),
-        format_component(left),
-        format_component(turn)
-    )
+fn format_gait(gait: &str, movement: [f64; 3]) -> Value {
+    let format_component = |mean: f64| json!({ "mean": mean, "sd": 0.1, "error": 0.05 });
+    let [forward, left, turn] = movement.map(format_component);
+    json!({ "gait": gait, "speed": 100, "forward": forward, "left": left, "turn": turn })
 }
 
 /// Formats the movements of several gaits as `lizard measure --json` does.
-fn format_measurement(gaits: &[String]) -> String {
-    format!(r#"{{"gaits":[{}]}}"#, gaits.join(","))
+fn format_measurement(gaits: &[Value]) -> String {
+    json!({ "gaits": gaits }).to_string()
 }
 
 /// Writes a file to the scratch folder.
@@ -28,11 +26,10 @@ fn write_file(name: &str, text: &str) -> PathBuf {
     path
 }
 
-fn run_measure_keys(files: &[&PathBuf], options: &[&str]) -> Outcome {
+fn run_measure_keys(file: &Path, options: &[&str]) -> Outcome {
     let paper = robot_path("paper");
-    let files: Vec<&str> = files.iter().filter_map(|file| file.to_str()).collect();
-    let arguments = [&["measure", "keys", "--robot", &paper], &files[..], options].concat();
-    run_in(scratch_folder(), &arguments, "")
+    let file = file.display().to_string();
+    run(&[&["measure", "keys", "--robot", &paper, &file], options].concat())
 }
 
 #[test]
@@ -55,7 +52,7 @@ fn files_without_usable_movements_are_refused_with_advice() {
         ),
     ] {
         let file = write_file("refused.json", text);
-        run_measure_keys(&[&file], &[]).expect_refusal_with(expected);
+        run_measure_keys(&file, &[]).expect_refusal_with(expected);
     }
 }
 
@@ -70,7 +67,7 @@ fn measure_keys_never_overwrites_a_robot_file_or_its_input() {
         (&movement_file, "this command reads it"),
     ] {
         let output = output.display().to_string();
-        run_measure_keys(&[&movement_file], &["--output", &output]).expect_refusal_with(reason);
+        run_measure_keys(&movement_file, &["--output", &output]).expect_refusal_with(reason);
     }
     let robot_text = fs::read_to_string(&robot_file).expect("the file is readable");
     assert_eq!(robot_text, text);
@@ -91,7 +88,7 @@ fn the_written_robot_file_differs_only_in_measured_lines() {
     let _ = fs::remove_file(&output);
     let output_name = output.to_str().expect("the path is UTF-8");
     let result =
-        run_measure_keys(&[&measured_file], &["--output", output_name, "--json"]).expect_json();
+        run_measure_keys(&measured_file, &["--output", output_name, "--json"]).expect_json();
     let find_verdict = |key: &str| {
         let mut entries = result["keys"].as_array().into_iter().flatten();
         let entry = entries.find(|entry| entry["key"] == key).expect(key);
@@ -109,6 +106,6 @@ fn the_written_robot_file_differs_only_in_measured_lines() {
         assert!(is_measured || is_blank_or_header, "{line}");
     }
     assert!(new_text.contains("friction_back_over_forward = ") && new_text != old_text);
-    let outcome = run_in(scratch_folder(), &["gaits", "--robot", output_name], "");
-    assert!(outcome.expect_success().contains("walk"));
+    let gaits = run(&["gaits", "--robot", output_name]).expect_success();
+    assert!(gaits.contains("walk"));
 }

@@ -4,7 +4,7 @@ use std::fs;
 
 use lizard_video::{Frame, read_tags, sheet};
 
-use crate::program::{run, scratch_folder};
+use crate::program::{assert_contains, run_line_in, scratch_folder};
 
 /// Resolution of the rasterised page, pixels per mm.
 const PIXELS_PER_MM: f64 = 3.0;
@@ -12,32 +12,28 @@ const PIXELS_PER_MM: f64 = 3.0;
 const MM_PER_POINT: f64 = 25.4 / 72.0;
 
 /// Returns the operands of each line in `text` that ends in the PDF operator `operator`.
-fn parse_operands<'a>(
-    text: &'a str,
-    operator: &'a str,
-) -> impl Iterator<Item = Vec<f64>> + Clone + 'a {
-    let lines = text
-        .lines()
-        .filter_map(move |line| line.strip_suffix(operator));
-    let words = lines.map(str::split_whitespace);
-    words.map(|words| words.filter_map(|word| word.parse().ok()).collect())
+fn parse_operands(text: &str, operator: &str) -> Vec<Vec<f64>> {
+    let lines = text.lines();
+    let operand_lists = lines.filter_map(|line| line.strip_suffix(operator));
+    let words = operand_lists.map(str::split_whitespace);
+    let operands = words.map(|words| words.filter_map(|word| word.parse().ok()).collect());
+    operands.collect()
 }
 
 /// Writes the sheet; returns the PDF's text, and the page's width and height in mm.
 fn write_sheet(paper: &str) -> (String, [f64; 2]) {
-    let path = scratch_folder().join(format!("sheets/{paper}.pdf"));
-    let name = path.to_str().expect("the path is UTF-8");
-    let output = run(&["measure", "sheet", "--paper", paper, "--output", name]).expect_success();
-    assert!(output.contains("print it at 100 %"), "{output}");
-    let bytes = fs::read(&path).expect("the file is readable");
+    let name = format!("sheets/{paper}.pdf");
+    let line = format!("measure sheet --paper {paper} --output {name}");
+    let output = run_line_in(scratch_folder(), &line).expect_success();
+    assert_contains(&output, "print it at 100 %");
+    let bytes = fs::read(scratch_folder().join(name)).expect("the file is readable");
     let text = String::from_utf8_lossy(&bytes).into_owned();
     let media_box = text.split_once("/MediaBox [");
     let (_, media_box) = media_box.expect("the PDF has a page size");
     let (media_box, _) = media_box.split_once(']').expect("the page size ends");
-    let numbers = media_box.split(' ').map(|word| word.parse::<f64>());
-    let numbers: Result<Vec<f64>, _> = numbers.collect();
-    let numbers = numbers.expect("the values are numbers");
-    let size = [2, 3].map(|i| numbers[i] * MM_PER_POINT);
+    let words: Vec<&str> = media_box.split(' ').collect();
+    let parse = |word: &str| word.parse::<f64>().expect("the value is a number");
+    let size = [2, 3].map(|i| parse(words[i]) * MM_PER_POINT);
     (text, size)
 }
 
@@ -51,10 +47,10 @@ fn rasterize(text: &str, [page_width, page_height]: [f64; 2]) -> (Frame, [[f64; 
     let mut lines = text.lines().peekable();
     let mut fill = 0;
     while let Some(line) = lines.next() {
-        if let Some(operands) = parse_operands(line, " g").next() {
+        if let Some(operands) = parse_operands(line, " g").pop() {
             fill = (255.0 * operands[0]) as u8;
         }
-        let Some(rectangle) = parse_operands(line, " re").next() else {
+        let Some(rectangle) = parse_operands(line, " re").pop() else {
             continue;
         };
         let [x, y, width, height] = [0, 1, 2, 3].map(|i| rectangle[i] * MM_PER_POINT);
@@ -117,13 +113,11 @@ fn a_printed_sheet_shows_all_tags_at_actual_size() {
 #[test]
 fn the_ruler_line_of_a_strip_is_100_mm_long() {
     let (text, _) = write_sheet("a4");
-    let rectangles = parse_operands(&text, " re")
-        .map(|rectangle| [0, 1, 2, 3].map(|i| rectangle[i] * MM_PER_POINT));
+    let rectangles = parse_operands(&text, " re").into_iter();
+    let rectangles = rectangles.map(|operands| [0, 1, 2, 3].map(|i| operands[i] * MM_PER_POINT));
     let is_ruler = |rectangle: &[f64; 4]| (rectangle[2] - sheet::RULER_LENGTH).abs() < 0.01;
-    assert_eq!(
-        rectangles.clone().filter(is_ruler).count(),
-        sheet::STRIP_COUNT
-    );
+    let ruler_count = rectangles.clone().filter(is_ruler).count();
+    assert_eq!(ruler_count, sheet::STRIP_COUNT);
     // The outer edges of the two 8 mm end ticks are at the ends of the line.
     let ticks = rectangles.filter(|rectangle| (rectangle[3] - 8.0).abs() < 0.01);
     let ticks: Vec<[f64; 2]> = ticks.map(|[x, _, width, _]| [x, x + width]).collect();

@@ -1,10 +1,12 @@
 //! Tests of invalid input: messages, exit codes, and no incomplete output.
 
-use crate::program::{
-    assert_contains, read_cases, run_command, run_line, scratch_folder, with_paper,
-};
+use serde_json::Value;
 
-const HEADER: &str = "theta1,theta4,theta8,theta5\n";
+use super::HEADER;
+use crate::program::{
+    assert_contains, expect_refusals, read_cases, repo_root, run_command, run_line, scratch_folder,
+    with_paper,
+};
 
 #[test]
 fn the_refusal_of_an_invalid_row_names_the_line_and_column() {
@@ -37,34 +39,28 @@ fn rows_before_an_invalid_row_are_solved_completely() {
     let input = format!("{HEADER}138,42,318,221\n138,42,318,221\n?,42,318,221\n");
     let outcome = run_line("pose --json", input);
     assert_eq!((outcome.code, outcome.stdout.lines().count()), (Some(2), 2));
-    for line in outcome.stdout.lines() {
-        serde_json::from_str::<serde_json::Value>(line)
-            .expect("the line is a complete JSON object");
-    }
+    let mut rows = outcome.stdout.lines().map(serde_json::from_str::<Value>);
+    assert!(rows.all(|row| row.is_ok()), "{}", outcome.stdout);
 }
 
 #[test]
 fn an_invalid_header_is_refused() {
-    let refuse = |input: &[u8]| run_line("pose --json", input).expect_refusal();
+    let solve = |input: &[u8]| run_line("pose --json", input);
     let headers = r#"
         A1,A2,A3,A4 => line 1, column 1: "A1" is not a column
         theta1,theta4,theta5,seconds => line 1, column 5: theta8 is missing
         theta1,theta4,theta5,theta5 => line 1, column 4: duplicate column "theta5"
     "#;
     for (header, problem) in read_cases(headers) {
-        let expected = format!(
+        solve(format!("{header}\n").as_bytes()).expect_refusal_with(&format!(
             "lizard: {problem}; expected the header theta1,theta4,theta8,theta5 in any order, optionally with seconds"
-        );
-        assert_eq!(refuse(format!("{header}\n").as_bytes()), expected);
+        ));
     }
-    assert_eq!(
-        refuse(b""),
-        "lizard: line 1, column 1: the input is empty, expected the header theta1,theta4,theta8,theta5"
+    solve(b"").expect_refusal_with(
+        "lizard: line 1, column 1: the input is empty, expected the header theta1,theta4,theta8,theta5",
     );
-    assert_eq!(
-        refuse(b"theta1,theta4,\xff,theta8\n"),
-        "lizard: line 1, column 3: not UTF-8 text"
-    );
+    solve(b"theta1,theta4,\xff,theta8\n")
+        .expect_refusal_with("lizard: line 1, column 3: not UTF-8 text");
     for (length, is_too_long) in [(1024, false), (1025, true), (100_000, true)] {
         let outcome = run_line("pose", vec![b'1'; length]);
         assert_eq!(outcome.code, Some(2));
@@ -102,9 +98,7 @@ fn the_refusal_of_invalid_arguments_states_the_reason() {
         draw charts => <DIR>
         walk => walk
     ";
-    for (args, message) in read_cases(cases) {
-        run_line(args, "").expect_refusal_with(message);
-    }
+    expect_refusals(&repo_root(), cases);
 }
 
 #[test]
@@ -124,8 +118,7 @@ fn an_impossible_request_ends_with_code_1() {
 #[cfg(unix)]
 #[test]
 fn a_closed_pipe_is_not_an_error() {
-    let mut input = HEADER.to_string();
-    input += &"138,42,318,221\n".repeat(50_000);
+    let input = HEADER.to_owned() + &"138,42,318,221\n".repeat(50_000);
     let file = scratch_folder().join("poses.csv");
     std::fs::write(&file, input).unwrap();
     let script = format!(

@@ -4,7 +4,10 @@ use std::collections::BTreeSet;
 
 use lizard_paper::errata::{SAMPLE_COUNT, evaluate_equations, format_markdown};
 
-use crate::program::{assert_contains, read_file, read_length, repo_root, run_line, with_paper};
+use crate::program::{
+    assert_contains, new_folder, read_file, read_length, repo_root, robot_path, run_line,
+    run_line_in, scratch_folder, with_paper,
+};
 
 #[test]
 fn the_errata_page_is_up_to_date_and_every_correction_holds() {
@@ -45,11 +48,9 @@ fn every_command_in_docs_paper_prints_the_output_on_the_page() {
 
 #[test]
 fn draw_charts_writes_the_svg_files_in_docs() {
-    let folder = std::env::temp_dir().join(format!("lizard-charts-{}", std::process::id()));
-    let robot_file = repo_root().join("robots/paper.toml");
-    let (folder_path, robot_path) = (folder.display(), robot_file.display());
-    let line = format!("draw charts --json {folder_path} --robot {robot_path}");
-    run_line(&line, "").expect_success();
+    let folder = new_folder("charts");
+    let line = format!("draw charts --json charts --robot {}", robot_path("paper"));
+    run_line_in(scratch_folder(), &line).expect_success();
     let entries = std::fs::read_dir(&folder).unwrap();
     let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
     let mut names: Vec<String> = names.collect();
@@ -67,7 +68,6 @@ fn draw_charts_writes_the_svg_files_in_docs() {
             "docs/charts/{name} is out of date; run: lizard draw charts docs/charts --robot robots/paper.toml"
         );
     }
-    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 /// Table 1 of the paper as printed: link names and lengths, mm.
@@ -103,12 +103,9 @@ fn docs_paper_lists_every_figure_of_the_paper_with_its_command_and_files() {
     let page = read_file("docs/paper.md");
     let heading_split = page.split_once("| in the paper |");
     let (_, table) = heading_split.expect("the page has the table");
-    let rows: Vec<Vec<&str>> = table
-        .lines()
-        .skip(2)
-        .map_while(|line| line.strip_prefix("| "))
-        .map(|line| line.trim_end_matches(" |").split(" | ").collect())
-        .collect();
+    let lines = table.lines().skip(2);
+    let lines = lines.map_while(|line| line.strip_prefix("| ")?.strip_suffix(" |"));
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(" | ").collect()).collect();
     let figures = (1..=10).map(|number| format!("Figure {number}"));
     let other_names = ["Table 1", "Algorithm 1", "section 3.1.2"].map(str::to_owned);
     let expected_names: Vec<String> = figures.chain(other_names).collect();

@@ -5,3 +5,6 @@ mod bad_input;
 mod docs;
 mod pose;
 mod values;
+
+/// The header of a list of poses.
+const HEADER: &str = "theta1,theta4,theta8,theta5\n";

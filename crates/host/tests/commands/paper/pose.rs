@@ -1,11 +1,10 @@
 //! Tests of `lizard pose`, mostly with the paper's robot.
 
-use lizard_kinematics::wrap;
+use lizard_kinematics::{Vector, wrap};
 use serde_json::Value;
 
+use super::HEADER;
 use crate::program::{TemporaryRobot, assert_contains, run_line, with_paper};
-
-const HEADER: &str = "theta1,theta4,theta8,theta5\n";
 
 fn solve_rows(input: &str) -> Vec<Value> {
     run_line(&with_paper("pose --json"), input).expect_json_lines()
@@ -50,26 +49,22 @@ fn every_printed_solution_closes_all_loops() {
     assert_eq!(solutions.len(), poses.len());
     let vector = |length: f64, degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
-        [length * cos, length * sin]
+        Vector::new(length * cos, length * sin)
     };
+    let assert_closed = |gap: Vector| assert!(gap.length() < 1e-9, "gap {gap:?} mm");
     for ([t1, t4, t8, t5], solution) in poses.into_iter().zip(&solutions) {
         let find_angle = |key: &str| {
             let angle = solution[key].as_f64().unwrap();
             assert!(angle > -180.0 && angle <= 180.0);
             angle
         };
-        let assert_closed = |links: [[f64; 2]; 4], ground: [f64; 2]| {
-            let [a, b, c, d] = links;
-            let x = a[0] + b[0] - c[0] - d[0] - ground[0];
-            let y = a[1] + b[1] - c[1] - d[1] - ground[1];
-            assert!(x.hypot(y) < 1e-9, "gap ({x}, {y}) mm");
-        };
         for (left, left_coupler, right_coupler, right) in
             [(t1, "theta2", "theta3", t4), (t5, "theta6", "theta7", t8)]
         {
-            let couplers = [left_coupler, right_coupler].map(|key| vector(50.0, find_angle(key)));
+            let [left_coupler, right_coupler] =
+                [left_coupler, right_coupler].map(|key| vector(50.0, find_angle(key)));
             let [left, right] = [left, right].map(|theta| vector(30.0, theta));
-            assert_closed([left, couplers[0], couplers[1], right], [20.0, 0.0]);
+            assert_closed(left + left_coupler - right_coupler - right - Vector::new(20.0, 0.0));
         }
         for (side, hind, front) in [
             ("left", t5 - 90.0, t1 + 90.0),
@@ -78,13 +73,11 @@ fn every_printed_solution_closes_all_loops() {
             let span = 90.0 + solution[side]["s"].as_f64().unwrap();
             let slider = vector(span, solution[side]["phi"].as_f64().unwrap());
             let [hind_arm, front_arm] = [hind, front].map(|angle| vector(30.0, angle));
-            assert_closed([hind_arm, slider, front_arm, [0.0; 2]], [0.0, 135.0]);
+            assert_closed(hind_arm + slider - front_arm - Vector::new(0.0, 135.0));
         }
-        let head = vector(30.0, t1);
-        let coupler = vector(50.0, find_angle("theta2"));
-        let x = solution["head"][0].as_f64().unwrap() - (-10.0 + head[0] + coupler[0]);
-        let y = solution["head"][1].as_f64().unwrap() - (67.5 + head[1] + coupler[1]);
-        assert!(x.hypot(y) < 1e-9);
+        let [x, y] = [0, 1].map(|axis| solution["head"][axis].as_f64().unwrap());
+        let left_arm = vector(30.0, t1) + vector(50.0, find_angle("theta2"));
+        assert_closed(Vector::new(-10.0, 67.5) + left_arm - Vector::new(x, y));
         for (leg, theta, sign) in [
             ("lf", t1, 1.0),
             ("rf", t4, 1.0),
@@ -213,27 +206,25 @@ fn an_angle_beyond_a_servos_travel_is_not_safe() {
             "pin = \"D11\"\nneutral = 318.590378\nneutral_us = 2050.0\nus_per_degree = 20.0\nmin_us = 1000.0\nmax_us = 2450.0",
         )],
     );
+    let run = |line: &str, input: &str| run_line(&robot.add_option(line), input);
     let pose = "pose --theta1 138.59 --theta4 41.41 --theta5 221.41 --theta8";
-    let solve_with_theta8 = |theta8: f64| {
-        let line = format!("{pose} {theta8} --json");
-        run_line(&robot.add_option(&line), "").expect_json()
-    };
-    let end_of_travel = solve_with_theta8(318.590378 + 20.0);
+    let [end_of_travel, beyond_travel] = [20.0, 20.1].map(|turn| {
+        let line = format!("{pose} {} --json", 318.590378 + turn);
+        run(&line, "").expect_json()
+    });
     assert_eq!(end_of_travel["safe"], true);
-    let beyond_travel = solve_with_theta8(318.590378 + 20.1);
     assert_eq!(beyond_travel["safe"], false);
     assert_eq!(
         beyond_travel["why"][0],
         "servo A3 would turn +20.1 deg from neutral to 338.7 deg; its travel is 266.1 to 338.6 deg"
     );
-    let text = run_line(&robot.add_option(&format!("{pose} 338.8")), "").stdout;
+    let text = run(&format!("{pose} 338.8"), "").stdout;
     assert_contains(&text, "safe     no, servo A3 would turn +20.2");
-    let table = run_line(&robot.add_option("pose"), "138.59,41.41,338.8,221.41\n").stdout;
+    let table = run("pose", "138.59,41.41,338.8,221.41\n").stdout;
     assert_contains(&table, "| servo A3 would turn");
     // The inverse kinematics also reports the tail point of this pose as unreachable.
     let [x, y] = [0, 1].map(|axis| beyond_travel["tail"][axis].as_f64().unwrap());
-    let command = robot.add_option(&format!("pose --json --tail {x} {y}"));
-    let inverse = run_line(&command, "").expect_json();
+    let inverse = run(&format!("pose --json --tail {x} {y}"), "").expect_json();
     assert_eq!(inverse["safe"], false);
     let mut reasons = inverse["why"].as_array().unwrap().iter();
     let is_about_servo = |reason: &Value| reason.as_str().unwrap().starts_with("servo A3");

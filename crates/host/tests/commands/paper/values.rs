@@ -1,8 +1,10 @@
 //! Tests that the commands print the paper's and this project's values for the paper's robot.
 
+use lizard_robot::Robot;
 use serde_json::Value;
 
-use crate::program::{assert_contains, read_file, run_line, with_paper};
+use super::HEADER;
+use crate::program::{assert_contains, robot_path, run_line, with_paper};
 
 /// Runs a command with the paper's robot, and parses its output as JSON.
 fn run_paper_json(args: &str) -> Value {
@@ -124,7 +126,7 @@ fn the_determinant_matches_its_factors_and_the_nearest_poses_are_singular() {
         previous_distance = distance;
         let [a1, a2, a3, a4] =
             [0, 1, 2, 3].map(|i| start_angles[i] + to_number(&singular_pose["turn"][i]));
-        let pose = format!("theta1,theta4,theta8,theta5\n{a1},{a2},{a3},{a4}\n");
+        let pose = format!("{HEADER}{a1},{a2},{a3},{a4}\n");
         let solution = run_line(&with_paper("pose --json"), pose).expect_json();
         let min_margin = solution["margins"].as_object().map_or(0.0, |margins| {
             let margins = margins.values().map(to_number);
@@ -185,8 +187,7 @@ fn the_solutions_for_a_point_reach_the_point() {
 
 #[test]
 fn the_conditioning_of_the_papers_gesture_look_is_at_least_0_7() {
-    let robot = lizard_robot::Robot::parse(&read_file("robots/paper.toml"))
-        .expect("the robot file is valid");
+    let robot = Robot::load(robot_path("paper")).expect("the robot file is valid");
     let look = robot.gait("look").expect("the robot has the gesture");
     for i in 0..1000 {
         let pose = look.pose(f64::from(i) / 1000.0);
@@ -212,8 +213,8 @@ fn the_end_point_is_loose_in_a_type_2_singularity() {
         let expected = format!("the {end}'s end point is loose (type 2)");
         assert_eq!(body["loose"][0], expected);
     }
-    let line = with_paper(&format!("pose --show freedoms {head_pose}"));
-    let text = run_line(&line, "").stdout;
+    let line = format!("pose --show freedoms {head_pose}");
+    let text = run_line(&with_paper(&line), "").stdout;
     assert!(!text.contains("four servos hold the body"), "{text}");
     assert_contains(&text, "the head's end point is loose");
     // A flat leg is loose even if its crank is locked.

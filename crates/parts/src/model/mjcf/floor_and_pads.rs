@@ -1,7 +1,7 @@
 //! The floor and the pads on it, in the MJCF file.
 
 use super::document::CONTACT_SOLREF;
-use crate::model::floor::{Block, Floor};
+use crate::model::floor::Floor;
 use crate::model::scene::Pads;
 use crate::model::text::{MILLI, format_metres, join_numbers, round};
 use crate::model::writer::Writer;
@@ -27,22 +27,17 @@ impl Floor {
 
 impl Writer<'_> {
     pub(super) fn write_floor(&mut self) {
-        self.xml.write_empty(
-            r#"geom name="floor" type="plane" size="0 0 0.05" material="floor" conaffinity="1""#,
+        self.xml.write(
+            r#"<geom name="floor" type="plane" size="0 0 0.05" material="floor" conaffinity="1"/>"#,
         );
         for block in &self.scene.floor.blocks {
-            let Block {
-                centre: [x, y],
-                size,
-                rotation,
-            } = block;
+            let ([x, y], [width, length, height]) = (block.centre, block.size);
             // The box is twice as high as the block, with its lower half under the floor.
-            let [width, length, height] = *size;
             let half_size = format_metres([width / 2.0, length / 2.0, height]);
-            let position = format_metres([*x, *y, 0.0]);
-            self.xml.write_empty(format!(
-                r#"geom type="box" size="{half_size}" pos="{position}" euler="0 0 {}" rgba="0.7 0.6 0.5 1" conaffinity="1""#,
-                round(rotation.to_radians())
+            let position = format_metres([x, y, 0.0]);
+            let rotation = round(block.rotation.to_radians());
+            self.xml.write(format_args!(
+                r#"<geom type="box" size="{half_size}" pos="{position}" euler="0 0 {rotation}" rgba="0.7 0.6 0.5 1" conaffinity="1"/>"#
             ));
         }
     }
@@ -82,8 +77,8 @@ impl Writer<'_> {
     fn write_pad_shape(&mut self, servo: usize, suffix: &str, shape: &str, position: [f64; 3]) {
         let (leg, position) = (LEG_NAMES[servo], format_metres(position));
         let friction = self.scene.floor.friction_coefficients[servo];
-        self.xml.write_empty(format!(
-            r#"geom name="pad {leg}{suffix}" {shape} pos="{position}" group="3" contype="1" priority="1" condim="3" friction="{friction} 0 0" solref="{CONTACT_SOLREF}" solimp="0.95 0.99 0.0005""#
+        self.xml.write(format_args!(
+            r#"<geom name="pad {leg}{suffix}" {shape} pos="{position}" group="3" contype="1" priority="1" condim="3" friction="{friction} 0 0" solref="{CONTACT_SOLREF}" solimp="0.95 0.99 0.0005"/>"#
         ));
     }
 }

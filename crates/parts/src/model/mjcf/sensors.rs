@@ -12,24 +12,26 @@ impl Writer<'_> {
     /// Writes sensors for the servos' angles, rates and torques, the force on each pad, and the chassis's position,
     /// orientation and velocities.
     pub(super) fn write_sensors(&mut self) {
-        let xml = &mut self.xml;
-        xml.open("sensor");
+        self.xml.write("<sensor>");
         for name in SERVO_NAMES {
-            for (quantity, kind) in [("angle", "pos"), ("rate", "vel"), ("torque", "frc")] {
-                xml.write_empty(format!(
-                    r#"actuator{kind} name="{name} {quantity}" actuator="{name}""#
-                ));
-            }
+            self.xml.write(format_args!(
+                r#"<actuatorpos name="{name} angle" actuator="{name}"/>
+                <actuatorvel name="{name} rate" actuator="{name}"/>
+                <actuatorfrc name="{name} torque" actuator="{name}"/>"#
+            ));
         }
         for leg in LEG_NAMES {
-            xml.write_empty(format!(r#"touch name="load {leg}" site="pad {leg}""#));
+            self.xml.write(format_args!(
+                r#"<touch name="load {leg}" site="pad {leg}"/>"#
+            ));
         }
-        let chassis = r#"objtype="xbody" objname="chassis""#;
-        xml.write_empty(format!(r#"framepos name="place" {chassis}"#));
-        xml.write_empty(format!(r#"framequat name="direction" {chassis}"#));
-        xml.write_empty(r#"velocimeter name="velocity" site="chassis""#);
-        xml.write_empty(r#"gyro name="gyro" site="chassis""#);
-        xml.close();
+        self.xml.write(
+            r#"<framepos name="place" objtype="xbody" objname="chassis"/>
+            <framequat name="direction" objtype="xbody" objname="chassis"/>
+            <velocimeter name="velocity" site="chassis"/>
+            <gyro name="gyro" site="chassis"/>
+            </sensor>"#,
+        );
     }
 
     /// Writes the site that measures the load of a servo's pad.
@@ -37,8 +39,8 @@ impl Writer<'_> {
         let radius = self.assembly.robot().parts().pad.radius;
         let (leg, position) = (LEG_NAMES[servo], format_metres(self.dome_centre(servo)));
         let size = round(SITE_RADIUS_RATIO * radius * MILLI);
-        self.xml.write_empty(format!(
-            r#"site name="pad {leg}" type="sphere" size="{size}" pos="{position}" group="3""#
+        self.xml.write(format_args!(
+            r#"<site name="pad {leg}" type="sphere" size="{size}" pos="{position}" group="3"/>"#
         ));
     }
 }

@@ -35,6 +35,15 @@ pub(super) enum Verdict {
     Undetermined,
 }
 
+/// The verdicts on a single pose that clears a limit by these fractions of the error bound, for tests.
+#[cfg(test)]
+pub(super) const VERDICTS_BY_CLEARANCE: [(f64, Verdict); 4] = [
+    (1.01, Verdict::Proven),
+    (0.99, Verdict::Undetermined),
+    (0.01, Verdict::Undetermined),
+    (-0.01, Verdict::Violated),
+];
+
 /// A condition of the guard that depends on two servos.
 pub(super) trait Condition {
     /// The indices of the servo of the rows and the servo of the columns.

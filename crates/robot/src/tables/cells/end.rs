@@ -139,6 +139,7 @@ impl Condition for EndConditions {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tables::cells::cell::VERDICTS_BY_CLEARANCE;
     use crate::testing::robot;
 
     /// Creates conditions whose limits every pose meets, for the head of an asymmetrical robot, and a cell of the
@@ -185,15 +186,10 @@ mod tests {
         for (select_limit, (value, bound)) in limits {
             assert!(bound > 1e-5 && bound < 0.01, "the bound is {bound}");
             let unlimited = *select_limit(&mut conditions);
-            for (clearance, verdict) in [
-                (1.01 * bound, Verdict::Proven),
-                (0.99 * bound, Verdict::Undetermined),
-                (0.01 * bound, Verdict::Undetermined),
-                (-0.01 * bound, Verdict::Violated),
-            ] {
-                *select_limit(&mut conditions) = value - clearance;
+            for (clearance, verdict) in VERDICTS_BY_CLEARANCE {
+                *select_limit(&mut conditions) = value - clearance * bound;
                 let actual = conditions.evaluate(&cell);
-                assert_eq!(actual, verdict, "value {value}, clearance {clearance}");
+                assert_eq!(actual, verdict, "value {value}, {clearance} bounds");
             }
             *select_limit(&mut conditions) = unlimited;
         }

@@ -83,19 +83,14 @@ fn certify(condition: &impl Condition, numbers: &Content) -> Map {
         })
         .collect();
     let is_occupied = |row: &[i8; 2]| row[0] <= row[1];
-    let Some(start) = all_rows.iter().position(is_occupied) else {
-        return Map {
-            first_row: 0,
-            rows: Vec::new(),
-        };
+    let first = all_rows.iter().position(is_occupied);
+    let last = all_rows.iter().rposition(is_occupied);
+    let (Some(first), Some(last)) = (first, last) else {
+        return Map::default();
     };
-    let end = all_rows
-        .iter()
-        .rposition(is_occupied)
-        .map_or(start, |last| last + 1);
     Map {
-        first_row: (first_row + start as i32) as i8,
-        rows: all_rows[start..end].to_vec(),
+        first_row: (first_row + first as i32) as i8,
+        rows: all_rows[first..=last].to_vec(),
     }
 }
 

@@ -71,7 +71,7 @@ impl Condition for StrokeCondition {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tables::cells::cell::Span;
+    use crate::tables::cells::cell::{Span, VERDICTS_BY_CLEARANCE};
     use crate::testing::robot;
 
     #[test]
@@ -85,12 +85,7 @@ mod tests {
             let cell = Cell(side.servos().map(neutral_span));
             assert_eq!(condition.evaluate(&cell), Verdict::Proven);
             let length = condition.length(&cell);
-            for (clearance, verdict) in [
-                (1.01, Verdict::Proven),
-                (0.99, Verdict::Undetermined),
-                (0.01, Verdict::Undetermined),
-                (-0.01, Verdict::Violated),
-            ] {
+            for (clearance, verdict) in VERDICTS_BY_CLEARANCE {
                 let (min, max) = (condition.min_length, condition.max_length);
                 let distance = clearance * condition.error_bound;
                 for (end, range) in [
@@ -98,11 +93,9 @@ mod tests {
                     ("longest", (min, length + distance)),
                 ] {
                     (condition.min_length, condition.max_length) = range;
-                    assert_eq!(
-                        condition.evaluate(&cell),
-                        verdict,
-                        "{side} side, {clearance} error bounds from the {end} length"
-                    );
+                    let case =
+                        format!("{side} side, {clearance} error bounds from the {end} length");
+                    assert_eq!(condition.evaluate(&cell), verdict, "{case}");
                 }
                 (condition.min_length, condition.max_length) = (min, max);
             }

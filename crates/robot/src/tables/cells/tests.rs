@@ -82,27 +82,24 @@ struct CertifiedMap<'a> {
 
 /// A robot in the integers of the firmware, and the maps to be checked.
 struct RobotWithMaps {
-    name: String,
     robot: CoreRobot,
     maps: CellMaps,
 }
 
 impl RobotWithMaps {
     /// Computes the maps of a robot.
-    fn new(name: &str, robot: &Robot) -> Self {
+    fn new(robot: &Robot) -> Self {
         Self {
-            name: name.to_string(),
             robot: *robot.firmware(),
             maps: robot.cell_maps(),
         }
     }
 
     /// Creates a robot without gaits from its configuration.
-    fn from_config(name: &str, config: &RobotConfig) -> Self {
+    fn from_config(config: &RobotConfig) -> Self {
         let tables = Tables::new(&[]).expect("tables without gaits can be built");
-        let content = numbers::build_content(name, config, &tables, &[]);
+        let content = numbers::build_content("random", config, &tables, &[]);
         Self {
-            name: name.to_string(),
             maps: CellMaps::new(&config.lizard, &content),
             robot: CoreRobot::unchecked(flash(&content.section_bytes()))
                 .expect("the section is complete"),
@@ -160,7 +157,7 @@ impl RobotWithMaps {
                                 sides[side].allows(clearance.slider_lengths_sq[side])
                             });
                         if !is_accepted {
-                            return Err(format!("{} at {pose:?}: {clearance:?}", self.name));
+                            return Err(format!("{pose:?}: {clearance:?}"));
                         }
                     }
                 }
@@ -174,8 +171,8 @@ impl RobotWithMaps {
 fn the_guard_accepts_the_corners_the_centre_and_random_poses_of_every_cell() {
     let mut runner = TestRunner::deterministic();
     for (name, robot) in all_robots() {
-        let result = RobotWithMaps::new(name, &robot).check(&mut runner);
-        let cell_count = result.unwrap_or_else(|message| panic!("{message}"));
+        let result = RobotWithMaps::new(&robot).check(&mut runner);
+        let cell_count = result.unwrap_or_else(|message| panic!("{name} at {message}"));
         assert!(cell_count > 2000, "{name}: {cell_count}");
     }
 }
@@ -186,9 +183,8 @@ fn the_guard_accepts_every_cell_of_random_robots() {
     let (strategy, mut cell_count) = (random_configs(), 0);
     for number in 0..100 {
         let config = sample(&strategy, &mut runner);
-        let robot = RobotWithMaps::from_config(&format!("robot {number}"), &config);
-        let checked_cells = robot.check(&mut runner);
-        cell_count += checked_cells.unwrap_or_else(|message| panic!("{message}"));
+        let result = RobotWithMaps::from_config(&config).check(&mut runner);
+        cell_count += result.unwrap_or_else(|message| panic!("robot {number} at {message}"));
     }
     assert!(cell_count > 100 * 1000, "{cell_count} cells of 100 robots");
 }
@@ -197,7 +193,7 @@ fn the_guard_accepts_every_cell_of_random_robots() {
 fn the_guard_accepts_every_pose_that_all_four_maps_contain() {
     let mut runner = TestRunner::deterministic();
     for (name, robot) in all_robots() {
-        let RobotWithMaps { robot, maps, .. } = RobotWithMaps::new(name, &robot);
+        let RobotWithMaps { robot, maps } = RobotWithMaps::new(&robot);
         let travels = robot
             .calibration()
             .map(|servo| (servo.travel_min.0..=servo.travel_max.0).prop_map(Sweep));
@@ -230,7 +226,7 @@ fn cells_of_the_old_maps_violate_a_stricter_limit() {
     for (index, change) in changes.into_iter().enumerate() {
         let mut stricter_config = robot.config.clone();
         change(&mut stricter_config.limits);
-        let stricter_robot = RobotWithMaps::from_config("stricter", &stricter_config);
+        let stricter_robot = RobotWithMaps::from_config(&stricter_config);
         let maps = robot.cell_maps();
         assert_ne!(stricter_robot.maps, maps, "limit {index}");
         let robot_with_old_maps = RobotWithMaps {
@@ -245,7 +241,7 @@ fn cells_of_the_old_maps_violate_a_stricter_limit() {
 #[test]
 fn maps_begin_and_end_with_a_cell_and_have_at_most_max_rows() {
     for (name, robot) in all_robots() {
-        for CertifiedMap { map, .. } in RobotWithMaps::new(name, &robot).certified_maps() {
+        for CertifiedMap { map, .. } in RobotWithMaps::new(&robot).certified_maps() {
             assert!(map.rows.len() <= MAX_ROWS, "{name}");
             let [first, .., last] = map.rows.as_slice() else {
                 panic!("{name}: a map of {} rows", map.rows.len());

@@ -51,10 +51,8 @@ fn any_bytes() -> impl Strategy<Value = Vec<u8>> {
 /// Counts the final lines that these bytes must get as answers.
 fn count_expected_answers(bytes: &[u8]) -> usize {
     let mut line = Line::new();
-    bytes
-        .iter()
-        .filter(|byte| line.push(**byte).is_some())
-        .count()
+    let ends_line = |byte: &&u8| line.push(**byte).is_some();
+    bytes.iter().filter(ends_line).count()
 }
 
 proptest! {
@@ -89,14 +87,12 @@ proptest! {
         speed in 10u8..=100,
         line in prop::sample::select(REFUSED_LINES.to_vec()),
     ) {
-        let [mut tested_dialogue, mut undisturbed_dialogue] = [(); 2].map(|()| wake_asymmetric_robot());
-        for dialogue in [&mut tested_dialogue, &mut undisturbed_dialogue] {
-            dialogue.send_line(&format!("speed {speed}"));
-            for (gait, frames) in &history {
-                dialogue.send_line(gait);
-                dialogue.run_frames(*frames);
-            }
+        let mut tested_dialogue = wake_and_send(&[&format!("speed {speed}")]);
+        for (gait, frames) in history {
+            tested_dialogue.send_line(gait);
+            tested_dialogue.run_frames(frames);
         }
+        let mut undisturbed_dialogue = tested_dialogue.clone();
         prop_assert!(tested_dialogue.send_line(line).starts_with("err "));
         for _ in 0..40 {
             prop_assert_eq!(tested_dialogue.run_frame(), undisturbed_dialogue.run_frame());

@@ -36,8 +36,7 @@ fn cal_prints_all_settings_independent_of_the_motion() {
 
 #[test]
 fn only_saved_settings_survive_a_loss_of_power() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.expect_all_accepted(&["trim 2 4", "save"]);
+    let mut dialogue = wake_and_send(&["trim 2 4", "save"]);
     let saved_lines = read_cal(&mut dialogue);
     dialogue.send_line("trim 2 5");
     assert_ne!(read_cal(&mut dialogue), saved_lines);
@@ -81,8 +80,7 @@ fn a_calibration_moves_only_its_servo_and_at_most_at_the_slew_limit() {
         let widths_before = run_frame_and_read_widths(&mut dialogue);
         dialogue.expect_accepted(change);
         let motion = dialogue.motion();
-        let expected_pulses = motion.pose().pulses(motion.calibration());
-        let expected_widths = expected_pulses.0.map(|width| width.0);
+        let expected_widths = motion.held_pulses().0.map(|width| width.0);
         let gain = f64::from(motion.calibration()[0].gain).abs() / 16384.0;
         let max_change = f64::from(motion.robot().slew().per_frame) * gain;
         let mut last_widths = widths_before;
@@ -100,8 +98,7 @@ fn a_calibration_moves_only_its_servo_and_at_most_at_the_slew_limit() {
 
 #[test]
 fn a_calibration_interrupts_a_gait_until_the_pulses_have_settled() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_and_run("sway", 120);
+    let mut dialogue = wake_and_run("sway", 120);
     let phase_before = dialogue.motion().phase();
     dialogue.send_and_run("trim 2 15", 1);
     assert_eq!(dialogue.motion().phase(), phase_before);
@@ -109,8 +106,7 @@ fn a_calibration_interrupts_a_gait_until_the_pulses_have_settled() {
     assert_eq!(dialogue.status_value("gait"), "sway");
     assert_ne!(dialogue.motion().phase(), phase_before);
     let motion = dialogue.motion();
-    let expected_pulses = motion.pose().pulses(motion.calibration());
-    assert_eq!(motion.sent_pulses(), &expected_pulses);
+    assert_eq!(*motion.sent_pulses(), motion.held_pulses());
 }
 
 #[test]
@@ -129,9 +125,8 @@ fn limits_too_narrow_for_the_gaits_or_the_pose_are_refused() {
         assert_eq!(read_cal(&mut dialogue), lines_before);
     }
     dialogue.send_and_run("pose 150 47.91 309.64 226.18", 2);
-    let message = dialogue.send_line("limit 1 61.37 149");
-    let reason = "A1's travel must cover its current and target angles; send stand first";
-    assert_eq!(message, format!("err 3 {reason}"));
+    let message = "err 3 A1's travel must cover its current and target angles; send stand first";
+    assert_eq!(dialogue.send_line("limit 1 61.37 149"), message);
     assert_eq!(read_cal(&mut dialogue), lines_before);
     dialogue.send_and_run("stand", 150);
     dialogue.expect_accepted("limit 1 61.37 149");
@@ -140,22 +135,19 @@ fn limits_too_narrow_for_the_gaits_or_the_pose_are_refused() {
 
 #[test]
 fn a_refused_factory_or_load_command_changes_nothing() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.expect_all_accepted(&["trim 1 10", "limit 1 61.37 149", "save"]);
+    let mut dialogue = wake_and_send(&["trim 1 10", "limit 1 61.37 149", "save"]);
     dialogue.expect_accepted("limit 1 61.37 215.36");
     dialogue.send_and_run("pose 155 47.91 309.64 226.18", 150);
     let lines_before = read_cal(&mut dialogue);
     dialogue.expect_refused("load", "3 A1's travel must cover its current");
     assert_eq!(read_cal(&mut dialogue), lines_before);
-    let mut trimmed_dialogue = wake_asymmetric_robot();
-    trimmed_dialogue.send_line("trim 3 4");
+    let mut trimmed_dialogue = wake_and_send(&["trim 3 4"]);
     let lines_before = read_cal(&mut trimmed_dialogue);
     trimmed_dialogue.board.memory.bytes_mut()[0] = 0;
     trimmed_dialogue.expect_refused("load", "9 no saved calibration to load");
     assert_eq!(read_cal(&mut trimmed_dialogue), lines_before);
     // Settings for other servos are not loaded, and the current ones stay.
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_line("save");
+    let dialogue = wake_and_send(&["save"]);
     trimmed_dialogue.board.memory = dialogue.board.memory.clone();
     trimmed_dialogue.board.memory.bytes_mut()[44] ^= 1;
     trimmed_dialogue.expect_refused("load", "9 ");
@@ -197,8 +189,7 @@ fn saved_settings_are_loaded_only_if_their_travel_covers_the_gaits() {
 
 #[test]
 fn center_leads_to_the_neutral_pulses_of_robot_toml_despite_trims() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.expect_all_accepted(&["trim 1 3", "trim 2 -4.5", "trim 3 2", "trim 4 -1"]);
+    let mut dialogue = wake_and_send(&["trim 1 3", "trim 2 -4.5", "trim 3 2", "trim 4 -1"]);
     dialogue.run_frames(100);
     dialogue.expect_refused("center 1", "2 ");
     dialogue.send_and_run("center", 200);
@@ -225,8 +216,7 @@ fn boot_starts_the_named_gait_even_if_other_names_are_similar() {
         dialogue.expect_all_accepted(&[&format!("boot {name}"), "save"]);
         let mut restarted_dialogue = dialogue.power_on_copy();
         restarted_dialogue.run_frames(151);
-        let gait = restarted_dialogue.status_value("gait");
-        assert_eq!(gait, name.replace(' ', "-"));
+        restarted_dialogue.expect_status(&[("gait", &name.replace(' ', "-"))]);
     }
 }
 
@@ -244,8 +234,7 @@ fn first_unfit_servo_finds_the_servo_with_too_narrow_a_travel() {
 
 #[test]
 fn limits_that_exclude_the_target_pose_are_refused() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_and_run("sway left", 150);
+    let mut dialogue = wake_and_run("sway left", 150);
     // This pose is outside the range of all gaits. The gait brakes first, so the move to the pose has not begun yet.
     dialogue.send_and_run("pose 152 50 311 224.5", 2);
     dialogue.expect_refused("limit 1 115 150", "3 A1's travel must cover its current");
@@ -257,8 +246,7 @@ fn limits_that_exclude_the_target_pose_are_refused() {
 
 #[test]
 fn after_a_calibration_a_gait_accelerates_gradually_to_full_pace() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_and_run("sway left", 150);
+    let mut dialogue = wake_and_run("sway left", 150);
     let full_advance = measure_phase_advance(&mut dialogue, 1);
     dialogue.send_line("trim 2 3");
     let advances = [(); 100].map(|()| measure_phase_advance(&mut dialogue, 1));

@@ -8,11 +8,10 @@ const LONG_FRAMES: u32 = 400;
 #[test]
 fn a_counted_gait_prints_done_at_its_end_and_holds_its_last_pose() {
     for name in ["sway", "sway left", "back"] {
-        let mut dialogue = wake_asymmetric_robot();
-        dialogue.expect_accepted(&format!("{name}  2"));
+        let mut dialogue = wake_and_send(&[&format!("{name}  2")]);
         assert_eq!(dialogue.status_value("gait"), name.replace(' ', "-"));
         assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# done"]);
-        assert_status(&mut dialogue, &[("gait", "stop"), ("fault", "none")]);
+        dialogue.expect_status(&[("gait", "stop"), ("fault", "none")]);
         let held_pulses = dialogue.run_frame();
         assert!(dialogue.run_frames(LONG_FRAMES).is_empty());
         assert_eq!(dialogue.run_frame(), held_pulses);
@@ -35,12 +34,8 @@ fn a_wrong_count_is_refused_and_changes_nothing() {
 }
 
 #[test]
-fn another_motion_or_a_fault_ends_a_counted_gait_without_printing_done() {
-    let start_counted_gait = || {
-        let mut dialogue = wake_asymmetric_robot();
-        dialogue.send_and_run("sway 2", 30);
-        dialogue
-    };
+fn another_motion_a_fault_or_a_reset_ends_a_counted_gait_without_printing_done() {
+    let start_counted_gait = || wake_and_run("sway 2", 30);
     for line in ["stop", "rest", "stand", NEUTRAL_COMMAND, "sway"] {
         let mut dialogue = start_counted_gait();
         let printed_lines = dialogue.send_and_run(line, LONG_FRAMES);
@@ -54,40 +49,34 @@ fn another_motion_or_a_fault_ends_a_counted_gait_without_printing_done() {
     let is_done = printed_lines.iter().any(|line| line == "# done");
     assert!(!is_done, "{printed_lines:?}");
     assert_eq!(low_supply_dialogue.status_value("fault"), "supply");
+    for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
+        let mut reset_dialogue = wake_and_run("sway 2", 60);
+        reset_dialogue.reset(cause);
+        let printed_lines = reset_dialogue.run_frames(LONG_FRAMES);
+        let is_done = printed_lines.iter().any(|line| line == "# done");
+        assert!(!is_done, "{cause:?}: {printed_lines:?}");
+        let gait = reset_dialogue.status_value("gait");
+        assert!(["stand", "stop"].contains(&gait.as_str()), "{cause:?}");
+    }
     let printed_lines = wake_asymmetric_robot().send_and_run("stray 9", 5 * LONG_FRAMES);
     assert_line_starts(&printed_lines, &["# held"]);
 }
 
 #[test]
 fn a_low_supply_slows_a_counted_gait_without_ending_it() {
-    let count_frames_until_done = |supply_mv: Option<u16>| {
+    let count_frames_until_done = |supply_mv| {
         let mut dialogue = wake_asymmetric_robot();
-        if let Some(supply_mv) = supply_mv {
-            dialogue.run_at_supply(supply_mv.into(), 40);
-        }
+        dialogue.run_at_supply(supply_mv, 40);
         dialogue.send_line("sway 2");
         (1..2_000_u32)
             .find(|_| dialogue.run_frames(1) == ["# done"])
             .expect("the gait ends")
     };
-    let [full_frames, slow_frames] = [None, Some(4_400)].map(count_frames_until_done);
+    let [full_frames, slow_frames] = [5_000, 4_400].map(count_frames_until_done);
     // An upper bound, because a lower pace lengthens the cycles but hardly the acceleration and the braking.
     let max_frames = full_frames * 100 / u32::from(SLOW_PACE);
     assert!(
         slow_frames > u32::midpoint(full_frames, max_frames) && slow_frames < max_frames,
         "{full_frames} frames, {slow_frames} on a low supply"
     );
-}
-
-#[test]
-fn a_reset_ends_a_counted_gait() {
-    for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
-        let mut dialogue = wake_asymmetric_robot();
-        dialogue.send_and_run("sway 2", 60);
-        dialogue.reset(cause);
-        let printed_lines = dialogue.run_frames(LONG_FRAMES);
-        let is_done = printed_lines.iter().any(|line| line == "# done");
-        assert!(!is_done, "{printed_lines:?}");
-        assert!(["stand", "stop"].contains(&dialogue.status_value("gait").as_str()));
-    }
 }

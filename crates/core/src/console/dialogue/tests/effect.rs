@@ -24,12 +24,9 @@ fn observe_effect(line: &str) -> Effect {
     standing_dialogue.send_line(line);
     let answer = walking_dialogue.send_line(line);
     assert!(answer.starts_with("ok "), "{line}");
-    let [walking_widths, undisturbed_widths, standing_widths] = [
-        &mut walking_dialogue,
-        &mut undisturbed_dialogue,
-        &mut standing_dialogue,
-    ]
-    .map(run_frames_and_read_widths);
+    let walking_widths = run_frames_and_read_widths(&mut walking_dialogue);
+    let undisturbed_widths = run_frames_and_read_widths(&mut undisturbed_dialogue);
+    let standing_widths = run_frames_and_read_widths(&mut standing_dialogue);
     let is_constant = |frames: &[[u16; 4]]| frames[1..].iter().all(|frame| *frame == frames[1]);
     if walking_widths[FRAME_COUNT - 1] == [0; 4] {
         Effect::Rest

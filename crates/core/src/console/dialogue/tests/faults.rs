@@ -17,8 +17,7 @@ fn boot_is_executed_three_seconds_after_power_on_unless_a_byte_arrives() {
         assert_eq!(activity, Activity::Gait(GaitId::STAND));
         let printed_lines = unattended_dialogue.run_frames(1);
         assert_eq!(printed_lines, [format!("# boot: {boot}")]);
-        let gait = unattended_dialogue.status_value("gait");
-        assert_eq!(gait, boot.replace(' ', "-"));
+        unattended_dialogue.expect_status(&[("gait", &boot.replace(' ', "-"))]);
         let mut interrupted_dialogue = dialogue.power_on_copy();
         interrupted_dialogue.run_frames(100);
         interrupted_dialogue.board.send(b" ");
@@ -38,33 +37,25 @@ fn without_a_robot_commands_that_need_one_are_refused_with_code_10() {
 
 #[test]
 fn a_lost_link_ends_a_gait_and_is_reported() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.expect_all_accepted(&["deadman 400", "sway"]);
+    let mut dialogue = wake_and_send(&["deadman 400", "sway"]);
     for _ in 0..30 {
         assert!(dialogue.run_frames(15).is_empty());
         dialogue.send_line("status");
     }
     let notice = "# fault: no command within the deadman time, stopped";
     assert_eq!(dialogue.run_frames(21), [notice]);
-    assert_status(&mut dialogue, &[("gait", "stop"), ("fault", "link")]);
+    dialogue.expect_status(&[("gait", "stop"), ("fault", "link")]);
     dialogue.send_line("sway");
     assert_eq!(dialogue.status_value("fault"), "none");
 }
 
 #[test]
 fn lines_that_are_not_commands_do_not_keep_a_gait_going() {
-    let lines: [&[u8]; 4] = [
-        b"OK+CONN",
-        b"walk 0",
-        &[b'w', b'a', crate::console::line::GARBLED_BYTE, b'k'],
-        b"nonsense",
-    ];
-    for line in lines {
-        let mut dialogue = wake_asymmetric_robot();
-        dialogue.expect_all_accepted(&["deadman 400", "sway"]);
+    let garbled_line = [b'w', b'a', crate::console::line::GARBLED_BYTE, b'k', b'\n'];
+    for line in [&b"OK+CONN\n"[..], b"walk 0\n", &garbled_line, b"nonsense\n"] {
+        let mut dialogue = wake_and_send(&["deadman 400", "sway"]);
         for _ in 0..4 {
             dialogue.board.send(line);
-            dialogue.board.send(b"\n");
             dialogue.run_frames(5);
         }
         dialogue.run_frames(3);
@@ -77,8 +68,7 @@ fn an_unfinished_line_is_dropped_after_the_deadman_time_without_a_byte() {
     for (deadman_ms, wait_frames, gait) in
         [(400, 19, "sway"), (400, 20, "stand"), (0, 2000, "sway")]
     {
-        let mut dialogue = wake_asymmetric_robot();
-        dialogue.send_line(&format!("deadman {deadman_ms}"));
+        let mut dialogue = wake_and_send(&[&format!("deadman {deadman_ms}")]);
         dialogue.board.send(b"sway 1");
         dialogue.run_frames(wait_frames);
         // The link has broken within `sway 12`, and noise ends the line.
@@ -93,8 +83,7 @@ fn an_unfinished_line_is_dropped_after_the_deadman_time_without_a_byte() {
 
 #[test]
 fn each_byte_restarts_the_time_after_which_a_partial_line_is_dropped() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_line("deadman 400");
+    let mut dialogue = wake_and_send(&["deadman 400"]);
     for byte in b"sway 1" {
         dialogue.board.send(&[*byte]);
         dialogue.run_frames(19);
@@ -106,22 +95,20 @@ fn each_byte_restarts_the_time_after_which_a_partial_line_is_dropped() {
 
 #[test]
 fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_and_run("sway", 150);
+    let mut dialogue = wake_and_run("sway", 150);
     let full_advance = measure_phase_advance(&mut dialogue, 10);
     let printed_lines = dialogue.run_at_supply(4_400, 40);
-    assert!(
-        printed_lines[0].starts_with("# supply: 4.")
-            && printed_lines[0].ends_with(&format!("V, low: no saving, speed at most {SLOW_PACE}")),
-        "{printed_lines:?}"
-    );
+    let level = format!("V, low: no saving, speed at most {SLOW_PACE}");
+    let line = &printed_lines[0];
+    let is_expected = line.starts_with("# supply: 4.") && line.ends_with(&level);
+    assert!(is_expected, "{printed_lines:?}");
     let slow_advance = measure_phase_advance(&mut dialogue, 10);
     let slow_ratio = f64::from(slow_advance) / f64::from(full_advance);
     let expected_ratio = f64::from(SLOW_PACE) / 100.0;
     assert!((slow_ratio - expected_ratio).abs() < 0.02, "{slow_ratio}");
     dialogue.expect_refused("save", "8 the supply is too low");
     assert_eq!(dialogue.run_at_supply(4_200, 40).len(), 2);
-    assert_status(&mut dialogue, &[("gait", "stop"), ("fault", "supply")]);
+    dialogue.expect_status(&[("gait", "stop"), ("fault", "supply")]);
     dialogue.expect_refused("sway", "8 ");
     dialogue.expect_refused(NEUTRAL_COMMAND, "8 ");
     dialogue.run_at_supply(4_000, 40);
@@ -173,11 +160,10 @@ fn a_robot_that_has_hung_holds_its_pose_and_reports_the_hang() {
         let claim = "the robot holds its pose from the first frame on";
         assert_eq!(pulses, servo_state.sent_pulses, "{claim}");
     }
-    assert_status(&mut dialogue, &[("reset", "watchdog"), ("resets", "3")]);
+    dialogue.expect_status(&[("reset", "watchdog"), ("resets", "3")]);
     assert_eq!(dialogue.status_value("fault"), "watchdog");
     dialogue.send_and_run("stand", 100);
-    assert_eq!(dialogue.status_value("fault"), "none");
-    assert_eq!(dialogue.status_value("pose"), format_neutral_pose());
+    dialogue.expect_status(&[("fault", "none"), ("pose", &format_neutral_pose())]);
 }
 
 #[test]
@@ -201,8 +187,7 @@ fn after_a_reset_in_an_unsafe_or_unreachable_pose_the_robot_rests() {
 
 #[test]
 fn after_a_reset_in_a_pose_outside_the_saved_limits_the_robot_rests() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.expect_all_accepted(&["limit 1 115 160", "save"]);
+    let dialogue = wake_and_send(&["limit 1 115 160", "save"]);
     // A1 at its neutral 132.37 deg plus 30 deg is safe, but beyond the saved limit of 160 deg.
     let restart = restart_after_hang(1, held_servo_state([5461, 0, 0, 0]));
     for (memory, activity) in [(&Eeprom::blank(), "stop"), (&dialogue.board.memory, "rest")] {
@@ -220,8 +205,7 @@ fn unsaved_settings_are_undone_at_the_slew_limit_after_a_reset() {
         ("scale 2 12", 1, Cause::External),
         ("dir 3 -", 2, Cause::BrownOut),
     ] {
-        let mut dialogue = wake_asymmetric_robot();
-        dialogue.send_and_run("pose 140 50 311 224.5", 100);
+        let mut dialogue = wake_and_run("pose 140 50 311 224.5", 100);
         dialogue.send_and_run(setting, 100);
         let mut last_pulses = dialogue.run_frame();
         dialogue.reset(cause);
@@ -237,11 +221,10 @@ fn unsaved_settings_are_undone_at_the_slew_limit_after_a_reset() {
                 }
                 let max_change = calibration[index].max_width_change(sweep_per_frame);
                 let change = pulse.0.abs_diff(last_pulse.0);
-                assert!(
-                    change <= max_change + 1,
-                    "{setting} A{}: {change} cycles, at most {max_change} allowed",
-                    index + 1
-                );
+                let number = index + 1;
+                let case =
+                    format!("{setting} A{number}: {change} cycles, at most {max_change} allowed");
+                assert!(change <= max_change + 1, "{case}");
                 moving_frame_count += usize::from(index == servo && change > 0);
                 *last_pulse = *pulse;
             }
@@ -255,8 +238,7 @@ fn unsaved_settings_are_undone_at_the_slew_limit_after_a_reset() {
 fn servos_still_wake_one_at_a_time_after_a_reset_during_waking() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
         for frames in 1..25 {
-            let mut dialogue = wake_asymmetric_robot();
-            dialogue.send_and_run("rest", 10);
+            let mut dialogue = wake_and_run("rest", 10);
             dialogue.send_and_run("stand", frames);
             let mut had_pulses = dialogue.run_frame().0.map(|width| width.0 > 0);
             dialogue.reset(cause);
@@ -278,8 +260,7 @@ fn servos_still_wake_one_at_a_time_after_a_reset_during_waking() {
 #[test]
 fn a_resting_robot_rests_after_a_reset_until_boot_which_a_hang_cancels() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
-        let mut dialogue = wake_asymmetric_robot();
-        dialogue.send_and_run("pose 140 50 311 224.5", 150);
+        let mut dialogue = wake_and_run("pose 140 50 311 224.5", 150);
         dialogue.send_and_run("rest", 5);
         let memory_bytes = *dialogue.board.memory.bytes();
         dialogue.reset(cause);
@@ -301,8 +282,7 @@ fn a_resting_robot_rests_after_a_reset_until_boot_which_a_hang_cancels() {
 #[test]
 fn a_rest_pose_whose_write_a_reset_interrupts_is_written_after_the_reset() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
-        let mut dialogue = wake_asymmetric_robot();
-        dialogue.send_and_run("pose 140 50 311 224.5", 150);
+        let mut dialogue = wake_and_run("pose 140 50 311 224.5", 150);
         dialogue.board.memory.write_delay = 4;
         dialogue.board.memory.is_timed = true;
         dialogue.board.send(b"rest\r");

@@ -1,15 +1,9 @@
 //! A simulated robot, and helpers that send lines to it and read its answers.
 
 use std::collections::HashMap;
-use std::format;
-use std::string::{String, ToString};
-use std::vec::Vec;
 
-use super::NEUTRAL_COMMAND;
-use crate::memory::restart::Restart;
-use crate::motion::Activity;
+use super::*;
 use crate::numbers::units::CYCLE;
-use crate::sample::Sample;
 use crate::virtual_board::{RunningRobot, compute_reading};
 
 /// The number of frames until the robot stands and may begin to move.
@@ -34,6 +28,14 @@ impl Dialogue {
         }
     }
 
+    /// Checks several values of the status.
+    #[track_caller]
+    pub(super) fn expect_status(&mut self, values: &[(&str, &str)]) {
+        for (key, value) in values {
+            assert_eq!(self.status_value(key), *value, "{key}");
+        }
+    }
+
     /// Sets the supply voltage of the board, and runs frames. Returns the printed lines.
     pub(super) fn run_at_supply(&mut self, board_mv: u32, frames: u32) -> Vec<String> {
         set_supply(self, board_mv);
@@ -52,15 +54,35 @@ pub(super) fn wake_asymmetric_robot() -> Dialogue {
     wake_robot(Sample::asymmetric())
 }
 
+/// Wakes the asymmetric sample robot, and sends lines that must be accepted.
+#[track_caller]
+pub(super) fn wake_and_send(lines: &[&str]) -> Dialogue {
+    let mut dialogue = wake_asymmetric_robot();
+    dialogue.expect_all_accepted(lines);
+    dialogue
+}
+
+/// Wakes the asymmetric sample robot, sends a line that must be accepted, and runs frames.
+#[track_caller]
+pub(super) fn wake_and_run(line: &str, frames: u32) -> Dialogue {
+    let mut dialogue = wake_and_send(&[line]);
+    dialogue.run_frames(frames);
+    dialogue
+}
+
+/// Starts the asymmetric sample robot on a routine that repeats these steps `rounds` times, or endlessly if that is 0.
+pub(super) fn start_patrol(rounds: u16, steps: &[(u8, &str, u16)]) -> Dialogue {
+    let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", rounds, steps));
+    dialogue.expect_accepted("patrol");
+    dialogue
+}
+
 /// Powers on a robot, reads its banner, and runs it until it is awake.
 pub(super) fn wake_robot(robot: Sample) -> Dialogue {
     let mut dialogue = Dialogue::power_on(*robot);
-    let printed_lines = dialogue.read_lines();
-    assert_eq!(
-        printed_lines.len(),
-        2,
-        "only the banner and the notice of blank settings are printed: {printed_lines:?}"
-    );
+    let lines = dialogue.read_lines();
+    let claim = "only the banner and the notice of blank settings are printed";
+    assert_eq!(lines.len(), 2, "{claim}: {lines:?}");
     dialogue.run_frames(WAKING_FRAMES);
     dialogue
 }
@@ -71,14 +93,6 @@ pub(super) fn assert_line_starts(lines: &[String], starts: &[&str]) {
     assert_eq!(lines.len(), starts.len(), "{lines:?}");
     for (line, start) in lines.iter().zip(starts) {
         assert!(line.starts_with(start), "{line}");
-    }
-}
-
-/// Checks several values of the status.
-#[track_caller]
-pub(super) fn assert_status(dialogue: &mut Dialogue, values: &[(&str, &str)]) {
-    for (key, value) in values {
-        assert_eq!(dialogue.status_value(key), *value, "{key}");
     }
 }
 
@@ -107,9 +121,8 @@ pub(super) fn measure_phase_advance(dialogue: &mut Dialogue, frames: u32) -> u32
 pub(super) fn parse_pairs(text: &str) -> HashMap<String, String> {
     let mut pairs = HashMap::new();
     for word in text.split(' ') {
-        let (key, value) = word
-            .split_once('=')
-            .expect("each word has the form key=value");
+        let pair = word.split_once('=');
+        let (key, value) = pair.expect("each word has the form key=value");
         assert!(!key.is_empty() && !value.is_empty(), "{text}");
         assert!(pairs.insert(key.to_string(), value.to_string()).is_none());
     }

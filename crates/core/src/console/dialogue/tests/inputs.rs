@@ -1,12 +1,9 @@
 //! Tests of routine steps that end when a contact closes: a button, or a nose switch that touches a wall.
 
 use super::*;
-use crate::numbers::gaits::{Input, Step};
+use crate::numbers::gaits::Input;
 use crate::sample::{BUTTON, NOSE};
 
-const CYCLES: u8 = Step::CYCLES;
-const FRAMES: u8 = Step::FRAMES;
-const REST: u8 = Step::REST;
 const WAIT: u8 = Step::WAIT;
 const UNTIL: u8 = Step::UNTIL;
 const ENDLESS: u16 = Step::ENDLESS;
@@ -27,13 +24,6 @@ const DEBOUNCE_FRAMES: u32 = 3;
 
 /// More frames than any step without [`ENDLESS`] takes in these tests.
 const LONG_FRAMES: u32 = 600;
-
-/// Starts a robot on a routine that repeats these steps `rounds` times, or endlessly if that is 0.
-fn start_patrol(rounds: u16, steps: &[(u8, &str, u16)]) -> Dialogue {
-    let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", rounds, steps));
-    dialogue.expect_accepted("patrol");
-    dialogue
-}
 
 fn set_contact(dialogue: &mut Dialogue, input: Input, is_closed: bool) {
     let bit = 1 << input.pin();

@@ -6,8 +6,7 @@ use super::*;
 
 #[test]
 fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_and_run("rest", 2);
+    let dialogue = wake_and_run("rest", 2);
     assert_eq!(dialogue.board.memory.bytes()[128], 0xa5);
     let mut restarted_dialogue = dialogue.power_on_copy();
     let write_count = restarted_dialogue.board.memory.log.len();
@@ -36,8 +35,7 @@ fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
 
 #[test]
 fn a_falling_supply_ends_a_save_and_the_old_settings_stay() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.expect_all_accepted(&["deadman 1000", "save", "deadman 2000"]);
+    let mut dialogue = wake_and_send(&["deadman 1000", "save", "deadman 2000"]);
     dialogue.board.memory.write_delay = 1;
     dialogue.board.send(b"save\r");
     for _ in 0..30 {
@@ -60,8 +58,7 @@ fn a_falling_supply_ends_a_save_and_the_old_settings_stay() {
 
 #[test]
 fn a_repeated_rest_writes_nothing_and_a_worn_memory_is_reported() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_and_run("rest", 2);
+    let mut dialogue = wake_and_run("rest", 2);
     let write_count = dialogue.board.memory.log.len();
     for _ in 0..50 {
         dialogue.send_and_run("rest", 2);
@@ -77,15 +74,12 @@ fn a_repeated_rest_writes_nothing_and_a_worn_memory_is_reported() {
 
 #[test]
 fn after_power_on_servos_wake_one_by_one_in_the_rest_pose_before_the_robot_stands() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_and_run("pose 140 50 311 224.5", 150);
+    let mut dialogue = wake_and_run("pose 140 50 311 224.5", 150);
     dialogue.send_line("rest");
     let mut restarted_dialogue = dialogue.power_on_copy();
     restarted_dialogue.read_lines();
-    let pose = restarted_dialogue.status_value("pose");
-    assert_eq!(pose, "140.00,50.00,311.00,224.50");
-    let motion = restarted_dialogue.motion();
-    let rest_pulses = motion.pose().pulses(motion.calibration());
+    restarted_dialogue.expect_status(&[("pose", "140.00,50.00,311.00,224.50")]);
+    let rest_pulses = restarted_dialogue.motion().held_pulses();
     for servo in 0..4 {
         for _ in 0..5 {
             let widths = run_frame_and_read_widths(&mut restarted_dialogue);
@@ -99,8 +93,7 @@ fn after_power_on_servos_wake_one_by_one_in_the_rest_pose_before_the_robot_stand
         }
     }
     restarted_dialogue.run_frames(200);
-    let pose = restarted_dialogue.status_value("pose");
-    assert_eq!(pose, format_neutral_pose());
+    restarted_dialogue.expect_status(&[("pose", &format_neutral_pose())]);
     // The robot has moved since its last rest, so no rest pose is saved.
     let moved_dialogue = restarted_dialogue.power_on_copy();
     assert_eq!(moved_dialogue.motion().pose(), &Pose::NEUTRAL);
@@ -108,8 +101,7 @@ fn after_power_on_servos_wake_one_by_one_in_the_rest_pose_before_the_robot_stand
 
 #[test]
 fn the_rest_pose_is_invalidated_before_the_first_pulse() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_line("rest");
+    let mut dialogue = wake_and_send(&["rest"]);
     assert_eq!(dialogue.board.memory.bytes()[128], 0xa5);
     dialogue.board.send(b"stand\r");
     // The main loop writes first the answer, then the memory, long before the first servo wakes.

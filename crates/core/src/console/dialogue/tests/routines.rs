@@ -1,11 +1,6 @@
 //! Tests of routines, which are sequences of steps, and of the events that end them early.
 
 use super::*;
-use crate::numbers::gaits::Step;
-
-const CYCLES: u8 = Step::CYCLES;
-const FRAMES: u8 = Step::FRAMES;
-const REST: u8 = Step::REST;
 
 /// The steps of a routine, each with its kind, its gait and its count of cycles or frames. Two consecutive steps have
 /// the gait `sway`.
@@ -41,8 +36,7 @@ fn run_and_record_activities(dialogue: &mut Dialogue, frames: u32) -> (Vec<Strin
 
 /// Starts the routine. Returns clones of the dialogue at many times during the routine.
 fn record_snapshots() -> Vec<Dialogue> {
-    let mut dialogue = wake_robot(robot_with_routine(0));
-    dialogue.send_line("patrol");
+    let mut dialogue = start_patrol(0, &PATROL_STEPS);
     let mut snapshots = Vec::new();
     for _ in 0..40 {
         dialogue.run_frames(17);
@@ -63,11 +57,9 @@ fn a_routine_executes_its_steps_in_order_and_prints_done_once() {
         let (gaits, printed_lines) =
             run_and_record_activities(&mut dialogue, LONG_FRAMES * u32::from(rounds));
         assert_eq!(printed_lines, ["# done"]);
-        let round_gaits = ["stand", "sway", "back", "sway left"];
-        let (last_gait, earlier_gaits) = gaits.split_last().expect("the robot has had a gait");
-        assert_eq!(last_gait, "Stop");
-        let expected = round_gaits.repeat(rounds.into());
-        assert!(earlier_gaits.iter().eq(&expected), "{gaits:?}");
+        let mut expected_gaits = ["stand", "sway", "back", "sway left"].repeat(rounds.into());
+        expected_gaits.push("Stop");
+        assert_eq!(gaits, expected_gaits);
         assert_eq!(dialogue.status_value("gait"), "stop");
     }
 }
@@ -79,8 +71,7 @@ fn a_count_limits_the_rounds_of_an_endless_routine() {
     let (gaits, printed_lines) = run_and_record_activities(&mut counted_dialogue, 3 * LONG_FRAMES);
     assert_eq!(printed_lines, ["# done"]);
     assert_eq!(gaits.iter().filter(|gait| *gait == "back").count(), 2);
-    let mut endless_dialogue = wake_robot(robot_with_routine(0));
-    endless_dialogue.send_line("patrol");
+    let mut endless_dialogue = start_patrol(0, &PATROL_STEPS);
     let (gaits, printed_lines) = run_and_record_activities(&mut endless_dialogue, 20 * LONG_FRAMES);
     assert!(printed_lines.is_empty(), "{printed_lines:?}");
     assert!(gaits.iter().filter(|gait| *gait == "back").count() > 20);
@@ -88,8 +79,7 @@ fn a_count_limits_the_rounds_of_an_endless_routine() {
 
 #[test]
 fn a_timed_step_lasts_its_number_of_frames() {
-    let mut dialogue = wake_robot(robot_with_routine(1));
-    dialogue.send_line("patrol");
+    let mut dialogue = start_patrol(1, &PATROL_STEPS);
     let (gaits, _) = run_and_record_activities(&mut dialogue, 29);
     assert_eq!(gaits, ["stand"]);
     let (gaits, _) = run_and_record_activities(&mut dialogue, 1);
@@ -131,8 +121,7 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
         assert_eq!(gaits.last().map(String::as_str), Some("sway"));
         let mut low_supply_dialogue = snapshot.clone();
         low_supply_dialogue.run_at_supply(4_200, 60);
-        let stopped_values = [("gait", "stop"), ("fault", "supply")];
-        assert_status(&mut low_supply_dialogue, &stopped_values);
+        low_supply_dialogue.expect_status(&[("gait", "stop"), ("fault", "supply")]);
         set_supply(&mut low_supply_dialogue, 5_000);
         let (gaits, _) = run_and_record_activities(&mut low_supply_dialogue, 300);
         assert_eq!(gaits, ["Stop"], "the routine does not continue by itself");
@@ -160,9 +149,7 @@ fn a_low_supply_slows_a_routine_without_ending_it() {
 
 #[test]
 fn the_guard_ends_a_routine_as_it_ends_a_gait() {
-    let stray_steps = [(CYCLES, "stray", 3), (CYCLES, "sway", 1)];
-    let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", 0, &stray_steps));
-    dialogue.send_line("patrol");
+    let mut dialogue = start_patrol(0, &[(CYCLES, "stray", 3), (CYCLES, "sway", 1)]);
     let (gaits, printed_lines) = run_and_record_activities(&mut dialogue, LONG_FRAMES);
     assert_eq!(gaits, ["stray", "Stop"]);
     assert_line_starts(&printed_lines, &["# held"]);
@@ -201,8 +188,7 @@ fn after_a_rest_in_a_routine_the_servos_wake_one_by_one() {
         (REST, "stand", 50),
         (FRAMES, "stand", 100),
     ];
-    let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", 2, &steps));
-    dialogue.send_line("patrol");
+    let mut dialogue = start_patrol(2, &steps);
     let (mut frames_without_pulses, mut pulsing_counts) = (0, Vec::new());
     let mut printed_lines = Vec::new();
     for _ in 0..LONG_FRAMES {
@@ -223,10 +209,8 @@ fn after_a_rest_in_a_routine_the_servos_wake_one_by_one() {
 
 #[test]
 fn a_resting_routine_can_be_stopped_and_its_last_rest_pose_is_saved() {
-    let steps = [(CYCLES, "sway", 1), (REST, "stand", 50)];
     let start_and_rest = || {
-        let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", 2, &steps));
-        dialogue.send_line("patrol");
+        let mut dialogue = start_patrol(2, &[(CYCLES, "sway", 1), (REST, "stand", 50)]);
         while !dialogue.motion().is_resting() {
             dialogue.run_frames(1);
         }

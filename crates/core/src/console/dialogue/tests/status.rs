@@ -36,7 +36,7 @@ fn status_omits_a_voltage_until_it_is_measured() {
     let line = dialogue.send_line("status");
     assert!(line.ends_with(" resets=0"), "{line}");
     dialogue.run_frames(4);
-    assert_status(&mut dialogue, &[("vcc", "5.00"), ("rail", "6.00")]);
+    dialogue.expect_status(&[("vcc", "5.00"), ("rail", "6.00")]);
 }
 
 #[test]
@@ -83,8 +83,7 @@ fn the_longest_possible_status_fits_into_an_output_line() {
 #[test]
 fn watch_reports_the_pose_of_every_nth_frame_until_watch_0() {
     for interval in [1u32, 2, 7, 50] {
-        let mut dialogue = wake_asymmetric_robot();
-        dialogue.send_line("sway");
+        let mut dialogue = wake_and_send(&["sway"]);
         dialogue.send_line(&format!("watch {interval}"));
         let start_frame = dialogue.motion().frame_count();
         let mut report_frames = Vec::new();
@@ -106,8 +105,7 @@ fn watch_reports_the_pose_of_every_nth_frame_until_watch_0() {
 
 #[test]
 fn watch_continues_at_rest_and_a_new_watch_starts_a_new_interval() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_line("watch 5");
+    let mut dialogue = wake_and_send(&["watch 5"]);
     assert_eq!(dialogue.send_and_run("rest", 50).len(), 10);
     dialogue.run_frames(3);
     assert!(dialogue.send_and_run("watch 10", 9).is_empty());
@@ -116,8 +114,7 @@ fn watch_continues_at_rest_and_a_new_watch_starts_a_new_interval() {
 
 #[test]
 fn several_unread_reports_are_written_as_one_report() {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.send_line("watch 2");
+    let mut dialogue = wake_and_send(&["watch 2"]);
     dialogue.run_without_reader(20);
     assert_eq!(dialogue.read_lines().len(), 1);
     dialogue.run_without_reader(2);

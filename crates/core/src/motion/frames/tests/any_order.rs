@@ -1,7 +1,5 @@
 //! A test with random orders to random robots, in any sequence and at any time.
 
-use std::vec::Vec;
-
 use proptest::prelude::*;
 
 use super::*;

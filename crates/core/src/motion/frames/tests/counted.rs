@@ -1,5 +1,7 @@
 //! Tests of gaits with a count of cycles, after which the robot stands still.
 
+use std::format;
+
 use super::*;
 
 /// Runs a motion to its standstill. Returns the number of cycles that its last gait covers, and the number of frames.
@@ -45,10 +47,8 @@ fn every_gait_runs_for_its_count_within_two_frames_at_any_pace() {
                 let frame_cycles = cycles_per_frame(&motion, name);
                 let excess_cycles = cycles_covered / frame_cycles.signum() - f64::from(count);
                 let excess_frames = excess_cycles / frame_cycles.abs();
-                assert!(
-                    (-2.0..=1.2).contains(&excess_frames),
-                    "{name} {count} at {speed}: {excess_frames} frames too many"
-                );
+                let case = format!("{name} {count} at {speed}: {excess_frames} frames too many");
+                assert!((-2.0..=1.2).contains(&excess_frames), "{case}");
                 assert_eq!(motion.activity(), Activity::Stop);
                 let held_pulses = motion.held_pulses();
                 for _ in 0..50 {
@@ -122,43 +122,36 @@ fn a_count_ordered_for_a_running_gait_begins_at_its_current_phase() {
 
 #[test]
 fn a_new_order_replaces_a_count_even_while_the_gait_brakes_at_its_end() {
-    let start_braking = || {
-        let mut motion = Motion::standing();
-        motion.start_for("sway", 1);
-        while !matches!(motion.next_target, Some(Target::Standstill)) {
-            motion.advance_frame();
-        }
-        motion.run(2);
-        let gait = motion.gait_name();
-        assert_eq!(gait, Some("sway"), "the gait is still running");
-        motion
-    };
-    let start_counted = || {
-        let mut motion = Motion::standing();
-        motion.start_for("sway", 1);
-        motion.run(20);
-        motion
-    };
-    for mut motion in [start_braking(), start_counted()] {
-        let mut second_motion = motion.clone();
-        motion.start("sway");
+    let mut counted_motion = Motion::standing();
+    counted_motion.start_for("sway", 1);
+    let mut braking_motion = counted_motion.clone();
+    counted_motion.run(20);
+    while !matches!(braking_motion.next_target, Some(Target::Standstill)) {
+        braking_motion.advance_frame();
+    }
+    braking_motion.run(2);
+    let gait = braking_motion.gait_name();
+    assert_eq!(gait, Some("sway"), "the gait is still running");
+    for motion in [braking_motion, counted_motion] {
+        let mut endless_motion = motion.clone();
+        endless_motion.start("sway");
         for _ in 0..2_000 {
-            motion.advance_frame();
-            assert!(!motion.has_come_to_standstill() && motion.gait_name() == Some("sway"));
+            endless_motion.advance_frame();
+            assert!(!endless_motion.has_come_to_standstill());
+            assert_eq!(endless_motion.gait_name(), Some("sway"));
         }
+        let mut second_motion = motion.clone();
         second_motion.start_for("back", 2);
         let (cycles_covered, _) = measure_cycles(&mut second_motion);
         assert!((cycles_covered + 2.0).abs() < 0.05, "{cycles_covered}");
-    }
-    for mut motion in [start_braking(), start_counted()] {
-        let (mut stopped_motion, mut posed_motion) = (motion.clone(), motion.clone());
-        stopped_motion.stop();
-        posed_motion.go_to_sweeps(SWEEPS);
-        motion.rest();
-        for mut motion in [stopped_motion, posed_motion, motion] {
+        let go_to_pose = |motion: &mut Motion| motion.go_to_sweeps(SWEEPS);
+        let orders: [fn(&mut Motion); 3] = [Motion::stop, Motion::rest, go_to_pose];
+        for order in orders {
+            let mut ordered_motion = motion.clone();
+            order(&mut ordered_motion);
             for _ in 0..500 {
-                motion.advance_frame();
-                assert!(!motion.has_come_to_standstill());
+                ordered_motion.advance_frame();
+                assert!(!ordered_motion.has_come_to_standstill());
             }
         }
     }

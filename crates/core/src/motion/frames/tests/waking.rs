@@ -3,19 +3,6 @@
 use super::*;
 
 #[test]
-fn at_rest_no_frame_has_a_pulse_and_the_pose_stays() {
-    let mut motion = Motion::in_gait("sway", 90);
-    let pose = *motion.pose();
-    motion.rest();
-    for _ in 0..50 {
-        assert_eq!(motion.advance_frame(), Pulses::default());
-        assert_eq!(motion.activity(), Activity::Rest);
-        assert_eq!(motion.pose(), &pose);
-        assert_eq!(motion.phase(), 0);
-    }
-}
-
-#[test]
 fn stop_and_rest_change_nothing_while_the_robot_rests() {
     for order in [Motion::stop, Motion::rest] {
         let mut motion = make_resting_motion();
@@ -54,9 +41,16 @@ fn a_gait_or_a_pose_first_wakes_the_servos_in_the_rest_pose() {
 
 #[test]
 fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
+    let new_motion = Motion::new(*Sample::asymmetric());
     let mut woken_motion = make_resting_motion();
     woken_motion.start("stand");
-    for mut motion in [Motion::new(*Sample::asymmetric()), woken_motion] {
+    // After a rest during waking, all servos wake again.
+    let mut interrupted_motion = new_motion.clone();
+    interrupted_motion.run(12);
+    interrupted_motion.rest();
+    assert_eq!(interrupted_motion.advance_frame(), Pulses::default());
+    interrupted_motion.start("stand");
+    for mut motion in [new_motion, woken_motion, interrupted_motion] {
         let held_pulses = motion.held_pulses();
         let mut first_frames = [0; 4];
         for frame in 1..=FRAMES_TO_WAKE {
@@ -72,20 +66,6 @@ fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
             }
         }
         assert_eq!(first_frames, [5, 10, 15, 20]);
-    }
-}
-
-#[test]
-fn after_a_rest_during_waking_all_servos_wake_again() {
-    let mut motion = Motion::new(*Sample::asymmetric());
-    motion.run(12);
-    motion.rest();
-    assert_eq!(motion.advance_frame(), Pulses::default());
-    motion.start("stand");
-    for frame in 1..=FRAMES_TO_WAKE {
-        let widths = motion.advance_frame().0;
-        let awake_count = widths.iter().filter(|width| width.0 > 0).count();
-        assert_eq!(awake_count, frame as usize / 5, "frame {frame}");
     }
 }
 

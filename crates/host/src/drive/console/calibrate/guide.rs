@@ -10,7 +10,7 @@ use lizard_robot::Status;
 use pollster::block_on;
 
 use super::super::link::{BANNER_START, Link, LinkError};
-use step::{STEPS, Step};
+use step::{Step, list_steps};
 pub use view::StepView;
 
 /// A key with a meaning in the guide.
@@ -40,6 +40,8 @@ pub struct Guide<'a, P> {
     robot: lizard_calibrate::Session<&'a mut Link<P>>,
     /// The neutral angles of A1 to A4, degrees.
     neutral_angles: [f64; 4],
+    /// All steps, in order.
+    steps: Vec<Step>,
     step_index: usize,
     /// The angle by which this step has moved its servo, degrees; `None` before the movement.
     moved_degrees: Option<f64>,
@@ -63,6 +65,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         Ok(Self {
             robot,
             neutral_angles,
+            steps: list_steps(),
             step_index: 0,
             moved_degrees: None,
             has_skipped_scales_and_limits: false,
@@ -72,7 +75,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     }
 
     fn step(&self) -> Step {
-        STEPS[self.step_index]
+        self.steps[self.step_index]
     }
 
     /// True if the active calibration is saved.
@@ -169,18 +172,17 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     }
 
     fn go_to_step(&mut self, step: Step) -> Result<()> {
-        let index = STEPS.iter().position(|candidate| *candidate == step);
+        let index = self.steps.iter().position(|candidate| *candidate == step);
         self.enter_step(index.unwrap_or(self.step_index))
     }
 
     fn enter_step(&mut self, index: usize) -> Result<()> {
-        match STEPS[index] {
-            Step::Horns => {
-                self.stand()?;
-                block_on(self.robot.center_servos())?;
-            }
-            _ if self.step() == Step::Save => {}
-            _ => self.stand()?,
+        let is_horns = self.steps[index] == Step::Horns;
+        if is_horns || self.step() != Step::Save {
+            self.stand()?;
+        }
+        if is_horns {
+            block_on(self.robot.center_servos())?;
         }
         self.step_index = index;
         Ok(())

@@ -56,13 +56,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
             let _ = writeln!(io::stdout(), "{message}");
             Ok(())
         }
-        Err(DialogueError::Io(error)) => Err(error.into()),
-        Err(DialogueError::File(failure)) => Err(failure),
         // Opening the port again resets the board, so unsaved settings are lost then.
         Err(DialogueError::Link(error)) => Err(Failure::Operation(format!(
             "{}: {error}; unsaved settings are lost when the port is opened again",
             board.name
         ))),
+        Err(error) => Err(board.to_failure(error)),
     }
 }
 

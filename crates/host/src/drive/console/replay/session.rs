@@ -19,24 +19,6 @@ const MAX_CLOCK_DIFFERENCE_FRAMES: usize = 10;
 /// Longest valid session, ms: a day.
 const MAX_SESSION_MS: u64 = 86_400_000;
 
-/// An error in a session's file.
-#[derive(Debug, PartialEq, Eq, thiserror::Error)]
-pub(super) enum SessionError {
-    /// The file is not a session, or has another format.
-    #[error(
-        "this is not a session of `lizard console --record`: \"{FORMAT}\" is missing from its first line"
-    )]
-    Format,
-    /// A line is not an event, or is out of place.
-    #[error("line {line}: {problem}")]
-    Line {
-        /// The line number, starting at 1.
-        line: usize,
-        /// The problem with the line.
-        problem: String,
-    },
-}
-
 /// A recorded session.
 #[derive(Debug)]
 pub(super) struct RecordedSession {
@@ -45,19 +27,21 @@ pub(super) struct RecordedSession {
 }
 
 impl RecordedSession {
-    /// Parses a session's file. A partial last line, left by a killed program or a full disk, is ignored.
-    pub(super) fn parse(text: &str) -> Result<Self, SessionError> {
+    /// Parses a session's file. A partial last line, left by a killed program or a full disk, is ignored. The error says
+    /// which line is not an event or is out of place, or that the file is not a session or has another format.
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        let not_a_session = format!(
+            "this is not a session of `lizard console --record`: \"{FORMAT}\" is missing from its \
+             first line"
+        );
         let mut entries: Vec<TimedEvent> = Vec::new();
         for (index, line) in text.lines().enumerate() {
             let is_partial = !text.ends_with('\n') && index + 1 == text.lines().count();
             let to_error = |problem: String| match index {
-                0 => SessionError::Format,
-                _ => SessionError::Line {
-                    line: index + 1,
-                    problem,
-                },
+                0 => not_a_session.clone(),
+                _ => format!("line {}: {problem}", index + 1),
             };
-            let entry: TimedEvent = match serde_json::from_str(line) {
+            let mut entry: TimedEvent = match serde_json::from_str(line) {
                 Ok(entry) => entry,
                 Err(_) if is_partial && index > 0 => break,
                 Err(error) => return Err(to_error(format!("not an event: {error}"))),
@@ -71,13 +55,11 @@ impl RecordedSession {
             if entry.ms > MAX_SESSION_MS || entries.last().is_some_and(|last| last.ms > entry.ms) {
                 return Err(to_error(format!("{} ms is out of order", entry.ms)));
             }
-            entries.push(TimedEvent {
-                event: entry.event.escape_controls(),
-                ..entry
-            });
+            entry.event.escape_controls();
+            entries.push(entry);
         }
         if entries.is_empty() {
-            return Err(SessionError::Format);
+            return Err(not_a_session);
         }
         Ok(Self { entries })
     }
@@ -159,11 +141,7 @@ impl RecordedSession {
                 _ => {}
             }
         }
-        FrameLog {
-            first_start: 0,
-            widths,
-            ..FrameLog::default()
-        }
+        FrameLog::new(0, widths)
     }
 
     /// Returns the commands, each with the time span of its effect.
@@ -181,12 +159,7 @@ impl RecordedSession {
             }
         }
         answers.resize(steps.len(), None);
-        let end_ms = self.end_ms();
-        let script = Script {
-            steps,
-            end_ms,
-            ..Script::default()
-        };
+        let script = Script::new(steps, self.end_ms());
         spans::list_command_spans(&script, &answers)
     }
 }
@@ -294,9 +267,7 @@ mod tests {
     #[test]
     fn an_invalid_session_is_refused_with_the_line_number() {
         let parse_error = |text: &str| {
-            RecordedSession::parse(text)
-                .expect_err("an invalid session must be refused")
-                .to_string()
+            RecordedSession::parse(text).expect_err("an invalid session must be refused")
         };
         for text in ["", "{}\n", "walk\n", "{\"ms\":0,\"sent\":\"walk\"}\n"] {
             assert!(

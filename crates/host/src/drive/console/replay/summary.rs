@@ -11,10 +11,8 @@ use lizard_robot::Status;
 pub(super) fn print(session: &RecordedSession, out: &mut impl Write) -> io::Result<()> {
     let entries = &session.entries;
     let count_events = |is_counted: fn(&Event) -> bool| {
-        entries
-            .iter()
-            .filter(|entry| is_counted(&entry.event))
-            .count()
+        let events = entries.iter().map(|entry| &entry.event);
+        events.filter(|event| is_counted(event)).count()
     };
     if let Some(Event::Begin { port, banner, .. }) = entries.first().map(|entry| &entry.event) {
         writeln!(out, "board       {port}")?;
@@ -53,16 +51,10 @@ pub(super) fn print(session: &RecordedSession, out: &mut impl Write) -> io::Resu
             statuses.len()
         )?;
     }
-    print_range(
-        out,
-        "supply",
-        statuses.iter().filter_map(|(_, status)| status.vcc),
-    )?;
-    print_range(
-        out,
-        "servos",
-        statuses.iter().filter_map(|(_, status)| status.rail),
-    )?;
+    let supply_volts = statuses.iter().filter_map(|(_, status)| status.vcc);
+    print_range(out, "supply", supply_volts)?;
+    let servo_volts = statuses.iter().filter_map(|(_, status)| status.rail);
+    print_range(out, "servos", servo_volts)?;
     if let Some((_, last)) = statuses.last() {
         writeln!(
             out,

@@ -6,9 +6,9 @@
 use lizard_robot::Robot;
 use svg::node::element::Group;
 
-use super::wire::{BLACK_WIRE, THIN_WIRE_WIDTH, draw_option_panel, draw_terminal};
+use super::wire::{BLACK_WIRE, THIN_WIRE_WIDTH, draw_case, draw_option_panel, draw_terminal};
 use crate::shared::shapes::{
-    DARK, ORANGE, RED, add_outline, circle, curve, line, pin_name, rectangle, text_end, text_start,
+    DARK, ORANGE, RED, add_outline, circle, curve, line, pin_name, text_end, text_start,
 };
 
 /// Height of the panel, pixels.
@@ -66,11 +66,10 @@ fn draw_wire(
         .add(draw_terminal(&component_terminal, ends[1], DARK))
 }
 
-/// Draws a component's case with its first row at `y` and its last row `height` below.
-fn draw_case(group: Group, y: f64, height: f64) -> Group {
+/// Draws a component's case around its rows: the first at `y`, the last `height` below.
+fn draw_case_around(group: Group, y: f64, height: f64) -> Group {
     let corner = (COMPONENT_PINS_X - 12.0, y - 14.0);
-    let case = rectangle(corner, (44.0, height + 28.0), "#e6eef7").set("rx", 5);
-    group.add(add_outline(case, DARK, 1.5))
+    draw_case(group, corner, (44.0, height + 28.0), "#e6eef7")
 }
 
 /// Draws a push button between its pin, at `y`, and ground.
@@ -80,7 +79,7 @@ fn draw_button(group: Group, pin: u8, y: f64) -> Group {
         line(start, end, DARK, THIN_WIRE_WIDTH)
     };
     let middle = (COMPONENT_PINS_X + 20.0, y + ROW_HEIGHT / 2.0);
-    let group = draw_case(group, y, ROW_HEIGHT)
+    let group = draw_case_around(group, y, ROW_HEIGHT)
         .add(draw_contact(y))
         .add(draw_contact(y + ROW_HEIGHT))
         .add(add_outline(circle(middle, 8.0, "white"), DARK, 1.5));
@@ -92,7 +91,7 @@ fn draw_button(group: Group, pin: u8, y: f64) -> Group {
 
 /// Draws the infrared obstacle switch on the robot's nose, with its first row at `y`.
 fn draw_obstacle_switch(group: Group, pin: u8, y: f64) -> Group {
-    let group = draw_case(group, y, 2.0 * ROW_HEIGHT);
+    let group = draw_case_around(group, y, 2.0 * ROW_HEIGHT);
     let label = "OUT of the obstacle switch, low at an obstacle";
     let group = draw_wire(group, ["nose", &pin_name(pin), label], y, ORANGE);
     let group = draw_wire(group, ["nose", "GND", "GND"], y + ROW_HEIGHT, BLACK_WIRE);

@@ -13,7 +13,7 @@ use lizard_robot::servo::SERVO_NAMES;
 use lizard_robot::{FUSE_RATING_A, MIN_SWITCH_RATING_A, Robot};
 use svg::node::element::Group;
 
-use super::route::{Path, WIRE_SPACING, path_end, route_between_rows, turn_point};
+use super::route::{WIRE_SPACING, route_between_rows, turn_point};
 use super::uno::Uno;
 use crate::shared::shapes::{
     BROWN, DARK, GREY, ORANGE, RED, SERVO_COLOURS, SERVO_POSITIONS, add_outline, circle, cross,
@@ -150,20 +150,20 @@ fn route_board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     let mut wires = vec![Wire::new("board-ground", path, BROWN, THIN_WIRE_WIDTH)];
     let strip_holes = [0, 1, 2, 3].map(strips::board_hole);
     let mut analogue_count = 0;
-    let mut ends: Vec<Path> = Vec::new();
-    let pin_points = order.map(|servo| {
-        let pin = UNO.pin_point(pins[servo]);
+    // A wire to an analogue pin goes around the board: it first leads to the point where it turns to the lower row.
+    let first_ends = order.map(|servo| {
         if !is_analogue(pins[servo]) {
-            ends.push(vec![]);
-            return pin;
+            return UNO.pin_point(pins[servo]);
         }
-        ends.push(path_end(UNO.lower_right_corner(), analogue_count, pin));
         analogue_count += 1;
         turn_point(UNO.lower_right_corner(), analogue_count - 1)
     });
-    let paths = route_between_rows(&strip_holes, &pin_points, SIGNAL_WIRES_Y[1]);
-    for ((servo, mut path), end) in order.into_iter().zip(paths).zip(ends) {
-        path.extend(end.iter().skip(1));
+    let paths = route_between_rows(&strip_holes, &first_ends, SIGNAL_WIRES_Y[1]);
+    for ((servo, mut path), (_, turn_y)) in order.into_iter().zip(paths).zip(first_ends) {
+        if is_analogue(pins[servo]) {
+            let pin = UNO.pin_point(pins[servo]);
+            path.extend([(pin.0, turn_y), pin]);
+        }
         let name = format!("pin-wire-{}", SERVO_NAMES[servo]);
         wires.push(Wire::new(name, path, ORANGE, THIN_WIRE_WIDTH));
     }

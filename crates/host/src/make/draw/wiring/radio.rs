@@ -7,11 +7,11 @@
 use svg::node::element::{Group, Polygon};
 
 use super::wire::{
-    BLACK_WIRE, LEAD_WIDTH, THIN_WIRE_WIDTH, Wire, draw_option_panel, draw_resistor, draw_terminal,
+    BLACK_WIRE, LEAD_WIDTH, THIN_WIRE_WIDTH, Wire, draw_case, draw_option_panel, draw_resistor,
+    draw_terminal,
 };
 use crate::shared::shapes::{
-    DARK, ORANGE, RED, add_outline, circle, curve, line, rectangle, text_end, text_middle,
-    text_start,
+    DARK, ORANGE, RED, circle, curve, line, text_end, text_middle, text_start,
 };
 
 /// Height of the panel, pixels.
@@ -72,21 +72,25 @@ pub fn draw(top: f64) -> Group {
         .add(circle((DIVIDER_X, row_y(1)), 4.5, ORANGE))
         .add(circle((DIVIDER_X, row_y(2)), 4.5, BLACK_WIRE))
         .add(text_middle("1N4148 or BAT85", diode_label_point, 13.0));
-    let module = rectangle((MODULE_PINS_X, top + 42.0), (150.0, 160.0), "#e6eef7").set("rx", 5);
     let module_text = text_end("HM-10, HC-05", (MODULE_PINS_X + 142.0, top + 126.0), 13.0);
-    group = group.add(add_outline(module, DARK, 1.5)).add(module_text);
+    let corner = (MODULE_PINS_X, top + 42.0);
+    group = draw_case(group, corner, (150.0, 160.0), "#e6eef7").add(module_text);
     for (pin, module_pin, offset) in ROWS {
         let y = top + offset;
-        let [board_label, terminal, module_terminal] = [
-            format!("UNO {pin}"),
-            format!("radio-{pin}"),
-            format!("radio-module-{module_pin}"),
-        ];
         let [board_label_x, label_x] = [BOARD_PINS_X - 10.0, MODULE_PINS_X + 10.0];
+        let module_terminal = format!("radio-module-{module_pin}");
         group = group
-            .add(text_end(&board_label, (board_label_x, y + 5.0), 13.0))
+            .add(text_end(
+                &format!("UNO {pin}"),
+                (board_label_x, y + 5.0),
+                13.0,
+            ))
             .add(text_start(module_pin, (label_x, y + 5.0), 13.0))
-            .add(draw_terminal(&terminal, (BOARD_PINS_X, y), DARK))
+            .add(draw_terminal(
+                &format!("radio-{pin}"),
+                (BOARD_PINS_X, y),
+                DARK,
+            ))
             .add(draw_terminal(&module_terminal, (MODULE_PINS_X, y), DARK));
     }
     let note = "The diode's stripe is at the module. It lets the module only pull D0 low, so USB still works.";

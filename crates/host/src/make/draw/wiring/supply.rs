@@ -6,7 +6,8 @@ use svg::node::element::Group;
 
 use super::strips::{ground_hole, supply_hole};
 use super::wire::{
-    BLACK_WIRE, GREY_WIRE, LEAD_WIDTH, THICK_WIRE_WIDTH, THIN_WIRE_WIDTH, Wire, draw_terminal,
+    BLACK_WIRE, GREY_WIRE, LEAD_WIDTH, THICK_WIRE_WIDTH, THIN_WIRE_WIDTH, Wire, draw_case,
+    draw_terminal,
 };
 use crate::make::draw::route::Path;
 use crate::shared::shapes::{
@@ -128,11 +129,6 @@ fn capacitor_leads() -> [Point; 2] {
         (CAPACITOR_X, part_ground_hole("capacitor").1),
         (CAPACITOR_X, supply_hole(1).1),
     ]
-}
-
-fn draw_case(group: Group, corner: Point, size: Point, fill: &str) -> Group {
-    let case = rectangle(corner, size, fill).set("rx", 5);
-    group.add(add_outline(case, DARK, 1.5))
 }
 
 /// Draws all parts of the supply; `barrel_jack` is the centre of the board's barrel jack.

@@ -58,6 +58,12 @@ pub fn draw_option_panel(top: f64, height: f64, title: &str) -> Group {
         .add(title.set("font-weight", "bold"))
 }
 
+/// Draws a component's case from its upper left corner and size.
+pub fn draw_case(group: Group, corner: (f64, f64), size: (f64, f64), fill: &str) -> Group {
+    let case = rectangle(corner, size, fill).set("rx", 5);
+    group.add(add_outline(case, DARK, 1.5))
+}
+
 /// Draws a resistor's body from its centre and size.
 pub fn draw_resistor((x, y): (f64, f64), (width, height): (f64, f64)) -> Rectangle {
     let corner = (x - width / 2.0, y - height / 2.0);

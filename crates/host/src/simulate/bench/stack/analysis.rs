@@ -43,37 +43,15 @@ struct State {
     frame_size: Option<u8>,
 }
 
-/// Shared prologues and epilogues (`tools/linker/src/frames.S`): the number of bytes that each routine saves or
-/// restores, by the routine's address.
-struct SharedRoutines {
-    saved_bytes: HashMap<u32, i32>,
-    restored_bytes: HashMap<u32, i32>,
-}
-
-impl SharedRoutines {
-    /// Finds an image's shared routines. Routine K saves rK to r17, r28 and r29, a total of 20 - K bytes, and reserves
-    /// a frame with the size in r26.
-    fn find(image: &Image) -> Self {
-        let find_routines = |prefix: &str| {
-            let parse_symbol = |symbol: &simulated_uno::Symbol| {
-                let first_register: i32 = symbol.name.strip_prefix(prefix)?.parse().ok()?;
-                Some((symbol.address as u32, 20 - first_register))
-            };
-            image.symbols().iter().filter_map(parse_symbol).collect()
-        };
-        Self {
-            saved_bytes: find_routines("__frame_save_"),
-            restored_bytes: find_routines("__frame_restore_"),
-        }
-    }
-}
-
 /// The stack analysis of an image, with the functions analysed so far.
 pub struct StackAnalysis<'a> {
     image: &'a Image,
     flash: &'a [u8],
     context: Context,
-    shared: SharedRoutines,
+    /// The number of bytes that each shared prologue (`tools/linker/src/frames.S`) saves, by the prologue's address.
+    saved_bytes: HashMap<u32, i32>,
+    /// The number of bytes that each shared epilogue restores, by the epilogue's address.
+    restored_bytes: HashMap<u32, i32>,
     /// Each function's summary, by function address; `None` while the function is being analysed.
     summaries: HashMap<u32, Option<FunctionSummary>>,
 }
@@ -92,11 +70,21 @@ pub struct FunctionSummary {
 impl<'a> StackAnalysis<'a> {
     /// Creates an analysis of `flash`, the contents of `image`, without any analysed function.
     pub fn new(image: &'a Image, flash: &'a [u8], context: Context) -> Self {
+        // Shared routine K saves or restores rK to r17, r28 and r29, a total of 20 - K bytes, and a frame with the size
+        // in r26.
+        let find_routines = |prefix: &str| {
+            let parse_symbol = |symbol: &simulated_uno::Symbol| {
+                let first_register: i32 = symbol.name.strip_prefix(prefix)?.parse().ok()?;
+                Some((symbol.address as u32, 20 - first_register))
+            };
+            image.symbols().iter().filter_map(parse_symbol).collect()
+        };
         Self {
             image,
             flash,
             context,
-            shared: SharedRoutines::find(image),
+            saved_bytes: find_routines("__frame_save_"),
+            restored_bytes: find_routines("__frame_restore_"),
             summaries: HashMap::new(),
         }
     }
@@ -128,10 +116,10 @@ impl<'a> StackAnalysis<'a> {
         };
         let mut pending = vec![(entry, start_state)];
         while let Some((address, mut state)) = pending.pop() {
+            let error = |reason| self.new_error(entry, address, reason);
             if let Some(known_state) = states.get(&address) {
                 if known_state.depth != state.depth {
-                    let reason = "is reached with different stack depths";
-                    return Err(self.new_error(entry, address, reason));
+                    return Err(error("is reached with different stack depths"));
                 }
                 if known_state.pointer == state.pointer || known_state.pointer == Pointer::Unknown {
                     continue;
@@ -140,32 +128,28 @@ impl<'a> StackAnalysis<'a> {
             }
             states.insert(address, state);
             let Some(instruction) = decode(self.flash, address) else {
-                return Err(self.new_error(entry, address, "runs beyond the end of the code"));
+                return Err(error("runs beyond the end of the code"));
             };
             let next_address = address + instruction.size;
             let frame_bytes = state.frame_size.take().map(i32::from);
+            let unknown_frame = || error("reserves a frame of an unknown size");
             let mut next_addresses = vec![next_address];
             match instruction.effect {
                 // A call of the next instruction reserves two bytes, because it is shorter than two pushes.
                 Effect::Call(target) if target == next_address => {
                     state.depth += RETURN_ADDRESS_BYTES
                 }
-                Effect::Call(target) if self.shared.saved_bytes.contains_key(&target) => {
-                    let Some(frame_bytes) = frame_bytes else {
-                        return Err(self.new_error(entry, address, UNKNOWN_FRAME_SIZE));
-                    };
-                    state.depth += self.shared.saved_bytes[&target] + frame_bytes;
+                Effect::Call(target) if self.saved_bytes.contains_key(&target) => {
+                    let frame_bytes = frame_bytes.ok_or_else(unknown_frame)?;
+                    state.depth += self.saved_bytes[&target] + frame_bytes;
                     state.pointer = Pointer::Depth(state.depth);
                     // The shared prologue's return address lies below the frame that the prologue reserves.
                     max_depth = max_depth.max(state.depth + RETURN_ADDRESS_BYTES);
                 }
-                Effect::Jump(target) if self.shared.restored_bytes.contains_key(&target) => {
-                    let Some(frame_bytes) = frame_bytes else {
-                        return Err(self.new_error(entry, address, UNKNOWN_FRAME_SIZE));
-                    };
-                    if state.depth != self.shared.restored_bytes[&target] + frame_bytes {
-                        let reason = "restores different registers than it saved";
-                        return Err(self.new_error(entry, address, reason));
+                Effect::Jump(target) if self.restored_bytes.contains_key(&target) => {
+                    let frame_bytes = frame_bytes.ok_or_else(unknown_frame)?;
+                    if state.depth != self.restored_bytes[&target] + frame_bytes {
+                        return Err(error("restores different registers than it saved"));
                     }
                     can_return = true;
                     next_addresses.clear();
@@ -193,24 +177,14 @@ impl<'a> StackAnalysis<'a> {
                     can_return = true;
                     next_addresses.clear();
                 }
-                Effect::Return => {
-                    return Err(self.new_error(entry, address, "returns with bytes on the stack"));
-                }
-                Effect::Indirect => {
-                    let reason = "jumps to a computed address";
-                    return Err(self.new_error(entry, address, reason));
-                }
+                Effect::Return => return Err(error("returns with bytes on the stack")),
+                Effect::Indirect => return Err(error("jumps to a computed address")),
                 Effect::EnableInterrupts if self.context == Context::Interrupt => {
                     interrupt_enable_address = Some(address);
                 }
-                Effect::StackFromOther => {
-                    return Err(self.new_error(entry, address, UNKNOWN_STACK_POINTER));
-                }
-                effect => {
-                    if !state.apply(effect) {
-                        return Err(self.new_error(entry, address, UNKNOWN_STACK_POINTER));
-                    }
-                }
+                effect => state
+                    .apply(effect)
+                    .ok_or_else(|| error("sets the stack pointer to an unknown value"))?,
             }
             max_depth = max_depth.max(state.depth);
             pending.extend(next_addresses.into_iter().map(|address| (address, state)));
@@ -239,13 +213,10 @@ impl<'a> StackAnalysis<'a> {
     }
 }
 
-const UNKNOWN_FRAME_SIZE: &str = "reserves a frame of an unknown size";
-const UNKNOWN_STACK_POINTER: &str = "sets the stack pointer to an unknown value";
-
 impl State {
-    /// Applies an instruction that only changes the stack, the stack pointer or r29:r28. Returns false if the stack
+    /// Applies an instruction that only changes the stack, the stack pointer or r29:r28. Returns `None` if the stack
     /// pointer would become unknown.
-    fn apply(&mut self, effect: Effect) -> bool {
+    fn apply(&mut self, effect: Effect) -> Option<()> {
         let offset_pointer = |pointer: Pointer, change: i16| match pointer {
             Pointer::Depth(depth) => Pointer::Depth(depth - i32::from(change)),
             Pointer::Address(address) => Pointer::Address(address.wrapping_add_signed(change)),
@@ -260,9 +231,10 @@ impl State {
                     Pointer::Depth(depth) => depth,
                     // The startup code sets a constant. The stack grows down from the end of SRAM.
                     Pointer::Address(address) => i32::from(SRAM_END - 1) - i32::from(address),
-                    Pointer::Unknown => return false,
+                    Pointer::Unknown => return None,
                 }
             }
+            Effect::StackFromOther => return None,
             Effect::AddToPointer(change) => self.pointer = offset_pointer(self.pointer, change),
             Effect::SubtractLow(low) => self.low_byte = low,
             Effect::SubtractHigh(high) => {
@@ -280,6 +252,6 @@ impl State {
             Effect::LosePointer => self.pointer = Pointer::Unknown,
             _ => {}
         }
-        true
+        Some(())
     }
 }

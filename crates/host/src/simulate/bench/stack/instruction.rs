@@ -67,11 +67,10 @@ pub fn decode(flash: &[u8], address: u32) -> Option<Instruction> {
     let is_long = opcode & 0xfe0f == 0x9000 // lds
         || opcode & 0xfe0f == 0x9200 // sts
         || opcode & 0xfe0c == 0x940c; // jmp, call
-    let size = if is_long { 4 } else { 2 };
-    let second_word = if is_long {
-        read_word(flash, address + 2)?
+    let (size, second_word) = if is_long {
+        (4, read_word(flash, address + 2)?)
     } else {
-        0
+        (2, 0)
     };
     let effect = decode_effect(opcode, second_word, address);
     Some(Instruction { effect, size })
@@ -153,9 +152,8 @@ fn decode_far_target(opcode: u16, second_word: u16) -> u32 {
 fn decode_relative_target(encoded_offset: u16, offset_bits: u32, address: u32) -> u32 {
     let shift = 16 - offset_bits;
     let word_offset = (encoded_offset << shift) as i16 >> shift;
-    address
-        .wrapping_add(2)
-        .wrapping_add_signed(i32::from(word_offset) * 2)
+    let next_address = address.wrapping_add(2);
+    next_address.wrapping_add_signed(i32::from(word_offset) * 2)
 }
 
 /// Returns the I/O address of `in` and `out`.

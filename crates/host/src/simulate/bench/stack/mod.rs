@@ -61,37 +61,30 @@ impl StackDepth {
         let flash = image.flash();
         let bad_interrupt = image.symbol("__bad_interrupt");
         let bad_interrupt_address = bad_interrupt.map(|symbol| symbol.address as u32);
-        let (mut handler_depth, mut nonreturning_depth) = (0, 0);
+        let (mut handler, mut nonreturning_handler) = (0, 0);
         let mut analysis = StackAnalysis::new(image, &flash, Context::Interrupt);
         for vector in 1..VECTOR_COUNT {
             let target = instruction::find_jump_target(&flash, 0)
                 .and_then(|_| instruction::find_jump_target(&flash, vector * 4));
             if let Some(target) = target.filter(|target| Some(*target) != bad_interrupt_address) {
                 let summary = analysis.analyse_function(target)?;
+                let depth = INTERRUPT_ENTRY_BYTES + summary.depth;
                 match summary.interrupt_enable_address {
-                    None => {
-                        handler_depth = handler_depth.max(INTERRUPT_ENTRY_BYTES + summary.depth)
-                    }
+                    None => handler = handler.max(depth),
                     Some(address) if summary.can_return => {
                         let reason = "enables interrupts in an interrupt";
                         return Err(analysis.new_error(target, address, reason));
                     }
-                    Some(_) => {
-                        nonreturning_depth =
-                            nonreturning_depth.max(INTERRUPT_ENTRY_BYTES + summary.depth)
-                    }
+                    Some(_) => nonreturning_handler = nonreturning_handler.max(depth),
                 }
             }
         }
-        let main_depth = StackAnalysis::new(image, &flash, Context::Main)
-            .analyse_function(0)?
-            .depth;
-        let floor = image.data_end();
+        let mut analysis = StackAnalysis::new(image, &flash, Context::Main);
         Ok(Self {
-            main: main_depth,
-            handler: handler_depth,
-            nonreturning_handler: nonreturning_depth,
-            floor,
+            main: analysis.analyse_function(0)?.depth,
+            handler,
+            nonreturning_handler,
+            floor: image.data_end(),
         })
     }
 

@@ -10,11 +10,7 @@ fn create_frames(robot: &Robot, count: u64, angles: impl Fn(f64) -> [f64; 4]) ->
         let angles = angles(n as f64 / 50.0);
         std::array::from_fn(|i| to_width(i, angles[i]))
     };
-    FrameLog {
-        first_start: FREQUENCY,
-        widths: (0..count).map(compute_widths).collect(),
-        ..FrameLog::default()
-    }
+    FrameLog::new(FREQUENCY, (0..count).map(compute_widths).collect())
 }
 
 fn create_gait_frames(robot: &Robot, name: &str, count: u64) -> FrameLog {
@@ -52,9 +48,9 @@ fn paths_of_walk_back_and_left_match_their_predictions() {
         let is_close = |actual: Option<f64>, expected: f64, tolerance: f64| {
             actual.is_some_and(|actual| (actual - expected).abs() < tolerance)
         };
-        let is_forward_close = is_close(total_path.forward, forward, 0.35);
+        let is_forward_close = is_close(total_path.displacement.forward, forward, 0.35);
         assert!(is_forward_close, "{gait}: {total_path:?}");
-        let is_turn_close = is_close(total_path.turn, turn, 0.2);
+        let is_turn_close = is_close(total_path.displacement.turn, turn, 0.2);
         assert!(is_turn_close, "{gait}: {total_path:?}");
     }
 }
@@ -65,8 +61,9 @@ fn a_path_that_depends_on_a_tie_is_undetermined() {
     let log = create_gait_frames(&robot, "look", 100);
     let spans = [Span::new("stand", 0.0, 1.0), Span::new("look", 1.0, 3.0)];
     let paths = compute_command_paths(Run::new(&robot, &log), &spans);
-    let forward: Vec<bool> = paths.iter().map(|path| path.forward.is_some()).collect();
-    assert_eq!(forward, [true, false, false], "{paths:?}");
+    let forward = paths.iter().map(|path| path.displacement.forward);
+    let are_determined: Vec<bool> = forward.map(|forward| forward.is_some()).collect();
+    assert_eq!(are_determined, [true, false, false], "{paths:?}");
 }
 
 #[test]
@@ -82,10 +79,15 @@ fn paths_of_two_commands_compose_to_the_path_of_the_run() {
         let [first, second, total_path] = &paths[..] else {
             panic!("expected the paths of two commands and of the run: {paths:?}")
         };
-        let to_travel = |path: &CommandPath| Travel {
-            forward: path.forward.expect("the path is determined"),
-            left: path.left.expect("the path is determined"),
-            turn: path.turn.expect("the path is determined"),
+        let to_travel = |path: &CommandPath| {
+            let components = path.displacement.components();
+            let [forward, left, turn] =
+                components.map(|component| component.expect("the path is determined"));
+            Travel {
+                forward,
+                left,
+                turn,
+            }
         };
         let distance_between = |a: Travel, b: Travel| {
             (a.forward - b.forward).hypot(a.left - b.left) + (a.turn - b.turn).abs()

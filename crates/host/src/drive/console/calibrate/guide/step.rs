@@ -25,28 +25,14 @@ pub(super) enum Step {
     Saved,
 }
 
-/// All steps in the order of a calibration.
-pub(super) const STEPS: [Step; 22] = [
-    Step::Begin,
-    Step::Horns,
-    Step::Sign(0),
-    Step::Sign(1),
-    Step::Sign(2),
-    Step::Sign(3),
-    Step::Trim(0),
-    Step::Trim(1),
-    Step::Trim(2),
-    Step::Trim(3),
-    Step::OfferScales,
-    Step::Scale(0),
-    Step::Scale(1),
-    Step::Scale(2),
-    Step::Scale(3),
-    Step::Limit(0),
-    Step::Limit(1),
-    Step::Limit(2),
-    Step::Limit(3),
-    Step::Walk,
-    Step::Save,
-    Step::Saved,
-];
+/// Lists all steps in the order of a calibration.
+pub(super) fn list_steps() -> Vec<Step> {
+    let mut steps = vec![Step::Begin, Step::Horns];
+    steps.extend((0..4).map(Step::Sign));
+    steps.extend((0..4).map(Step::Trim));
+    steps.push(Step::OfferScales);
+    steps.extend((0..4).map(Step::Scale));
+    steps.extend((0..4).map(Step::Limit));
+    steps.extend([Step::Walk, Step::Save, Step::Saved]);
+    steps
+}

@@ -4,7 +4,7 @@ use std::io::{Read, Write};
 
 use crate::shared::shapes::SERVO_POSITIONS;
 
-use super::step::{STEPS, Step};
+use super::step::Step;
 use super::{Guide, SCALE_TURNS_DEG, SIGN_TURNS_DEG};
 
 /// The contents of the screen in one step.
@@ -168,7 +168,11 @@ impl<P: Read + Write> Guide<'_, P> {
             ),
         };
         StepView {
-            title: format!("Step {} of {}: {title}", self.step_index + 1, STEPS.len()),
+            title: format!(
+                "Step {} of {}: {title}",
+                self.step_index + 1,
+                self.steps.len()
+            ),
             instructions: text.lines().map(str::to_owned).collect(),
             keys: keys.to_owned(),
             message: self.message.clone(),

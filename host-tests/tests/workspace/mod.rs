@@ -1,0 +1,18 @@
+//! The crates of the workspace, as its manifest lists them.
+
+use lizard_host_tests::root;
+
+/// Lists the folders of all crates, relative to the root of the repository.
+pub fn list_crates() -> Vec<String> {
+    let manifest = std::fs::read_to_string(root().join("crates/Cargo.toml"));
+    let manifest = manifest.expect("the manifest is readable");
+    let members = manifest.split_once("\nmembers = [");
+    let members = members.and_then(|(_, members)| members.split_once(']'));
+    let (members, _) = members.expect("the manifest lists its members");
+    let folders = members.split('"').skip(1).step_by(2);
+    let folders = folders.map(|folder| match folder.strip_prefix("../") {
+        Some(path) => path.to_owned(),
+        None => format!("crates/{folder}"),
+    });
+    folders.collect()
+}
