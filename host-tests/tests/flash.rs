@@ -63,7 +63,7 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
     let start_cycle = first_edge.expect("A1 has a pulse").cycle;
     let walked_widths = expect_widths(&group_frames(&board.edges, pins, start_cycle, 100));
 
-    // Runs the same image in a simulation without boot loader, port and wall clock.
+    // Runs the same image in a simulation without a boot loader, a port or the wall clock.
     let mut bench = FirmwareBench::boot_with(Fidelity::DataSheet);
     bench.say("stand");
     bench.run_for_frames(AWAKE_FRAMES);
@@ -73,7 +73,7 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
         bench_widths
             .windows(walked_widths.len())
             .any(|window| window == walked_widths),
-        "the pulses differ from the bench's pulses, in cycles: {walked_widths:?}"
+        "the bench has no such sequence of pulse widths (cycles): {walked_widths:?}"
     );
     shell.interrupt();
 }
@@ -114,7 +114,7 @@ fn a_byte_that_changes_after_its_write_ends_the_upload() {
     let mut board = ConnectedBoard::with_new_uno();
     let shell = start_make_flash(&board);
     let mut has_flipped_bit = false;
-    // After the first page is written, one of its bits changes.
+    // When the third page is written, a bit of the first page changes.
     let has_ended = board.run_until(|uno| {
         if !has_flipped_bit && uno.flash()[0x100] != 0xff {
             uno.write_flash(0x11, &[uno.flash()[0x11] ^ 0x10]);
@@ -145,5 +145,6 @@ fn a_board_that_never_answers_ends_the_upload_with_an_explanation() {
     let screen = board.run_until_exit(&shell);
     assert!(screen.contains("the board does not answer"), "{screen}");
     let mut bytes = board.uno.flash()[..BOOT_LOADER_START].iter();
-    assert!(bytes.all(|&byte| byte == 0xff));
+    let is_blank = bytes.all(|&byte| byte == 0xff);
+    assert!(is_blank, "the upload wrote to the flash");
 }

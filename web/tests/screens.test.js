@@ -17,8 +17,8 @@ async function isOnScreen(page, selector) {
 /** Moves a finger from the middle of an element, some pixels to the right and down. */
 async function swipe(page, selector, rightPx, downPx) {
   const { left, top, width, height } = await readBox(page, selector);
-  const session = await withTimeout('the touch screen', page.context().newCDPSession(page));
-  const sendTouch = (type, touchPoints) => withTimeout('a finger', session.send('Input.dispatchTouchEvent', { type, touchPoints }));
+  const session = await withTimeout('opening the touch session', page.context().newCDPSession(page));
+  const sendTouch = (type, touchPoints) => withTimeout('sending a touch event', session.send('Input.dispatchTouchEvent', { type, touchPoints }));
   const makeTouches = (fraction) => [{ x: left + width / 2 + fraction * rightPx, y: top + height / 2 + fraction * downPx }];
   await sendTouch('touchStart', makeTouches(0));
   for (let step = 1; step <= 20; step++) await sendTouch('touchMove', makeTouches(step / 20));
@@ -66,7 +66,7 @@ testPage('a finger that moves up over the floor scrolls the page', () => openSta
 /** Returns the zoom of the floor, CSS pixels per mm. */
 const readZoom = (page) => page.evaluate(() => Number(document.querySelector('#floor').dataset.zoom));
 
-test('the wheel scrolls the page, and zooms with Ctrl as long as the robot stays visible', async () => {
+test('the wheel scrolls the page, and with Ctrl zooms, but never so far out that the robot vanishes', async () => {
   const page = await openStanding({ viewport: { width: 1400, height: 700 } });
   await page.goto(`${address()}#room=gaits`);
   await page.waitForFunction(() => document.querySelector('#floor').dataset.zoom);
@@ -80,7 +80,7 @@ test('the wheel scrolls the page, and zooms with Ctrl as long as the robot stays
   await page.locator('#floor').dispatchEvent('wheel', { deltaY: 5000, ctrlKey: true, offsetX: 200, offsetY: 200 });
   await page.waitForFunction((firstZoom) => Number(document.querySelector('#floor').dataset.zoom) < firstZoom, firstZoom);
   assert.ok(250 * (await readZoom(page)) > 60, 'pixels for a robot of 250 mm');
-  // The button resets the view, wherever it was.
+  // `Back to start` resets the view, even a moved one.
   const follow = page.getByRole('button', { name: 'Follow' });
   await page.locator('#floor').press('ArrowLeft');
   assert.equal(await follow.getAttribute('aria-pressed'), 'false');
@@ -108,18 +108,18 @@ for (const [name, viewport] of [
     for (const panel of ['#lengths-panel', '#calibrate', '#flash', '#world', '#gait-editor', '#maps']) {
       await unfold(page, panel);
       await advance(page, 500);
-      const outsideTexts = await page.evaluate(() =>
+      const outsideElements = await page.evaluate(() =>
         [...document.querySelectorAll('button, input, select, canvas, table')]
           .filter((node) => node.getBoundingClientRect().right > document.documentElement.clientWidth + 0.5)
           .map(({ id, textContent }) => id || textContent),
       );
       assert.equal(await measureOverflow(page), 0);
-      assert.deepEqual(outsideTexts, []);
+      assert.deepEqual(outsideElements, []);
     }
   });
 }
 
-test('a touch screen shows no keys, and the list of robots shows full names', async () => {
+test('a touch screen shows no keyboard shortcuts, and the list of robots shows full names', async () => {
   for (const viewport of [{ width: 360, height: 640 }, { width: 844, height: 390 }, { width: 1024, height: 1366 }]) {
     const page = await openStanding({ viewport, hasTouch: true, isMobile: true });
     for (const room of ['drive', 'build', 'board']) {

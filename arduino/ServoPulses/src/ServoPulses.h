@@ -2,14 +2,14 @@
 //
 // The library has the functions of Arduino's Servo library: to switch, include this file instead of Servo.h. It drives
 // one to eight servos on any pins except A6 and A7 of an ATmega328P at 16 MHz (UNO, Nano, Pro Mini). It uses Timer1, so
-// pins 9 and 10 have no analogWrite. A frame, the time between two pulses of a servo, lasts 22.5 ms.
+// analogWrite does not work on pins 9 and 10. A frame, the time between two pulses of a servo, lasts 22.5 ms.
 #ifndef SERVO_PULSES_H
 #define SERVO_PULSES_H
 
 #include <Arduino.h>
 
 #if !defined(__AVR_ATmega328P__) || F_CPU != 16000000L
-#error "ServoPulses requires an ATmega328P at 16 MHz (UNO, Nano): choose such a board, or use the library Servo."
+#error "ServoPulses requires an ATmega328P at 16 MHz (UNO, Nano): choose such a board, or use the Servo library."
 #endif
 
 #define MIN_PULSE_WIDTH 544
@@ -23,11 +23,11 @@ public:
   Servo();
 
   // Makes the pin an output and starts its pulses, with the last written width or 1500 us. `min` and `max` are the
-  // widths for 0 and 180 degrees, between 63 and 2437 us; every width is clamped to this range. Returns the servo's
-  // number, 0 to 7, or INVALID_SERVO for a ninth servo or an invalid pin.
+  // widths for 0 and 180 degrees. They are clamped to 63 to 2437 us, and every width is clamped to `min` to `max`.
+  // Returns the servo's number, 0 to 7, or INVALID_SERVO for a ninth servo or an invalid pin.
   uint8_t attach(int pin) { return attach(pin, MIN_PULSE_WIDTH, MAX_PULSE_WIDTH); }
   uint8_t attach(int pin, int min, int max);
-  // Stops the pulses. A pulse that has begun or is already planned keeps its width. The pin stays a low output.
+  // Stops the pulses. A pulse that has begun or is already planned keeps its width. The pin remains an output, low.
   void detach();
   bool attached() const;
 
@@ -40,8 +40,8 @@ public:
   int read() const;
   int readMicroseconds() const;
 
-  // Returns the number of frames since the first `attach`, modulo 256. All widths written within 2.4 ms after a change
-  // of this number take effect together, in the next frame.
+  // Returns the number of frames since the first `attach`, modulo 256. Widths that are all written within 2.4 ms
+  // after a change of this number take effect together, in the next frame.
   static uint8_t frames();
   // Returns the number of edges that were late because interrupts were blocked for more than 10 us. A pulse that would
   // begin late is omitted, since its width would be wrong. The count stops at 255.

@@ -13,7 +13,8 @@ const USES_STOCK_LINKER: bool = match option_env!("LIZARD_PLAIN_LINK") {
     None => false,
 };
 
-/// The region's first address. The code before it may have 27.5 KiB, or 29.9 KiB if linked by avr-gcc alone.
+/// The region's first address. The code before it may occupy 27.5 KiB, or 29.9 KiB if avr-gcc links
+/// it without tools/linker.
 pub const START_ADDRESS: u16 = if USES_STOCK_LINKER { 0x7780 } else { 0x6e00 };
 
 /// The address after the region: the start of an Arduino UNO's boot loader, or the end of the flash.
@@ -99,7 +100,7 @@ impl<'a> Region<'a> {
         REGION_BYTES
     }
 
-    /// The region itself, because all offsets into a section have been checked and its length is not needed.
+    /// Returns the whole region: an AVR needs no length, because all offsets into the section have been checked before.
     #[inline(always)]
     pub const fn prefix(self, _length: u16) -> Self {
         self

@@ -34,7 +34,7 @@ pub trait Board {
     /// line is written only when there is room for the whole line.
     const WRITER_CAPACITY: u8;
 
-    /// The number of units of a pulse width in a microsecond, which must be 16, as in the core.
+    /// The number of CPU cycles, the unit of pulse widths, in a microsecond; must be 16, as in the core.
     const CYCLES_PER_US: u16;
 
     /// Connects the servos A1 to A4, and the measured rail if any, to the pins with these Arduino numbers; 14 to 19 are
@@ -44,15 +44,15 @@ pub trait Board {
     /// The number of ticks since the program's start, modulo 256; the interval is 20 ms.
     fn ticks(&self) -> u8;
 
-    /// True if the last submitted pulses have been taken over, or no pulses were submitted. The clock and the
-    /// generation of pulses are then working.
+    /// True unless submitted pulses wait to be taken over. The main loop submits pulses in every frame, so this shows
+    /// that the clock and the generation of pulses work.
     fn is_frame_taken(&self) -> bool;
 
     /// Submits the pulses of the next frame, which replace submitted pulses that have not been taken over.
     fn submit(&mut self, pulses: Pulses);
 
-    /// Feeds the watchdog, which resets a program that hangs. Once the watchdog has ended the pulses, nothing may delay
-    /// the reset, and the main loop must not continue.
+    /// Feeds the watchdog, which resets a program that hangs. A watchdog interrupt that has ended the pulses must not
+    /// return to the main loop, and nothing may delay the reset.
     fn feed_watchdog(&mut self);
 
     /// Stores the servo state, and the number of consecutive resets that a weak supply may have caused, in RAM that

@@ -61,6 +61,7 @@ const VALID_WIDTHS: core::ops::RangeInclusive<u16> = 1_000..=63_000;
 pub struct VirtualBoard {
     /// Milliseconds since the last tick.
     ms_since_tick: u8,
+    /// The number of ticks, modulo 256.
     ticks: u8,
     /// The last frame that the main loop submitted.
     submitted_pulses: Pulses,
@@ -113,6 +114,7 @@ impl VirtualBoard {
     /// Creates a board at power-on with this memory. Its supplies are not measured, so every reading is 0.
     pub fn new(memory: Eeprom) -> Self {
         Self {
+            // The first tick occurs after 1 ms.
             ms_since_tick: FRAME_MS - 1,
             ticks: 0,
             submitted_pulses: Pulses::default(),
@@ -139,7 +141,7 @@ impl VirtualBoard {
         }
     }
 
-    /// Returns the board after a reset with this cause and state.
+    /// Returns the board as it is after this restart.
     #[must_use]
     pub fn after_restart(self, restart: Restart) -> Self {
         if let Some(servo_state) = &restart.servo_state_before {
@@ -152,7 +154,7 @@ impl VirtualBoard {
         }
     }
 
-    /// Returns the board at this tick.
+    /// Returns the board with this number of ticks.
     #[must_use]
     pub fn at_tick(self, ticks: u8) -> Self {
         Self { ticks, ..self }

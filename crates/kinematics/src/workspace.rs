@@ -15,8 +15,8 @@ pub struct Circle {
     pub radius: f64,
 }
 
-/// The theoretical workspace of a five-bar with equal arms (l1 = l4, l2 = l3). The paper's
-/// equations of its four circles have y instead of y^2.
+/// The theoretical workspace of a five-bar with equal arms (l1 = l4, l2 = l3). In the
+/// paper's equations of its four circles, y is a misprint for y^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Workspace {
     /// Half the base, mm.
@@ -37,7 +37,7 @@ impl Workspace {
         }
     }
 
-    /// True if the end point can reach a point (mm, own frame).
+    /// True if the end point can reach a point (mm, in the five-bar's own frame).
     pub fn contains(&self, point: Vector) -> bool {
         [-self.half_base, self.half_base].into_iter().all(|x| {
             let distance_squared = (point - Vector::new(x, 0.0)).length_squared();
@@ -56,7 +56,7 @@ impl Workspace {
             + lens_area(inner, inner, distance)
     }
 
-    /// The largest circle within the workspace; of two mirror images, the circle ahead. `None` if the
+    /// The largest circle within the workspace; of two mirror images, the one at y > 0. `None` if the
     /// two rings have no area in common.
     ///
     /// The radius of a circle within a ring is at most half the ring's width. If the centre lines of both rings

@@ -1,8 +1,8 @@
 //! The solid model of the robot, generated from robot.toml: bodies built of layers, and their placements at a pose.
 //!
 //! The mechanism is planar and all its joint axes are vertical, so a part is a stack of layers, each a flat shape
-//! between two heights. One table has the heights of all layers ([`Stack`]). A pose rotates and translates each body in
-//! the plane; no body moves up or down.
+//! between two heights. [`Stack`] is the one table of all these heights. A pose rotates and translates each body in the
+//! plane; no body moves up or down.
 //!
 //! # Example
 //! ```
@@ -17,20 +17,22 @@
 //! }
 //! # Ok::<(), lizard_robot::Error>(())
 //! ```
+//!
+//! # Concepts
 //! - A [`Body`] is rigid: a printed part, a servo, a screw, a nut, a spring, the board, the battery. Its layers
 //!   ([`Prism`]) are in the frame of its mount, with z in the chassis frame.
 //! - A [`Mount`] is a body's moving frame. The placements of `Link`, `Crank`, `Follower`, `Foot` and `Strut` depend
 //!   on one servo, `Coupler` on both servos of its end, `Sleeve` and `Rod` on both servos of their side, `Chassis` on
-//!   none. Links, cranks and followers turn about a fixed point by the servo's angle; feet and struts do not turn.
-//!   [`Assembly::placement`] computes the placements.
+//!   none. Links, cranks and followers turn about a fixed point by the servo's angle; feet do not turn, and
+//!   struts turn only if a leg lags behind its servo. [`Assembly::placement`] computes the placements.
 //! - A [`Shape`] is convex: the hull of some points, grown by a radius. A layer is the union of its shapes minus its
 //!   holes, so the shapes enclose the layer: a body that is clear of the shapes is clear of the part.
 //!   [`Shape::distance`] is exact.
-//! - [`Assembly::may_touch`] is true for bodies that move together, and for bodies that touch by design, of which one
-//!   names the other in [`Body::allowed_contacts`]: a screw names the parts that it passes through, a rod its sleeve, a
-//!   strut the crank that its spring pulls.
+//! - [`Assembly::may_touch`] is true for bodies that move together, and for bodies that touch by design. One of two
+//!   bodies that touch by design names the other in [`Body::allowed_contacts`]: a screw names the parts that it passes
+//!   through, a sleeve its rod, a strut the crank that its spring pulls.
 //! - [`Assembly::prove`] proves how close any two bodies come at any pose that the guard accepts;
-//!   [`Assembly::find_close_pairs`] checks only some poses.
+//!   [`Assembly::find_close_pairs`] checks only the given poses.
 //! - [`Assembly::alternatives`] are bodies that may replace others: the struts of the kind that robot.toml does not
 //!   select.
 //! - [`Layout`] is the plan of pivots and anchors from above; [`lizard_robot::LegPlan`] has those of the legs.

@@ -1,5 +1,5 @@
-//! The comparison of the guard with floating point at the pairs of servo positions of every end and side, divided
-//! into pieces.
+//! Compares the guard's decisions with floating point at the pairs of servo positions of every end and side. The
+//! comparison is divided into pieces.
 
 use std::sync::OnceLock;
 
@@ -15,7 +15,7 @@ use crate::tally::{Finding, MARGIN_BAND, Tally};
 /// Number of pieces of the whole comparison: 64 for each end and each side.
 pub const PIECE_COUNT: usize = 4 * PIECES_PER_PART;
 
-/// The comparison of a robot's guard with floating point at pairs of servo positions, with the values that all pieces
+/// The comparison of a robot's guard with floating point at pairs of servo positions. Holds the values that all pieces
 /// share.
 pub struct GuardComparison<'a> {
     robot: &'a Robot,
@@ -45,12 +45,13 @@ impl<'a> GuardComparison<'a> {
 
     /// Compares the pairs of one piece, whose index is below [`PIECE_COUNT`].
     pub fn compare_piece(&self, index: usize, report_progress: &(dyn Fn(u64) + Sync)) -> Tally {
-        let (part_index, piece_index) = (index / PIECES_PER_PART, index % PIECES_PER_PART);
+        let part_index = index / PIECES_PER_PART;
+        let piece_in_part = index % PIECES_PER_PART;
         let tally_servos = |servos: [usize; 2], compare_group: &CompareGroup<'_>| {
             tally_rows(
                 servos.map(|servo| self.positions(servo)),
                 self.sample,
-                piece_index,
+                piece_in_part,
                 report_progress,
                 compare_group,
             )
@@ -98,8 +99,8 @@ pub fn compute_findings(robot: &Robot, guard: &CoreRobot, tallies: Vec<Tally>) -
     findings
 }
 
-/// The larger margin band of the two ends, and at least [`MARGIN_BAND`]: the distance from a margin's limit, a sine,
-/// within which the guard may decide differently from floating point.
+/// Returns the larger margin band of the two ends, at least [`MARGIN_BAND`]. Within this distance from a margin's
+/// limit, which is a sine, the guard may decide differently from floating point.
 pub fn widest_margin_band(robot: &Robot) -> f64 {
     let bands = End::ALL.map(|end| compute_bands(robot, end)[0]);
     bands.into_iter().fold(MARGIN_BAND, f64::max)

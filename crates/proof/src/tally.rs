@@ -3,12 +3,12 @@
 use lizard_kinematics::FiveBar;
 use serde::{Deserialize, Serialize};
 
-/// Distance from a margin's limit within which the guard may decide differently from floating point, a sine; see
+/// Distance (a sine) from a margin's limit within which the guard may decide differently from floating point; see
 /// [`margin_band`].
 pub const MARGIN_BAND: f64 = 0.002;
 
-/// Distance from a limit of a slider's stroke, or from the crossing of the crank tips, within which decisions may
-/// differ, in steps of the mechanism's lengths. A step is 1/256 mm for a robot of the paper's size.
+/// Distance from a limit of a slider's stroke, or from the position at which the crank tips cross, within which
+/// decisions may differ, in steps of the mechanism's lengths. A step is 1/256 mm for a robot of the paper's size.
 pub const LENGTH_BAND_STEPS: f64 = 4.0;
 
 /// Distance from the limit of a type-2 or type-1 margin within which decisions about an end may differ. It is
@@ -28,7 +28,7 @@ pub fn margin_band(five_bar: &FiveBar, min_type2: f64, step_mm: f64) -> f64 {
 pub struct Tally {
     /// The number of pairs of positions that were compared.
     pub pair_count: u64,
-    /// The number of pairs in a cell of the robot's maps, each of which the guard must accept.
+    /// The number of certified pairs: pairs in a cell of the robot's maps. The guard must accept each of these pairs.
     pub certified_count: u64,
     /// Largest error of the type-2 margin, a sine.
     pub max_type2_error: Option<f64>,
@@ -38,10 +38,10 @@ pub struct Tally {
     pub max_leg_error: Option<f64>,
     /// Largest error of a slider's length, mm.
     pub max_slider_error: Option<f64>,
-    /// Largest distance from a margin's limit at which the decisions differ, a sine.
+    /// Largest distance (a sine) from a margin's limit at which the decisions differ.
     pub max_margin_difference: Option<f64>,
-    /// Largest distance from a limit of a slider's stroke, or from the crossing of the crank tips, at which the
-    /// decisions differ, mm.
+    /// Largest distance from a limit of a slider's stroke, or from the position at which the crank tips cross, at
+    /// which the decisions differ, mm.
     pub max_length_difference: Option<f64>,
     /// The number of pairs outside the bands that the guard decides wrongly, plus the number of pairs in a cell that
     /// the guard rejects.
@@ -92,23 +92,23 @@ impl Tally {
         }
     }
 
-    /// Records a pair at which the decisions differ, at the distance `difference` from its limit. The pair is wrong if
-    /// `difference` exceeds `band`.
+    /// Records a pair at which the decisions differ, at `distance` from a limit: a length's limit, mm, or a margin's.
+    /// The pair is wrong if `distance` exceeds `band`.
     #[cold]
     pub fn record_difference(
         &mut self,
-        is_length_difference: bool,
-        difference: f64,
+        is_length_limit: bool,
+        distance: f64,
         band: f64,
         describe_pair: impl FnOnce() -> String,
     ) {
-        let max_difference = if is_length_difference {
+        let max_distance = if is_length_limit {
             &mut self.max_length_difference
         } else {
             &mut self.max_margin_difference
         };
-        Self::raise(max_difference, difference);
-        if difference > band {
+        Self::raise(max_distance, distance);
+        if distance > band {
             self.wrong_count += 1;
             self.example.get_or_insert_with(describe_pair);
         }

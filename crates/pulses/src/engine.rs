@@ -1,4 +1,5 @@
-//! The pulse engine: the interrupt handlers that open and close the slots.
+//! The pulse engine: its variables, and the planning of the slots. The functions that its interrupt handlers call
+//! are in `registers`.
 
 use crate::cells::{SharedByte, SharedCounter, SharedWord};
 #[cfg(any(test, target_arch = "avr"))]
@@ -16,16 +17,16 @@ pub struct Engine<'a, const SERVO_COUNT: usize, const SIZE: usize> {
     /// Two frames of pulse widths in cycles: one is played while main fills the other.
     pub frames: &'a [[SharedWord; SIZE]; 2],
     #[doc(hidden)]
-    /// The index of the frame that is played. Only the handler changes the index, and only while `has_new_frame` is 1.
+    /// The index of the frame that is played. Only TIMER1_COMPB changes it, and only while `has_new_frame` is 1.
     pub played_frame: &'a SharedByte,
     #[doc(hidden)]
-    /// 1 while the other frame is complete and waits to be taken over. Main sets this byte; the handler clears it when
-    /// taking the frame over, and main clears it to withdraw the frame.
+    /// 1 while the other frame is complete and waits to be taken over. Main sets this byte; TIMER1_COMPB clears it
+    /// when taking the frame over, and main clears it to withdraw the frame.
     pub has_new_frame: &'a SharedByte,
     #[doc(hidden)]
-    /// The plan: the number of the current slot or, between slots, of the next slot. The first slot is the tick's slot,
-    /// so that main can begin at once. TIMER1_COMPB writes the plan; TIMER1_COMPA removes a pulse whose rising edge is
-    /// late.
+    /// The plan: the number of the current slot or, between slots, of the next slot. The engine starts in the tick's
+    /// slot, so that main can begin at once. TIMER1_COMPB writes the plan, which consists of `slot`, `port`, `mask` and
+    /// `fall_count`; TIMER1_COMPA removes a pulse whose rising edge is late.
     pub slot: &'a SharedByte,
     #[doc(hidden)]
     /// The plan: the address of the pin's PORT register.
@@ -61,14 +62,14 @@ impl<const SERVO_COUNT: usize, const SIZE: usize> Engine<'_, SERVO_COUNT, SIZE> 
     /// Submits the widths of the next frame, in CPU cycles of 62.5 ns and in the order of the pins, as `u16` or as a
     /// type that converts to it.
     ///
-    /// The engine takes over all widths together, before the first slot opens. If a second frame is submitted before,
-    /// the first frame is never played, see [`Engine::is_taken`]. If no frame is submitted, the last widths repeat. A
+    /// The engine takes over all widths together, before the first slot opens. If another frame is submitted before
+    /// that, it replaces the first, see [`Engine::is_taken`]. If no frame is submitted, the last widths repeat. A
     /// width of 0, or a width that does not fit into a slot, results in no pulse, see
     /// [`MIN_WIDTH_CYCLES`](crate::MIN_WIDTH_CYCLES) and [`max_width_cycles`](crate::max_width_cycles).
     #[inline(always)]
     pub fn submit<W: Into<u16>>(&self, widths: [W; SERVO_COUNT]) {
-        // Withdraws a frame that has not been played. Until the end of this function the handler does not change
-        // `played_frame`, so the frame being filled cannot be played.
+        // Withdraws a frame that has not been played. Until the end of this function TIMER1_COMPB does not
+        // change `played_frame`, so the frame being filled cannot be played.
         self.has_new_frame.set(0);
         let frame = &self.frames[usize::from(self.played_frame.get() & 1 ^ 1)];
         for (stored_width, width) in frame.iter().zip(widths) {
@@ -81,8 +82,8 @@ impl<const SERVO_COUNT: usize, const SIZE: usize> Engine<'_, SERVO_COUNT, SIZE> 
     ///
     /// Call this function at every tick. False means that main submitted the frame late, so the frame waits for the end
     /// of this tick's slot: a frame submitted now would replace the waiting frame, and a servo would jump. If the
-    /// result is true at one of any two consecutive ticks, both handlers are running, because one counts the ticks and
-    /// the other takes the frames over.
+    /// result is true at least at every second tick, both handlers are running, because one counts the ticks and the
+    /// other takes the frames over.
     #[inline(always)]
     pub fn is_taken(&self) -> bool {
         self.has_new_frame.get() == 0
@@ -97,7 +98,7 @@ impl<const SERVO_COUNT: usize, const SIZE: usize> Engine<'_, SERVO_COUNT, SIZE> 
         self.allowed_pins.set(0);
     }
 
-    /// The number of frames since the start, modulo 256, incremented once per frame, one slot before the next frame's
+    /// The number of ticks since the start, modulo 256. A tick occurs once per frame, one slot before the next frame's
     /// first pulse.
     #[inline(always)]
     pub fn ticks(&self) -> u8 {

@@ -18,19 +18,21 @@ BANNER_PREFIX = "# lizard "
 BANNER_TIMEOUT = 3.0
 """Time limit for the banner after the port is opened, s; it includes more than 1 s for a UNO's boot loader."""
 STATUS_ATTEMPT_COUNT = 8
-"""Number of `status` lines to a board without a banner, which finds its baud rate by five; a radio may lose some."""
+"""Number of `status` lines sent to a board that sends no banner. It needs at most five to find the baud rate; a radio
+may lose the others."""
 ANSWER_TIMEOUT = 2.0
 """Time limit for an answer, s; `save` takes a third of a second."""
 RETRY_TIME = 5.0
 """Time during which an unanswered line that may be sent twice is repeated, s."""
 NO_PULSES_CODES = (7, 10)
-"""Codes of the refusals of `stop` if the servos rest or the flash has no robot."""
+"""Error codes of `stop` if there are no pulses to stop: the servos rest, or the flash has no robot."""
 STALL_TIME = 1.0
 """Time without movement after which a robot counts as stopped, s."""
 POSE_TOLERANCE = 0.02
 """Largest rounding difference between a commanded angle and the angle in `status`, deg."""
 DRIVING_DEADMAN = 901
-"""`deadman` while a program drives the robot, ms. A robot with this unusual value still has it from such a program."""
+"""`deadman` while a program drives the robot, ms. No user is likely to choose this value: a robot that has it kept it
+from an earlier program."""
 
 
 class NoAnswer(RobotError):
@@ -41,8 +43,8 @@ class Robot:
     """A robot on a serial port, which belongs to a board or to a radio module.
 
     Opening the port of a UNO resets the board. A `with` block stops the robot at its end. While a gait runs,
-    `deadman` is set, and a thread keeps the robot moving: if this program ends or the link breaks, the robot stops by
-    itself within a second.
+    `deadman`, the time after which the robot stops if it receives nothing, is set to less than a second, and a thread
+    sends lines that keep the robot moving. If this program ends or the link breaks, the robot stops by itself.
     """
 
     def __init__(self, port: str, *, baud: int = BAUD) -> None:
@@ -54,7 +56,10 @@ class Robot:
 
     @classmethod
     def simulated(cls, model: Model | None = None) -> Robot:
-        """Creates a robot on a board simulated in real time: the firmware's code without a chip and its pulses."""
+        """Creates a robot on a simulated board.
+
+        The firmware's core runs in real time on this computer, without the chip and its pulses.
+        """
         robot = cls.__new__(cls)
         robot._start(SimulatedPort((model or Model.default())._robot))
         return robot
@@ -124,7 +129,7 @@ class Robot:
         self._port.close()
 
     def go(self, name: str, cycles: int | None = None) -> None:
-        """Starts a gait or a routine by its name; with a number of cycles, waits for their end."""
+        """Starts a gait or a routine by its name; if `cycles` is given, waits until they are done."""
         line = name.replace("-", " ")
         if cycles is not None:
             line += f" {cycles}"
@@ -144,7 +149,7 @@ class Robot:
             self.wait()
 
     def walk(self, cycles: int | None = None) -> None:
-        """Starts walking; with a number of cycles, waits for their end."""
+        """Starts walking; if `cycles` is given, waits until they are done."""
         self.go("walk", cycles)
 
     def wait(self, timeout: float | None = None) -> None:

@@ -8,17 +8,18 @@ const NO_ROBOT_FAULT: &str = "robot";
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "camelCase"))]
 pub struct Status {
-    /// The name of a gait, with hyphens for spaces, or `pose`, `stop` or `rest`.
+    /// The name of the current routine or, without one, of the gait, with hyphens for spaces; without either, `pose`,
+    /// `stop` or `rest`.
     pub gait: String,
     /// Phase of the gait's cycle, 0 to 1; 0 while no gait runs.
     pub phase: f64,
     /// Servo angles, degrees, chassis frame; `None` if the flash contains no robot.
     pub pose: Option<[f64; 4]>,
-    /// Pace of the gaits, percent; `None` if the flash contains no robot.
+    /// Pace of the gaits, percent, `speed` in the answer; `None` if the flash contains no robot.
     pub pace: Option<f64>,
     /// Number of frames since power-on.
     pub frames: u64,
-    /// The smallest of the guard's margins, a sine; `None` if the flash contains no robot.
+    /// The smallest of the guard's margins, as a sine; `None` if the flash contains no robot.
     pub margin: Option<f64>,
     /// True if the guard holds the robot in its last safe pose.
     pub is_held: bool,
@@ -104,7 +105,10 @@ impl Status {
             (None, true) => line += "  HELD by the guard",
             (None, false) => line += "  no fault",
         }
-        for (count, name) in [(self.late_edges, "late"), (self.lost_bytes, "bytes lost")] {
+        for (count, name) in [
+            (self.late_edges, "late edges"),
+            (self.lost_bytes, "bytes lost"),
+        ] {
             if count > 0 {
                 line += &format!("  {count} {name}");
             }
@@ -134,7 +138,7 @@ mod tests {
 
     /// The answer of a robot that walks without a fault.
     const WALKING_STATUS: &str = "ok gait=arc-left phase=0.350 pose=138.59,41.41,318.60,221.40 \
-        margin=0.812 speed=100 frames=1234 late=0 rx_lost=2 guard=clear fault=none \
+        margin=0.812 speed=100 frames=1234 late=3 rx_lost=2 guard=clear fault=none \
         reset=external resets=3 vcc=5.02 rail=5.91";
 
     #[test]
@@ -145,7 +149,7 @@ mod tests {
         assert_eq!(status.reset_cause, "external");
         assert_eq!(status.reset_count, 3);
         let expected = "arc-left  A1..A4 138.6 41.4 318.6 221.4  margin 0.81  5.02 V  servos 5.91 V  \
-             no fault  2 bytes lost";
+             no fault  3 late edges  2 bytes lost";
         assert_eq!(status.format_line(), expected);
     }
 

@@ -13,6 +13,7 @@ void call_timer_check(struct call_timer *timer)
 {
 	const avr_t *avr = timer->handlers->avr;
 	uint16_t sp = avr->data[R_SPL] | avr->data[R_SPH] << 8;
+	/* A return pops the two bytes of the address. */
 	if (timer->is_in_call && avr->pc == timer->return_address && sp == timer->stack_pointer + 2) {
 		uint64_t interrupt_cycles =
 			handlers_cycles(timer->handlers) - timer->handler_cycles_at_entry;
@@ -20,7 +21,8 @@ void call_timer_check(struct call_timer *timer)
 		          &(struct call){ timer->enter_cycle, avr->cycle, interrupt_cycles });
 		timer->is_in_call = false;
 	} else if (!timer->is_in_call && avr->pc == timer->entry_address) {
-		/* The firmware may have set any stack pointer, so the address may wrap. */
+		/* The stack has a word address, high byte first. The firmware may have set any stack
+		   pointer, so the address may wrap. */
 		uint8_t high = avr->data[(uint16_t)(sp + 1)], low = avr->data[(uint16_t)(sp + 2)];
 		timer->return_address = (high << 8 | low) << 1;
 		timer->stack_pointer = sp;

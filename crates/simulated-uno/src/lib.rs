@@ -1,7 +1,7 @@
 //! An Arduino UNO for tests: an ATmega328P at 16 MHz, simulated by libsimavr, with an oscilloscope on its pins and a
 //! sender on its serial line.
 //!
-//! Firmware cannot run on the machine that compiles it. A board on the desk has no cycle counter, does not show its
+//! Firmware cannot run on the machine that compiles it, and a board on the desk has no cycle counter, does not show its
 //! stack, and cannot run faster than real time. The simulation counts time in CPU cycles and runs as fast as the host
 //! can compute. The same firmware with the same input always gives the same edges, to the cycle. Only [`Port`] runs in
 //! real time, for programs that expect a board on USB.

@@ -12,7 +12,7 @@ use crate::variation::{Variation, compute_quantiles};
 const AMPLITUDE_BOUNDS: (f64, f64) = (5.0, 80.0);
 /// The servos of the random robots. Their dead band reduces small strides by a larger fraction than large strides.
 const SERVO_MODEL: ServoModel = ServoModel::SG90;
-/// Period at which the servo speed is measured first, s: no servo exceeds its speed limit.
+/// First period that is tried, s; so long that no servo exceeds its speed limit.
 const SLOW_PERIOD_S: f64 = 3.0;
 /// Number of iterations that fit the period to the servo speed.
 const PERIOD_ITERATIONS: usize = 3;
@@ -59,8 +59,8 @@ impl BuiltGait {
             .or(shortest_gait)
     }
 
-    /// Finds the largest amplitude, deg, of a wave gait within the robot's limits, with the first start parameters of
-    /// the search.
+    /// Finds the largest amplitude, deg, of a wave gait within the robot's limits, with the parameters at which
+    /// the search for a wave gait begins.
     pub(crate) fn find_max_amplitude(robot: &Robot, goal: Goal, max_rate: f64) -> f64 {
         let is_within_limits = |max_amplitude: f64| {
             let parameters = &GaitKind::Wave.start_parameters()[0];
@@ -81,7 +81,7 @@ impl BuiltGait {
 
     /// The checked gait.
     pub fn gait(&self) -> &CheckedGait {
-        // The first gait is `stand`.
+        // The built gait follows `stand`, so it is the last.
         self.robot.gaits().last().unwrap_or(&self.robot.gaits()[0])
     }
 
@@ -143,7 +143,7 @@ impl Scorer {
         self.compute_speed(&Variation::nominal(&self.ground), gait, period)
     }
 
-    /// Simulates a cycle frame by frame with the servos [`SERVO_MODEL`], and computes the speed, mm/s or deg/s.
+    /// Simulates a cycle frame by frame with servos of [`SERVO_MODEL`], and computes the speed, mm/s or deg/s.
     fn compute_speed(&self, variation: &Variation, gait: &CheckedGait, period: f64) -> f64 {
         let movement = variation.simulate_cycle(&self.robot, gait, SERVO_MODEL);
         self.goal.progress(&movement) / period
@@ -160,7 +160,7 @@ impl Scorer {
     }
 
     /// Computes the speed that the gait exceeds on 95 % of the random robots. Returns `None` if the movement of the
-    /// robot without variation has a component in another direction than the goal's.
+    /// robot without variation has a component in a direction other than the goal's.
     pub fn score(&self, gait: &CheckedGait) -> Option<f64> {
         // The direction is checked in fine steps. If the period is not a whole number of frames, a simulation by frames
         // does not include the end of the cycle, so it would show a sideways movement.
@@ -189,7 +189,7 @@ mod tests {
 
     #[test]
     fn the_leg_margin_limits_the_amplitude_of_the_papers_robot() {
-        // sin(41.41 deg - amplitude) = 0.3.
+        // The limit of the leg margin: sin(41.41 deg - amplitude) = 0.3.
         let max_amplitude =
             BuiltGait::find_max_amplitude(&paper_robot(), Goal::Straight(1.0), 262.0);
         assert!(
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_built_gait_uses_at_least_97_percent_of_the_allowed_servo_speed() {
+    fn a_built_gait_uses_more_than_97_percent_of_the_allowed_servo_speed() {
         let robot = paper_robot();
         let bars = plan_wave_gait(45.0, 0.375);
         for rate in [150.0, 262.2, 300.0] {

@@ -33,6 +33,9 @@ pub struct Image {
 /// The address of a robot's section.
 pub(crate) const ROBOT_ADDRESS: usize = START_ADDRESS as usize;
 
+/// Number of bytes between the robot's address and the boot loader.
+const MAX_ROBOT_BYTES: usize = BOOT_ADDRESS - ROBOT_ADDRESS;
+
 const _: () = assert!(
     ROBOT_ADDRESS.is_multiple_of(PAGE_BYTES),
     "the robot's section starts at a page"
@@ -47,7 +50,7 @@ pub struct Page {
     pub bytes: [u8; PAGE_BYTES],
 }
 
-/// The error of bytes that are not a valid image.
+/// The reason why bytes are not a valid image.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ImageError {
     /// There is no code at address 0, where the chip starts.
@@ -59,6 +62,15 @@ pub enum ImageError {
     /// The image reaches into the boot loader.
     #[error("the firmware has {0} bytes, but at most {BOOT_ADDRESS} fit before the boot loader")]
     TooLong(usize),
+    /// The firmware's code reaches into the robot's section.
+    #[error("the code has {0} bytes, but at most {ROBOT_ADDRESS} fit before the robot's section")]
+    CodeTooLong(usize),
+    /// The robot's section, without code, reaches into the boot loader.
+    #[error(
+        "the robot's section has {0} bytes, but at most {MAX_ROBOT_BYTES} fit before the boot \
+         loader"
+    )]
+    RobotTooLong(usize),
     /// A line is not Intel HEX.
     #[error("line {line} is not Intel HEX: {reason}")]
     InvalidLine {
@@ -114,7 +126,7 @@ impl Image {
     pub fn firmware(code: &str, section: &[u8]) -> Result<Self, ImageError> {
         let mut bytes = Self::from_hex(code)?.bytes;
         if bytes.len() > ROBOT_ADDRESS {
-            return Err(ImageError::TooLong(bytes.len()));
+            return Err(ImageError::CodeTooLong(bytes.len()));
         }
         bytes.resize(ROBOT_ADDRESS, BLANK);
         bytes.extend(section);
@@ -126,13 +138,13 @@ impl Image {
     /// # Errors
     /// Fails if the section is empty or too long.
     pub fn robot_alone(section: Vec<u8>) -> Result<Self, ImageError> {
-        match ROBOT_ADDRESS + section.len() {
-            ROBOT_ADDRESS => Err(ImageError::NoRobot),
-            end if end > BOOT_ADDRESS => Err(ImageError::TooLong(end)),
-            _ => Ok(Self {
+        match section.len() {
+            0 => Err(ImageError::NoRobot),
+            1..=MAX_ROBOT_BYTES => Ok(Self {
                 start_address: ROBOT_ADDRESS,
                 bytes: section,
             }),
+            length => Err(ImageError::RobotTooLong(length)),
         }
     }
 
@@ -183,7 +195,7 @@ impl Image {
     /// Formats the image as Intel HEX.
     ///
     /// # Panics
-    /// Never: all addresses have 16 bits, and lines are short.
+    /// Never: all addresses fit in 16 bits, and lines are short.
     pub fn to_hex(&self) -> String {
         let lines = self.bytes.chunks(LINE_BYTES).enumerate();
         let records = lines.map(|(index, line)| Record::Data {
@@ -305,7 +317,11 @@ mod tests {
         assert!(robot.to_hex().starts_with(":106E0000"));
         assert_eq!(Image::robot_alone(Vec::new()), Err(ImageError::NoRobot));
         assert!(Image::robot_alone(vec![0; 0x1000]).is_ok());
-        assert!(Image::robot_alone(vec![0; 0x1001]).is_err());
+        let error = Image::robot_alone(vec![0; 0x1001]).expect_err("the section is too long");
+        assert_eq!(
+            error.to_string(),
+            "the robot's section has 4097 bytes, but at most 4096 fit before the boot loader"
+        );
     }
 
     #[test]
@@ -317,6 +333,21 @@ mod tests {
         );
         assert!(Image::new(vec![0; 32_256]).is_ok());
         assert_eq!(Image::new(Vec::new()), Err(ImageError::NoStart));
+    }
+
+    #[test]
+    fn the_error_for_code_that_reaches_into_the_robots_section_has_its_size() {
+        let code = |byte_count: usize| {
+            let image = Image::new(vec![5; byte_count]).expect("the code fits without a robot");
+            image.to_hex()
+        };
+        let error = Image::firmware(&code(28_161), &[7]).expect_err("the code is too long");
+        assert_eq!(
+            error.to_string(),
+            "the code has 28161 bytes, but at most 28160 fit before the robot's section"
+        );
+        let image = Image::firmware(&code(28_160), &[7]).expect("the code fits");
+        assert_eq!(image.bytes()[28_159..], [5, 7]);
     }
 
     #[test]

@@ -27,14 +27,14 @@ impl Frame {
     pub fn from_rgba(width: usize, height: usize, pixels: &[u8]) -> Option<Self> {
         let (pixels, remainder) = pixels.as_chunks::<4>();
         let to_grey = |&[red, green, blue, _]: &[u8; 4]| luminance(red, green, blue);
-        let grey = pixels.iter().map(to_grey);
-        remainder
-            .is_empty()
-            .then(|| Self::new(width, height, grey.collect()))?
+        if !remainder.is_empty() {
+            return None;
+        }
+        Self::new(width, height, pixels.iter().map(to_grey).collect())
     }
 
-    /// Returns the rectangle between two corners, of which the second is exclusive; `None` if the rectangle is empty or
-    /// extends beyond the frame.
+    /// Returns the part of the frame from `[left, top]` up to, but without, `[right, bottom]`; `None` if the part is
+    /// empty or extends beyond the frame.
     pub(crate) fn crop(
         &self,
         [left, top]: [usize; 2],

@@ -3,7 +3,7 @@
 //! A camera looks down on the robot from any direction. Tags on the floor show the camera's pose, and a tag at a known
 //! height on the robot's deck shows the robot's pose. [`sheet`] defines the printed sheet of tags.
 //! - [`Video::add_frame`] detects the tags in each frame (`tags.rs`).
-//! - [`Video::analyse`] finds the camera (`scene.rs`) and the robot's path (`path.rs`).
+//! - [`Video::analyse`] finds the camera's pose (`scene.rs`) and the robot's path (`path.rs`).
 //! - [`AnalysedVideo::find_walks`] finds the walks between the robot's rests (`walks.rs`).
 //! - [`AnalysedVideo::match_gait`] finds the gait of a walk (`gait_match.rs`).
 //! - [`AnalysedVideo::measure`] computes a walk's cycles (`cycles.rs`, `cycle_timing.rs`), their mean with its error

@@ -190,7 +190,7 @@ fn add_relative_error(estimate: Estimate, relative_sigma: f64) -> Estimate {
 /// Fits gain and hysteresis to the angles at which the horn rests in the visited poses; `None` if too few of these
 /// angles are visible. Moves of the same length lead to all these poses, so the horn stops in the same way.
 fn fit_gain_and_hysteresis(commands: &[ServoCommand], rests: &[Rest]) -> Option<[Estimate; 2]> {
-    let visits: Vec<(f64, f64, f64)> = servo_commands::visit_indices()
+    let visits: Vec<(f64, f64, f64)> = servo_commands::visited_pose_indices()
         .filter_map(|i| {
             let (previous, current) = (commands[i - 1].pulse_angle(), commands[i].pulse_angle());
             let direction = (current - previous).signum();

@@ -1,21 +1,23 @@
 //! The commands that turn a servo in the jig; both the sender and the measurement use this list.
 //!
-//! A servo shows its rate only if its pulse width changes faster than it turns. A move to a pose is too smooth for
-//! that, but reversing the servo's direction (console command `dir`) moves the pulse to the other side of neutral at
-//! the slew limit. These are the large steps. Then the servo visits the same angles from both sides. At the end, small
-//! steps grow until the servo reacts.
+//! A servo shows its rate only if its pulse width changes faster than the servo can turn. A move to a pose is too
+//! smooth for that, but reversing the servo's direction (console command `dir`) moves the pulse to the other side of
+//! neutral at the slew limit. Such reversals are the large steps. Then the servo visits the same angles from both
+//! sides. At the end, small steps grow until the servo reacts.
 
 use std::ops::Range;
 
 /// Time from one command to the next, s.
 pub const COMMAND_INTERVAL: f64 = 1.0;
-/// Half of a large step, deg from neutral.
+/// The angle between neutral and each end of a large step, deg.
 const HALF_LARGE_STEP: f64 = 30.0;
+/// Number of commands before the large steps.
+const START_COMMAND_COUNT: usize = 2;
 /// Number of large steps.
 const LARGE_STEP_COUNT: usize = 8;
-/// The poses at which the servo's angle is measured: deg from neutral, and true if the direction is reversed. They
-/// lead twice from one side to the other and back, in steps of 15 deg. The direction is reversed at neutral, where
-/// this does not move the servo.
+/// The poses at which the servo's angle is measured: deg from neutral, and true if the direction is reversed. In
+/// them, the servo turns twice from one side to the other and back, in steps of 15 deg. The direction is reversed at
+/// neutral, where this does not move the servo.
 #[rustfmt::skip]
 const VISITED_POSES: [(f64, bool); 19] = [
     (15.0, false), (0.0, false),
@@ -24,7 +26,7 @@ const VISITED_POSES: [(f64, bool); 19] = [
     (0.0, true), (15.0, true), (30.0, true), (15.0, true), (0.0, true),
     (0.0, false), (15.0, false),
 ];
-/// Sizes of the small steps, deg: each step leads from the last visited pose toward neutral and back.
+/// Sizes of the small steps, deg: each is a move from the last visited pose toward neutral, followed by the move back.
 const SMALL_STEP_SIZES: [f64; 10] = [0.2, 0.4, 0.6, 0.8, 1.0, 1.25, 1.6, 2.0, 2.5, 3.0];
 
 /// A command to the servo: a pose and a direction.
@@ -67,17 +69,17 @@ pub fn list_commands(side: f64) -> Vec<ServoCommand> {
 
 /// Returns the indices of the commands for the large steps.
 pub(crate) fn large_step_indices() -> Range<usize> {
-    2..2 + LARGE_STEP_COUNT
+    START_COMMAND_COUNT..START_COMMAND_COUNT + LARGE_STEP_COUNT
 }
 
 /// Returns the indices of the commands for the visited poses.
-pub(crate) fn visit_indices() -> Range<usize> {
+pub(crate) fn visited_pose_indices() -> Range<usize> {
     large_step_indices().end..large_step_indices().end + VISITED_POSES.len()
 }
 
 /// Returns the indices of the commands for the small steps.
 pub(crate) fn small_step_indices() -> Range<usize> {
-    let begin = visit_indices().end;
+    let begin = visited_pose_indices().end;
     begin..begin + 2 * SMALL_STEP_SIZES.len()
 }
 
@@ -108,7 +110,8 @@ mod tests {
 
     #[test]
     fn the_first_small_step_reverses_the_direction_of_the_last_visit() {
-        let (commands, first_small_step) = (list_commands(1.0), small_step_indices().start);
+        let commands = list_commands(1.0);
+        let first_small_step = small_step_indices().start;
         let [last_visit, small_step] =
             [first_small_step - 1, first_small_step].map(|index| step_size(&commands, index));
         assert!(last_visit * small_step < 0.0);

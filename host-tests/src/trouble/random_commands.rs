@@ -1,5 +1,5 @@
-//! Random commands, and the random settings of a scenario before its fault. The settings are saved or unsaved trims,
-//! scales and directions of servos, the gait after power-on, the `deadman` time, or a servo's travel.
+//! Random commands, and the random settings that a scenario makes before its fault. The settings are saved or unsaved
+//! trims, scales and directions of servos, the gait after power-on, the `deadman` time, or a servo's travel.
 
 use fastrand::Rng;
 use lizard_host::patrol::PATROL;
@@ -9,7 +9,7 @@ use lizard_robot::{Robot, to_command};
 use super::record::MS;
 use super::step::Step;
 
-/// Returns the command for a random gait that moves.
+/// Returns the command for a random gait that moves, or `stand` if no gait moves.
 pub fn random_gait(rng: &mut Rng, robot: &Robot) -> String {
     let gaits = gait_choice::list_moving_gaits(robot);
     to_command(rng.choice(&gaits).unwrap_or(&"stand"))
@@ -75,15 +75,15 @@ pub fn random_settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
         6 => vec![say(format!("deadman {}", rng.u16(100..2_000)))],
         // The saved travel is narrower than the travel in use.
         7 => {
-            let servo = rng.usize(0..4);
+            let servo_index = rng.usize(0..4);
             let mut angles = robot.servos().map(|servo| servo.neutral);
-            let neutral = angles[servo];
+            let neutral = angles[servo_index];
             // The gaits need 23 degrees of travel. Beyond 23.9 degrees, the margin of a leg is too small.
             let [min, max] = [-23.2, 23.2].map(|sweep| (neutral + sweep).rem_euclid(360.0));
             let sweep = if rng.bool() { 23.7 } else { -23.7 };
-            angles[servo] = (neutral + sweep).rem_euclid(360.0);
+            angles[servo_index] = (neutral + sweep).rem_euclid(360.0);
             vec![
-                say(format!("limit {} {min:.2} {max:.2}", servo + 1)),
+                say(format!("limit {} {min:.2} {max:.2}", servo_index + 1)),
                 say("save"),
                 say("factory"),
                 wait(200),

@@ -1,5 +1,5 @@
-//! Generator of nearly valid console lines: every command with arguments near its ranges, often with up to three
-//! changed bytes.
+//! Generator of nearly valid console lines: all commands, with arguments within or slightly beyond their ranges, often
+//! with up to three random changes. A change inserts, removes or alters a byte, or cuts the line.
 
 use fastrand::Rng;
 use lizard_core::console::word::Word;
@@ -25,11 +25,11 @@ fn random_angle(rng: &mut Rng, servo: usize) -> String {
 }
 
 /// Returns a random line that is valid except that its numbers may be out of range.
-fn random_line(rng: &mut Rng) -> String {
+fn random_valid_line(rng: &mut Rng) -> String {
     let gaits = robot().gaits();
     let random_gait = |rng: &mut Rng| gaits[rng.usize(..gaits.len())].command();
-    let index = rng.usize(..4);
-    let servo = index + 1;
+    let servo_index = rng.usize(..4);
+    let servo_number = servo_index + 1;
     match rng.u8(..24) {
         0..5 => random_gait(rng),
         5 => "stop".into(),
@@ -48,13 +48,16 @@ fn random_line(rng: &mut Rng) -> String {
             1 => "cal".into(),
             _ => "status".into(),
         },
-        14 | 15 => format!("trim {servo} {}", random_number(rng, -20.0, 20.0)),
+        14 | 15 => format!("trim {servo_number} {}", random_number(rng, -20.0, 20.0)),
         16 => {
-            let min = random_angle(rng, index);
-            format!("limit {servo} {min} {}", random_angle(rng, index))
+            let min = random_angle(rng, servo_index);
+            format!(
+                "limit {servo_number} {min} {}",
+                random_angle(rng, servo_index)
+            )
         }
-        17 => format!("dir {servo} {}", ['+', '-'][rng.usize(..2)]),
-        18 => format!("scale {servo} {}", random_number(rng, 5.0, 20.0)),
+        17 => format!("dir {servo_number} {}", ['+', '-'][rng.usize(..2)]),
+        18 => format!("scale {servo_number} {}", random_number(rng, 5.0, 20.0)),
         19 => rng
             .choice(Word::ALL)
             .expect("the console has commands")
@@ -70,13 +73,16 @@ fn random_line(rng: &mut Rng) -> String {
 
 /// Returns a random nearly valid line without its line end.
 pub fn nearly_valid_line(rng: &mut Rng) -> Vec<u8> {
-    let mut bytes = random_line(rng).into_bytes();
-    for _ in 0..[0, 0, 0, 1, 1, 2, 3][rng.usize(..7)] {
+    let mut bytes = random_valid_line(rng).into_bytes();
+    let change_count = [0, 0, 0, 1, 1, 2, 3][rng.usize(..7)];
+    for _ in 0..change_count {
         let offset = rng.usize(..=bytes.len());
         match rng.u8(..5) {
             0 => bytes.insert(offset, rng.u8(..)),
             1 => bytes.insert(offset, b" .-+0159\x08\t"[rng.usize(..10)]),
-            2 if offset < bytes.len() => _ = bytes.remove(offset),
+            2 if offset < bytes.len() => {
+                bytes.remove(offset);
+            }
             3 if offset < bytes.len() => bytes[offset] ^= 1 << rng.u8(..8),
             _ => bytes.truncate(offset),
         }

@@ -1,4 +1,4 @@
-//! Reader and writer of an object file, which finds the functions, shrinks them, and writes the new file.
+//! Shrinks the functions of an object file: reads the file, edits the code, and writes the new file.
 
 use object::build::elf::{Builder, Relocation, Section, SectionData, SectionId, SymbolId};
 use object::elf;
@@ -15,9 +15,9 @@ mod layout;
 pub struct Savings {
     /// The bytes saved by shared prologues and epilogues, before the linker shortens most of the new calls.
     pub frame_bytes: i64,
-    /// The bytes saved by opposite branches.
+    /// The bytes saved by replacing a branch over a jump with the opposite branch, see [`branch`].
     pub branch_bytes: i64,
-    /// The bytes saved by functions near their callers, estimated before linking.
+    /// The bytes saved by placing functions near their callers, which short calls then reach, estimated before linking.
     pub call_bytes: i64,
 }
 
@@ -66,7 +66,8 @@ impl Object<'_> {
         }
     }
 
-    /// Adds symbols for the routines of [`LOWEST_REGISTERS`], which are in another object.
+    /// Adds symbols for the routines of [`LOWEST_REGISTERS`], which are in another object, and returns them in
+    /// the same order.
     fn add_routine_symbols(&mut self) -> Vec<Routines> {
         let mut add_undefined = |name: String| {
             let symbol = self.0.symbols.add();
@@ -174,8 +175,8 @@ impl Object<'_> {
         let own_symbols = symbols.filter(|symbol| symbol.section == Some(section));
         let symbol_values = own_symbols.map(|symbol| (symbol.id(), symbol.st_value));
         let symbol_values: Vec<(SymbolId, u64)> = symbol_values.collect();
-        // An addend changes by the difference between the shifts of its target and its symbol. The addend of a symbol
-        // outside the section stays.
+        // If the edits move the target by a bytes and the symbol by b bytes, the addend changes by a - b. The addend of
+        // a symbol in another section does not change.
         let new_addend = |reference: &Relocation| {
             let mut values = symbol_values.iter();
             let (_, value) = values.find(|(id, _)| Some(*id) == reference.symbol)?;

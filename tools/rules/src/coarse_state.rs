@@ -5,7 +5,7 @@ use std::fmt;
 use crate::event::{MS, Time};
 use crate::observer::Observer;
 
-/// Rounds an age down to one of a few classes. Returns the smallest number of frames in the class.
+/// Rounds an age down to the start of its class, in frames.
 const fn rounded_age_frames(age: Time) -> u8 {
     match age / (20 * MS) {
         ..=0 => 0,

@@ -1,11 +1,11 @@
-//! The safety rules: a list of sentences on which a user may rely, and an observer that checks a robot against them.
+//! The safety rules: promises to the user, each in one sentence, and an observer that checks a robot against them.
 //!
 //! Three tools test these rules: the model checker (`tools/explore`), the search with combined faults on the simulated
 //! UNO (`make trouble`) and the fuzzer (`tools/fuzz`). Each tool converts its robot's behaviour to a sequence of
 //! [`Event`]s with times, and the [`Observer`] checks these events. The observer sees no internal state of the robot,
-//! only lines, pulses, resets, the supply and writes to the EEPROM.
+//! only lines of text, pulses, resets, the supply and writes to the EEPROM.
 //!
-//! [`Rule`] also lists rules about the internal state. Only tools that see the internal state check these rules.
+//! A few rules of [`Rule`] concern the internal state; only tools that see it check them.
 
 mod answers;
 mod coarse_state;

@@ -17,13 +17,15 @@ const NAME_PREFIXES = ['HM', 'BT05', 'MLT-BT05', 'CC41', 'AT-09', 'JDY'];
 const MAX_PACKET_BYTES = 20;
 /** Time between two attempts to reconnect, ms. */
 const RETRY_MS = 500;
+/** Time that `close` allows for earlier writes, ms. */
+const CLOSE_TIMEOUT_MS = 500;
 
 /** Web Bluetooth; undefined in a browser without it. */
 const bluetooth = navigator.bluetooth as Bluetooth | undefined;
-const isApple = /iPhone|iPad/.test(navigator.userAgent) || (navigator.platform === 'MacIntel' && navigator.maxTouchPoints > 1);
+const isIos = /iPhone|iPad/.test(navigator.userAgent) || (navigator.platform === 'MacIntel' && navigator.maxTouchPoints > 1);
 /** Advice for a user whose iPhone or iPad has no Web Bluetooth; null on another device or browser. */
 export const IPHONE_ADVICE =
-  isApple && !bluetooth ? 'On an iPhone or iPad, neither Safari nor Chrome can connect to a robot. The browser Bluefy can, through a Bluetooth LE module.' : null;
+  isIos && !bluetooth ? 'On an iPhone or iPad, neither Safari nor Chrome can connect to a robot. The browser Bluefy can, through a Bluetooth LE module.' : null;
 
 const NO_BLUETOOTH_MESSAGE = 'This browser cannot connect to a Bluetooth LE module. Chrome and Edge can, on localhost and over https; on Linux only with the flag "Experimental Web Platform features".';
 
@@ -54,7 +56,7 @@ export class BluetoothLink implements Link {
     return `board at ${this.device.name || 'a Bluetooth module'}`;
   }
 
-  /** Connects to a module that the user picks; null if the user picks none. Throws an error for the user. */
+  /** Connects to a module that the user picks; null if the user picks none. Throws an error whose message is for the user. */
   static async open(): Promise<BluetoothLink | null> {
     if (!bluetooth) throw new Error(findBluetoothProblem() ?? '');
     // False without a radio, and also if the page may not use the radio.
@@ -62,8 +64,8 @@ export class BluetoothLink implements Link {
     const filters = [...SERIAL_SERVICES.map(({ service }) => ({ services: [service] })), ...NAME_PREFIXES.map((namePrefix) => ({ namePrefix }))];
     const request = bluetooth.requestDevice({ filters, optionalServices: SERIAL_SERVICES.map(({ service }) => service) });
     const device = await request.catch((error: unknown) => {
-      // Closing the chooser without a choice and missing permission of the system give the same error with different
-      // messages.
+      // The browser reports the same error if the user closes the chooser and if the system denies permission; only the
+      // messages differ.
       const isNotFound = error instanceof DOMException && error.name === 'NotFoundError';
       if (isNotFound && !isAvailable) throw new Error('Bluetooth is missing on this machine, or it is switched off.');
       if (isNotFound && !/permission|denied/i.test(error.message)) return null;
@@ -94,7 +96,7 @@ export class BluetoothLink implements Link {
   }
 
   private async reconnect(): Promise<void> {
-    // `open` reports a module that was never reached.
+    // If the first connection fails, `open` reports it.
     if (this.isClosing || !this.writeCharacteristic) return;
     this.writeCharacteristic = null;
     this.onRange(false);
@@ -124,7 +126,7 @@ export class BluetoothLink implements Link {
   async close(): Promise<void> {
     this.isClosing = true;
     // Earlier writes are sent first, unless this takes too long.
-    await Promise.race([this.pendingWrites.catch(() => {}), sleep(RETRY_MS)]);
+    await Promise.race([this.pendingWrites.catch(() => {}), sleep(CLOSE_TIMEOUT_MS)]);
     this.gatt.disconnect();
   }
 }

@@ -8,7 +8,7 @@ import { element, make, note, table } from './elements';
 /** Pixels of the PNG per unit of the SVG. */
 const PNG_SCALE = 2;
 
-/** Sets the results up; returns the function that shows the results of gaits, or hides the results if there are none. */
+/** Sets the buttons up; returns a function that shows the given reports, or hides the section if there are none. */
 export function setUpResults(session: Session): (gaits: Report[]) => void {
   let gaits: Report[] = [];
   const drawPicture = () => drawResults(session.description.name, gaits);

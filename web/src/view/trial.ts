@@ -17,10 +17,10 @@ export interface GaitEditorAccess {
   change(key: GaitParameter, value: number): void;
 }
 
-/** Formats a number with a unit, never as -0.0; null stands for an uncertain displacement. */
+/** Formats a number with a unit, never as -0.0; null is the displacement of a robot that may drift. */
 const formatNumber = (value: number | null, unit: string) => (value === null ? 'may drift' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
 
-/** Formats the results of a trial; `unit` is the unit of the speed: mm/s for walking, otherwise deg/s for turning. */
+/** Formats the results of a trial; `unit` is the unit of the speed: mm/s for walking, otherwise °/s for turning. */
 export function formatResults({ forward, turn, period, margin_name, min_margin, margin_limit, fastest_servo, max_servo_speed }: Trial, unit = 'mm/s') {
   const [displacement, speedUnit] = unit === 'mm/s' ? [forward, ' mm/s'] : [turn, ' °/s'];
   return {

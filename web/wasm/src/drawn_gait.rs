@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_offers_the_nearest_valid_size_and_the_nearest_valid_period() {
+    fn a_circle_that_is_too_large_is_offered_the_nearest_valid_size() {
         let (robot, twin) = load_paper_robot_and_twin();
         let drawn_gait = make_circular_gait(&robot, End::Head, 40.0);
         let try_gait = |drawn_gait: &DrawnGait| {
@@ -228,6 +228,15 @@ mod tests {
         let is_valid = |drawn_gait: DrawnGait| try_gait(&drawn_gait).is_ok();
         assert!(is_valid(with_size(value)), "{value}");
         assert!(!is_valid(with_size(value + 0.01)), "{value}");
+    }
+
+    #[test]
+    fn a_gait_that_is_too_fast_is_offered_the_nearest_valid_period() {
+        let (robot, twin) = load_paper_robot_and_twin();
+        let try_gait = |drawn_gait: &DrawnGait| {
+            let edited_gait = EditedGait::DrawnGait(drawn_gait.clone());
+            edited_gait.try_on(&twin).expect("the line has a length")
+        };
         let fast_gait = DrawnGait {
             period: 0.2,
             ..make_circular_gait(&robot, End::Head, 8.0)
@@ -240,6 +249,7 @@ mod tests {
             period,
             ..fast_gait.clone()
         };
+        let is_valid = |drawn_gait: DrawnGait| try_gait(&drawn_gait).is_ok();
         assert!(is_valid(with_period(slow_period)), "{slow_period} s");
         let is_faster_valid = is_valid(with_period(slow_period - 0.01));
         assert!(!is_faster_valid, "{slow_period} s");

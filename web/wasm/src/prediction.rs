@@ -37,7 +37,7 @@ impl From<Prediction> for Displacement {
     }
 }
 
-/// Number of steps of the page's pace slider up to the gait's nominal pace.
+/// Number of paces for which the load is predicted: the steps of the page's pace slider up to the gait's nominal pace.
 const PACE_COUNT: usize = 20;
 
 /// The prediction of a cycle of a gait.
@@ -65,6 +65,7 @@ impl GaitPrediction {
         let mut prediction = effect.map_or_else(|| gait.predict(ground), |effect| effect.movement);
         let mut utilisations = None;
         if let ServoModel::Motors(motors) = twin.servo_model() {
+            // The simulated travel replaces the components that can be predicted.
             prediction = prediction.keep_determined(twin.simulate_cycle(gait).travel());
             let effort = Effort::simulate(gait, ground, &motors);
             let utilisation =

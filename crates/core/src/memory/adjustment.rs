@@ -1,8 +1,8 @@
 //! The settings of a servo that the user may change while the robot runs.
 //!
 //! A horn fits on its spline only every 14 degrees, servos of one type differ in their gain, and some servos are
-//! mounted upside down. Therefore the user determines the four numbers of an adjustment on the assembled robot, which
-//! stores them in its EEPROM.
+//! mounted upside down. Therefore the user determines the four numbers of an adjustment on the assembled robot. The
+//! robot stores them in its EEPROM.
 
 use lizard_avr::mul_unsigned;
 
@@ -49,7 +49,7 @@ impl Adjustment {
         let mut servo = Calibration {
             neutral_width: factory.neutral_width,
             gain: self.gain,
-            // An empty travel, for a trim with which even the neutral angle's pulse is not allowed.
+            // An empty travel, which remains if the trim moves even the neutral pulse outside the limits.
             travel_min: Sweep(1),
             travel_max: Sweep(-1),
         };

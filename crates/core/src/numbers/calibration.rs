@@ -1,7 +1,7 @@
 //! A servo's calibration: the relation between its pulses and its angles.
 //!
 //! Servos of one type differ, and a horn fits on its spline only every 14 degrees. Therefore the calibration is not a
-//! constant of the robot but a value of the motion, which is computed from robot.toml and the user's adjustment
+//! constant of the robot but part of the motion's state, which is computed from robot.toml and the user's adjustment
 //! ([`crate::memory::adjustment`]).
 
 use lizard_avr::{mul, mul_unsigned};
@@ -54,8 +54,8 @@ impl Calibration {
         (mul(sweep.0, self.gain) + (1 << 13)) >> 14
     }
 
-    /// Computes the largest change of the pulse width in a frame, at least one CPU cycle, if the servo may turn by at
-    /// most `per_frame`, 1/65536 turn.
+    /// Computes how much the pulse width may change in a frame in which the servo may turn by at most `per_frame`, in
+    /// 1/65536 turn. The result is at least one CPU cycle.
     pub fn max_width_change(&self, per_frame: u16) -> u16 {
         let cycles = (mul_unsigned(per_frame, self.gain.unsigned_abs()) >> 14) as u16;
         cycles.max(1)
@@ -102,8 +102,8 @@ mod tests {
                     let turn_deg = f64::from(sweep) / STEPS_PER_DEGREE;
                     let us = exact_servo.neutral_us + exact_servo.us_per_degree * turn_deg;
                     let width = f64::from(servo.width(Sweep(sweep)).0);
-                    // Half a cycle for the rounding of each of the neutral width and this width, and the effect of the
-                    // gain's rounding over half a turn.
+                    // Half a cycle each for the rounding of the neutral width and of this width; the rest for the
+                    // effect of the gain's rounding over half a turn.
                     prop_assert!((width - 16.0 * us).abs() <= 2.0, "{exact_servo:?} at {sweep}: {width}");
                 }
                 prop_assert_eq!(servo.width(Sweep(0)), servo.neutral_width);

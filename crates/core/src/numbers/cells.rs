@@ -5,7 +5,7 @@
 //! condition of the guard depends on one or two servos, so four small maps over pairs of servos can mark these safe
 //! ranges. The host makes the maps from a robot's numbers, and proves that the integer arithmetic of
 //! [`crate::guard::clearance`] accepts every pose in every cell. A pose outside the cells is not necessarily unsafe;
-//! the device measures it.
+//! the guard measures it.
 
 use lizard_avr::{Flash, flash};
 
@@ -68,8 +68,8 @@ impl<'a> CellMap<'a> {
         Self::from_rows(first_row, 0, rows.len() as u8, rows)
     }
 
-    /// True if a cell contains this pair of sweeps: `row` selects the row, `column` the column. A column that is a
-    /// quarter of a turn or more from neutral is in no cell, because its number does not fit into an `i8`.
+    /// True if a cell contains this pair of sweeps: `row` selects the row, `column` the column. A column sweep
+    /// outside -16 384..=16 383, a quarter of a turn, is in no cell, because its number does not fit into an `i8`.
     #[inline(always)]
     pub fn contains(&self, row: Sweep, column: Sweep) -> bool {
         let row = ((row.0 >> ROW_BITS) as i8).wrapping_sub(self.first_row) as u8;

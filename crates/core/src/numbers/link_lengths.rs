@@ -7,12 +7,12 @@ use crate::numbers::units::Scale;
 /// The upper limit, in steps, of the sum of base and cranks (l0 + l1 + l4 in the paper) and of each coupler.
 pub const MAX_LENGTH_STEPS: f64 = 127.0 * 256.0;
 
-/// The smallest allowed length of a coupler, in steps.
+/// The smallest allowed length of a coupler, in steps, so that 2^27 divided by it fits into an i16.
 pub const MIN_COUPLER_STEPS: i16 = 4097;
 
 lizard_avr::pod! {
-    /// The link lengths of a five-bar, in steps of `scale`, and the factors derived from them. The margins do not
-    /// depend on the scale.
+    /// The link lengths of a five-bar, in steps of `scale`, and the factors derived from them. A margin is a
+    /// sine, so it does not depend on the scale.
     #[derive(Debug, PartialEq, Eq)]
     pub struct LinkLengths {
         pub(crate) couplers: CouplerLengths,
@@ -20,7 +20,8 @@ lizard_avr::pod! {
         pub(crate) base: i16,
         pub(crate) left_crank: i16,
         pub(crate) right_crank: i16,
-        /// `1 / (4 a b)` for the couplers `a` and `b`, scaled by `square_shift` and `area_shift`.
+        /// The reciprocal of the couplers' product, scaled by `square_shift` and `area_shift`: 2^30 divided by the
+        /// product after its shift to 2^14..2^15, at most 65535.
         pub(crate) area_reciprocal: u16,
         /// 2^27 divided by the left coupler.
         pub(crate) left_reciprocal: i16,
@@ -53,8 +54,8 @@ impl LinkLengths {
         padding: 0,
     };
 
-    /// Stores these lengths, in steps, and computes their factors. The sum of base and cranks is at most
-    /// [`MAX_LENGTH_STEPS`].
+    /// Creates the link lengths, in steps of `scale`, and computes their factors. The sum of base and cranks must be at
+    /// most [`MAX_LENGTH_STEPS`].
     ///
     /// # Panics
     /// Panics if a coupler is shorter than [`MIN_COUPLER_STEPS`].
@@ -65,8 +66,10 @@ impl LinkLengths {
     ) -> Self {
         assert!(left_coupler >= MIN_COUPLER_STEPS && right_coupler >= MIN_COUPLER_STEPS);
         let half_sum = (left_coupler as u32 + right_coupler as u32) / 2;
+        // Shifts the square of half the sum to fifteen bits.
         let square_shift = 17 - (half_sum * half_sum).leading_zeros() as u16;
         let mut product = (left_coupler as u64 * right_coupler as u64) >> square_shift;
+        // Shifts the product to 2^14..2^15, so that its reciprocal uses all sixteen bits.
         let mut area_shift = 9;
         while product < 1 << 14 {
             product <<= 1;

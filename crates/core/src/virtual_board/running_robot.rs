@@ -25,12 +25,12 @@ pub struct RunningRobot {
 }
 
 impl RunningRobot {
-    /// Powers on a robot with good supplies and a blank memory.
+    /// Powers on a robot with good supplies and a blank EEPROM.
     pub fn power_on(robot: Robot<'static>) -> Self {
         Self::with_memory(robot, Eeprom::blank(), Restart::default())
     }
 
-    /// Starts a robot with this memory after a restart.
+    /// Starts a robot with this EEPROM after a restart.
     pub fn with_memory(robot: Robot<'static>, memory: Eeprom, restart: Restart) -> Self {
         let supplies = robot.supplies();
         // A rail voltage well above the thresholds of the rail.
@@ -65,7 +65,7 @@ impl RunningRobot {
         self.board.are_pulses_ended()
     }
 
-    /// Runs steps of the main loop until it has no task before time passes.
+    /// Runs steps of the main loop until it only waits for time to pass.
     ///
     /// # Panics
     /// Panics if the main loop never becomes idle.
@@ -135,7 +135,7 @@ impl RunningRobot {
         lines
     }
 
-    /// Sends bytes one by one, reads the output before each byte, and returns all output.
+    /// Sends bytes one by one, reads the output before the first and after every byte, and returns all output.
     pub fn send(&mut self, bytes: &[u8]) -> Vec<String> {
         let mut lines = self.read_lines();
         for byte in bytes {
@@ -145,7 +145,7 @@ impl RunningRobot {
         lines
     }
 
-    /// Sends a line and returns its answer. The lines after the answer stay in the output.
+    /// Sends a line and returns its answer. Discards the lines before the answer; the later lines stay in the output.
     ///
     /// # Panics
     /// Panics if the line gets no answer or several answers.
@@ -173,17 +173,18 @@ impl RunningRobot {
         assert_eq!(self.send_line(line), std::format!("ok {line}"));
     }
 
-    /// Sends a line that must be refused with an answer that begins with `err` and `reason`.
+    /// Sends a line that must be refused with an answer that begins with `err ` and `code_and_reason`, such as `7 the
+    /// servos are resting`.
     ///
     /// # Panics
-    /// Panics if the line is accepted, or refused for another reason.
+    /// Panics if the line is accepted, or refused with another answer.
     #[track_caller]
-    pub fn expect_refused(&mut self, line: &str, reason: &str) {
+    pub fn expect_refused(&mut self, line: &str, code_and_reason: &str) {
         let answer = self.send_line(line);
         let is_refused = answer
             .strip_prefix("err ")
-            .is_some_and(|text| text.starts_with(reason));
-        assert!(is_refused, "{line}: {answer}, expected {reason}");
+            .is_some_and(|text| text.starts_with(code_and_reason));
+        assert!(is_refused, "{line}: {answer}, expected {code_and_reason}");
     }
 
     /// Requests the status and returns the value of a key in it.

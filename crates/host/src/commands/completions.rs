@@ -16,6 +16,7 @@ use crate::shared::{files, robot_args};
   lizard completions zsh > ~/.zfunc/_lizard
   lizard completions fish > ~/.config/fish/completions/lizard.fish")]
 pub struct CompletionsArgs {
+    // Optional for Rust, because the subcommand `man` has no shell.
     /// The shell
     #[arg(required = true)]
     shell: Option<Shell>,
@@ -45,8 +46,8 @@ pub fn print_completions(args: CompletionsArgs, mut program: Command) -> Result<
     Ok(out.flush()?)
 }
 
-/// Narrows a completion script's suggestions for `--robot` to .toml files and the names of the built-in robots. clap
-/// itself can only suggest any file.
+/// Narrows a completion script's file suggestions for `--robot` to .toml files, since clap itself can only suggest all
+/// files. For bash and fish, also adds the names of the built-in robots.
 fn narrow_robot_suggestions(script: &str) -> String {
     const BASH_FILE_LINE: &str = "COMPREPLY=($(compgen -f \"${cur}\"))";
     let names = robot_args::built_in_names().join(" ");

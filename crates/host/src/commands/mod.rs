@@ -117,7 +117,7 @@ commands! {
     }
 }
 
-/// Commands of the previous version, each with the words that replace it.
+/// Commands of the previous version, each with the words that replace the command.
 const RENAMED_COMMANDS: [(&str, &[&str]); 17] = [
     ("solve", &["pose"]),
     ("fk", &["pose"]),
@@ -148,7 +148,7 @@ const REMOVED_COMMANDS: [(&str, &str); 2] = [
     ("speed", "`make bench` measures the speed of solving poses"),
 ];
 
-/// Translates a command line of the previous version.
+/// Replaces a command of the previous version, and prints a warning that it is deprecated.
 ///
 /// # Errors
 /// Fails if the command was removed.
@@ -209,7 +209,7 @@ fn list_addresses(page: &str, source: &str) -> String {
     lines.collect()
 }
 
-/// Runs a command line.
+/// Runs a command line. Ends the program after clap has printed the help or refused the arguments.
 ///
 /// # Errors
 /// Returns the errors of the command.
@@ -221,13 +221,14 @@ pub fn run(arguments: Vec<OsString>) -> Result<(), Failure> {
     }
 }
 
-/// Runs a command line, writes the message of its failure, and returns the exit code.
+/// Runs a command line, writes the message of its failure, and returns the exit code. Ends the program as [`run`] does.
 pub fn run_and_report(arguments: Vec<OsString>) -> u8 {
     match run(arguments) {
         Ok(()) => 0,
         Err(failure) if failure.is_silent() => 0,
         Err(failure) => {
-            // The message may quote a file or a board. A closed terminal must not cause a panic.
+            // The message may quote a file or a board, so its control characters are escaped. `writeln` instead of
+            // `eprintln`, because a closed terminal must not cause a panic.
             let message = readable_lines(&failure.to_string());
             let _ = writeln!(io::stderr(), "lizard: {message}");
             failure.exit_code()
@@ -235,7 +236,8 @@ pub fn run_and_report(arguments: Vec<OsString>) -> u8 {
     }
 }
 
-/// Prints clap's message, which is the help or an error, with very long words shortened, and ends the program.
+/// Prints clap's message, which is the help or an error, with control characters escaped and very long lines
+/// shortened, and ends the program.
 fn exit_with(error: &clap::Error) -> ! {
     let text = error.render().to_string();
     let shortened_text = readable_lines(&text);
@@ -289,6 +291,7 @@ mod tests {
             let list = page.split_once("`--json`, except ");
             let (_, list) = list.expect("the page has the list");
             let (list, _) = list.split_once(':').expect("the list has an end");
+            // Every second piece is between backticks.
             let named_commands: BTreeSet<&str> = list.split('`').skip(1).step_by(2).collect();
             let program = Cli::command();
             let has_json =
@@ -301,10 +304,10 @@ mod tests {
 
     #[test]
     fn old_commands_lead_to_an_existing_command_or_to_advice() {
+        let is_known = |word: &str| KNOWN_COMMANDS.iter().any(|entry| entry.name() == word);
         for (old, new) in RENAMED_COMMANDS {
-            let [is_old_known, is_new_known] =
-                [old, new[0]].map(|word| KNOWN_COMMANDS.iter().any(|entry| entry.name() == word));
-            assert_eq!((is_old_known, is_new_known), (false, true), "{new:?}");
+            assert!(!is_known(old), "{old}");
+            assert!(is_known(new[0]), "{new:?}");
         }
         let split_words = |line: &str| line.split(' ').map(OsString::from).collect::<Vec<_>>();
         for (old, new) in [

@@ -11,7 +11,8 @@ fn run_successfully(arguments: &[&str]) -> String {
     run(arguments).expect_success()
 }
 
-/// The headings of `lizard --help`. Commands are under the first five, without those for scripts and development.
+/// The headings of `lizard --help`. The first five are above all commands except those for
+/// scripts and development.
 const HEADINGS: [&str; 7] = [
     "Drive the robot",
     "Simulate it",
@@ -70,12 +71,16 @@ fn a_deprecated_command_prints_the_same_output_and_names_the_new_command() {
         ("bench --help", "sim bench --help"),
         ("man --help", "completions man --help"),
     ] {
-        let [old, new] = [old, new].map(|line| run_line_in(scratch_folder(), line));
-        assert!(old.stdout == new.stdout, "{old:?}");
+        let [old_run, new_run] = [old, new].map(|line| run_line_in(scratch_folder(), line));
+        assert!(old_run.stdout == new_run.stdout, "{old_run:?}");
         let advice = "` is deprecated and will be removed in the next version; use `lizard ";
-        assert_contains(&old.stderr, advice);
-        assert_eq!(new.stderr, "");
+        assert_contains(&old_run.stderr, advice);
+        assert_eq!(new_run.stderr, "");
     }
+}
+
+#[test]
+fn a_removed_command_is_refused_with_advice() {
     run(&["spring", "--wire", "0.6"])
         .expect_refusal_with("the command `spring` was removed; a spring's force");
 }
@@ -153,6 +158,10 @@ fn bash_completes_commands_and_options() {
     ] {
         assert_eq!(complete_in_bash(&script, line, index), expected, "{line}");
     }
+}
+
+#[test]
+fn zsh_and_fish_complete_robot_files() {
     for (shell, expected) in [
         ("zsh", ":_files -g \"*.toml\"' "),
         ("fish", " -r -k -xa \"(__fish_complete_suffix .toml) grain "),
@@ -162,7 +171,7 @@ fn bash_completes_commands_and_options() {
 }
 
 #[test]
-fn every_command_has_a_manual_page_that_names_its_options() {
+fn every_command_has_a_manual_page() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let pages = folder.path().join("man1");
     run_successfully(&["completions", "man", &pages.display().to_string()]);

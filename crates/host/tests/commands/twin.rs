@@ -4,10 +4,10 @@ use serde_json::Value;
 
 use crate::program::{TemporaryRobot, read_file, run_line, with_paper};
 
-/// Runs a command; returns the printed JSON object in which `key` is `name`.
-fn find_object(line: &str, key: &str, name: &str) -> Value {
+/// Runs a command; returns the printed JSON object whose `key` has this value.
+fn find_object(line: &str, key: &str, value: &str) -> Value {
     let mut objects = run_line(line, "").expect_json_lines().into_iter();
-    objects.find(|object| object[key] == name).expect(line)
+    objects.find(|object| object[key] == value).expect(line)
 }
 
 #[test]
@@ -21,13 +21,13 @@ fn a_round_of_a_routine_matches_the_prediction_of_lizard_gaits() {
         find_object(&robot.add_option(&line), "command", &command)
     };
     let tour = find_object(&robot.add_option("gaits --json"), "routine", "tour");
-    let component = |path: &Value, name: &str| path[name].as_f64().expect(name);
+    let component = |displacement: &Value, name: &str| displacement[name].as_f64().expect(name);
     for (servo, prediction) in [("own", "by_servos"), ("ideal", "predicted")] {
         let report = run_twin("tour", servo);
         assert_eq!(report["round"], tour[prediction], "{servo}");
         for name in ["forward", "left", "turn"] {
-            let error = component(&report["way"], name) - component(&tour[prediction], name);
-            assert!(error.abs() < 0.2, "{servo}, {name}: {error}");
+            let difference = component(&report["way"], name) - component(&tour[prediction], name);
+            assert!(difference.abs() < 0.2, "{servo}, {name}: {difference}");
         }
     }
     let lost_turn_deg =
@@ -36,10 +36,12 @@ fn a_round_of_a_routine_matches_the_prediction_of_lizard_gaits() {
         lost_turn_deg > 1.0,
         "real servos turn the robot by only {lost_turn_deg} deg less than ideal servos"
     );
-    // Two feet pull against the other two, so the distance is undetermined, and neither command may print a distance.
+    // In `gaze` two feet pull against the other two. The distance is then undetermined, and neither command may print
+    // one.
     let gaze = find_object(&robot.add_option("gaits --json"), "routine", "gaze");
-    for path in [&run_twin("gaze", "own")["way"], &gaze["by_servos"]] {
-        assert!(path["forward"].is_null() && path["turn"].is_f64(), "{path}");
+    for displacement in [&run_twin("gaze", "own")["way"], &gaze["by_servos"]] {
+        assert!(displacement["forward"].is_null(), "{displacement}");
+        assert!(displacement["turn"].is_f64(), "{displacement}");
     }
 }
 

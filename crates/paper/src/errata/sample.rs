@@ -36,15 +36,15 @@ pub fn paper_lizard() -> Lizard {
 pub struct Sample {
     /// The robot of all samples.
     pub lizard: Lizard,
-    /// The geometric solution.
+    /// The pose's solution by lizard-kinematics, without the paper's equations.
     pub solution: Solution,
     /// Two random numbers, uniform in [0, 1).
     pub random: [f64; 2],
 }
 
 impl Sample {
-    /// Generates `count` samples whose cranks point outward and away from the chassis: theta1 and -theta5 in [90, 180],
-    /// theta4 and -theta8 in [0, 90]. Poses without a solution are skipped.
+    /// Generates `count` samples whose cranks point outward and away from the chassis: theta1 and -theta5 in [90, 180)
+    /// deg, theta4 and -theta8 in [0, 90) deg. Poses without a solution are skipped.
     pub fn generate(count: usize) -> impl Iterator<Item = Self> {
         let lizard = paper_lizard();
         let mut random = Random(1);
@@ -102,7 +102,7 @@ pub fn angle_error_deg(a: f64, b: f64) -> f64 {
     lizard_kinematics::wrap((a - b) * 180.0 / PI).abs()
 }
 
-/// Computes an angle (rad) from the tangent of its half, with the quadratic formula. `root_sign` selects the root.
+/// Solves a t^2 + b t + c = 0 for t = tan(x / 2) and returns the angle x (rad). `root_sign` selects the root.
 /// `None` if the roots are not real. A radicand of zero may be slightly negative from rounding.
 pub fn solve_half_angle(a: f64, b: f64, c: f64, root_sign: f64) -> Option<f64> {
     let radicand = b * b - 4.0 * a * c;

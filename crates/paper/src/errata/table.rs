@@ -24,8 +24,8 @@ pub fn format_text(results: &[EquationResult], sample_count: u32) -> String {
             Some(false) => text += "       clockwise  fails\n",
             None => {}
         }
-        if let (Some(form), Some(is_correct)) = (result.corrected_form, result.corrected_holds) {
-            let verdict = if is_correct { "holds" } else { "fails" };
+        if let (Some(form), Some(holds)) = (result.corrected_form, result.corrected_holds) {
+            let verdict = if holds { "holds" } else { "fails" };
             let _ = writeln!(text, "       corrected  {form}: {verdict}");
         }
     }
@@ -52,7 +52,7 @@ loop equations and the theta3 formula, which the paper combines with these signs
 hold. An error below 1e-6, in the unit of the equation, counts as rounding.
 
 **{holding_count} of {} equations hold as printed.** Every corrected form below was measured
-at the same poses and holds.
+at the same poses and holds, unless \"(fails too)\" follows it.
 
 | place | printed | verdict | largest error | corrected |
 |---|---|---|---|---|

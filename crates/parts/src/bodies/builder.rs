@@ -1,4 +1,4 @@
-//! A builder that adds a robot's bodies one by one. A bolt consists of a screw and a nut.
+//! A builder that adds a robot's bodies one by one.
 
 use lizard_kinematics::Vector;
 use lizard_robot::{Parts, Robot};
@@ -100,6 +100,7 @@ impl<'a> AssemblyBuilder<'a> {
 
     /// Outer radius of the boss around a nut's pocket, mm, which leaves a wall at the nut's corners.
     pub fn nut_boss_radius(&self) -> f64 {
+        // From the width across flats to the radius at the corners.
         let corner_radius = (self.parts.screw.nut + self.parts.fit) / f64::sqrt(3.0);
         self.half_bar_width().max(corner_radius + self.parts.wall)
     }
@@ -126,7 +127,7 @@ impl<'a> AssemblyBuilder<'a> {
         Shape::disc(centre, radius)
     }
 
-    /// Makes a hole into which a screw cuts its thread.
+    /// Makes a hole into which a screw cuts its thread; its diameter is 86 % of the screw's.
     pub fn pilot_hole(&self, centre: Vector) -> Shape {
         Shape::disc(centre, 0.43 * self.parts.screw.diameter)
     }
@@ -179,8 +180,8 @@ impl<'a> AssemblyBuilder<'a> {
         spacer.allowed_contacts = vec![allowed_contact.to_owned()];
     }
 
-    /// Adds a screw that is as long as its nut needs, and the nut. `nut_z` is the height of the face on which the nut
-    /// bears, mm.
+    /// Adds a bolt: a screw that is long enough for its nut, and the nut. `nut_z` is the height of the face on which
+    /// the nut bears, mm.
     pub fn add_bolt(&mut self, screw: &Screw, nut_z: f64) {
         let nut_end = nut_z + screw.direction * self.parts.screw.nut_height;
         self.add_screw(screw, find_screw_length((nut_end - screw.seat_z).abs()));
@@ -190,8 +191,13 @@ impl<'a> AssemblyBuilder<'a> {
     /// Adds the nut of a screw. `nut_z` is the height of the face on which the nut bears, mm.
     pub fn add_nut(&mut self, screw: &Screw, nut_z: f64) {
         let nut_end = nut_z + screw.direction * self.parts.screw.nut_height;
-        let nut = self.make_nut(screw.position, order_heights(nut_z, nut_end));
-        let nut = self.add_body(format!("nut {}", screw.name), Kind::Nut, screw.mount, [nut]);
+        let prism = self.make_nut(screw.position, order_heights(nut_z, nut_end));
+        let nut = self.add_body(
+            format!("nut {}", screw.name),
+            Kind::Nut,
+            screw.mount,
+            [prism],
+        );
         nut.allowed_contacts.clone_from(&screw.allowed_contacts);
     }
 

@@ -1,7 +1,8 @@
 //! The files of a part: a solid, a mesh, and drawings for cutting the part from a sheet.
 //!
 //! A printer needs triangles without gaps; a CAD program needs exact surfaces; a laser cutter needs closed lines. All
-//! files are made from the same layers, so they cannot contradict each other.
+//! files are derived from the same layers, so they cannot contradict each other; only the mesh has the engraved marks
+//! and the closed holes of the printed part.
 
 pub(crate) mod coupon;
 pub(crate) mod dxf;
@@ -27,7 +28,7 @@ pub struct OutputFile {
 }
 
 impl OutputFile {
-    /// Creates a file with a text or with bytes.
+    /// Creates a file from a text or from bytes.
     pub fn new(path: impl Into<String>, content: impl Into<Vec<u8>>) -> Self {
         let (path, bytes) = (path.into(), content.into());
         Self { path, bytes }

@@ -55,18 +55,20 @@ pub fn list_counted_names(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
     texts.collect()
 }
 
-/// A point in front of the robot on its left, chassis frame, mm. Of the bodies with one name, the nearest is labelled.
-const FRONT_LEFT_CORNER: Vector = Vector::new(-60.0, 80.0);
+/// A point in front of the robot on its left, chassis frame, mm. Of several bodies with the same
+/// name, the one nearest to this point is labelled.
+const LABEL_VIEWPOINT: Vector = Vector::new(-60.0, 80.0);
 
 /// Makes labels for the bodies in a picture that are not grey: each name once, with its count, at the body nearest to
-/// [`FRONT_LEFT_CORNER`].
+/// [`LABEL_VIEWPOINT`].
 pub fn make_part_labels(
     assembly: &Assembly,
     parts: &[Part],
     picture_bodies: &[PictureBody],
     pose: &Solution,
 ) -> Vec<Label> {
-    // The labels of all bodies with one name, without the count, each with the body's distance from the corner, mm.
+    // The labels of all bodies with the same name, without the count, each with its distance from
+    // LABEL_VIEWPOINT, mm.
     let mut labels_by_name: BTreeMap<String, Vec<(f64, Label)>> = BTreeMap::new();
     let coloured_bodies = picture_bodies.iter().filter(|body| !body.is_grey);
     for PictureBody { body, lift, .. } in coloured_bodies {
@@ -75,7 +77,7 @@ pub fn make_part_labels(
         };
         let placement = assembly.placement(body.mount, pose);
         let position = placement.map(prism.filled_shapes[0].middle());
-        let distance = (position - FRONT_LEFT_CORNER).length();
+        let distance = (position - LABEL_VIEWPOINT).length();
         let label = Label {
             position,
             z: (body.z()[0] + body.z()[1]) / 2.0 + lift,
@@ -96,7 +98,7 @@ pub fn make_part_labels(
 
 /// Makes labels for the four servos and for both ends of the robot.
 pub fn make_servo_and_end_labels(assembly: &Assembly, pose: &Solution) -> Vec<Label> {
-    /// Height of the links, mm.
+    /// Height of the labels, at the links, mm.
     const LINK_HEIGHT: f64 = 18.0;
     let label_at = |position: Vector, text: &str| Label {
         position,

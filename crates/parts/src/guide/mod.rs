@@ -1,6 +1,6 @@
 //! The guide to building the robot, step by step, with pictures of the model.
 //!
-//! In this order, a screwdriver reaches every screw, and the electronics are tested before any part can jam.
+//! The order of the steps lets a screwdriver reach every screw, and the electronics are tested before any part can jam.
 
 pub(crate) mod corner;
 pub(crate) mod drawing;
@@ -37,8 +37,8 @@ pub const CORNER_SERVO: usize = 0;
 
 /// Introduction of the guide.
 const INTRODUCTION: &str = "No printed robot has walked yet. Therefore print in this order, and stop if something does not fit:\n\n\
-1. the **coupon** (`lizard parts DIR --coupon`): the first column into which all counterparts go by hand is your printer's `fit`;\n\
-2. one **corner** (`lizard parts DIR --corner`): a seat, a link, a leg, a strut and a foot, three hours. Assemble it as in steps 1, 5 and 7 to 9;\n\
+1. the **coupon** (`lizard parts DIR --coupon`): try the columns from the left; the first into which all counterparts go by hand shows your printer's `fit`;\n\
+2. one **corner** (`lizard parts DIR --corner`): a seat, a link, a leg, a strut and a foot. Printing takes three hours. Assemble it as in steps 1, 5 and 7 to 9;\n\
 3. all parts.\n\n\
 Print all parts in the given orientation, in layers of 0.2 mm, **without supports**. A slicer may suggest supports under the two ends \
 of a sleeve's roof, but a bridge of 6.4 mm needs none.";
@@ -48,7 +48,7 @@ const LEGS_TITLE: &str = "Legs, on the bench";
 /// Text for pads with a strip, added to the step in which the pads are pressed on.
 const STRIP_TEXT: &str = " Before you press the heads in, glue a strip along each dome, from its notch to the other side. The tips of its hairs or \
 bristles point away from the notch; its front end is folded up and glued into the notch, so that no edge of the floor catches it. \
-Cut all four from one piece, since each lifts its foot by its thickness, and cut a hole of 4 mm over the hole for the key.";
+Cut all four strips from one piece: their thickness lifts the feet and must be equal. Cut a hole of 4 mm into each, over the hole for the key.";
 /// Title of the step that levels the feet, the last step that turns pads.
 const LEVEL_TITLE: &str = "Level the feet";
 /// Text for pads with a grain, added to the step that levels the feet.
@@ -133,14 +133,14 @@ fn make_guide(
         if !turns.is_empty() {
             let _ = writeln!(
                 text,
-                "Some screws cannot be reached in the pose of the picture. Seen from above, turn {}.\n",
+                "Some screws cannot be reached in the pose that the picture shows. Seen from above, turn {}.\n",
                 turns.join("; ")
             );
         }
         let bodies = [&added_bodies[..], &new_bodies];
-        for (view_name, caption, drawing) in draw_step(assembly, &parts, pose, step, bodies) {
-            let name = format!("step-{number}-{view_name}.svg");
-            let _ = writeln!(text, "![{title}, {caption}]({name})");
+        for (picture, drawing) in draw_step(assembly, &parts, pose, step, bodies) {
+            let name = format!("step-{number}-{}.svg", picture.name);
+            let _ = writeln!(text, "![{title}, {}]({name})", picture.caption);
             files.push(OutputFile::new(format!("guide/{name}"), drawing));
         }
         text.push('\n');
@@ -161,21 +161,33 @@ fn format_drilling_text(parts: &[Part]) -> String {
     };
     let hole_texts: Vec<_> = parts.iter().filter_map(format_holes).collect();
     format!(
-        "Where a pocket is on the underside during printing, one layer of {PRINT_LAYER_MM} mm closes the hole in its roof. Open the hole with a 3 mm drill \
+        "Some holes are closed by one printed layer of {PRINT_LAYER_MM} mm, because a pocket is below them during printing. Open them with a 3 mm drill \
          or a screw: {}. Parts that are mirror images have the numbers of their servos engraved: 13 is for A1 and A3.",
         hole_texts.join(", ")
     )
 }
 
-/// Draws a step's pictures, each with a word for the file's name, a caption, and the drawing as SVG. The bodies are
-/// those of earlier steps, and those that the step adds.
+/// A picture of a step.
+struct StepPicture {
+    /// A word for the file's name.
+    name: &'static str,
+    caption: &'static str,
+    view: View,
+    /// Ratio of the new bodies' lift to [`EXPLODED_LIFT`].
+    lift: f64,
+    /// True for a new body to draw in colour.
+    is_coloured: fn(&Body) -> bool,
+    has_part_labels: bool,
+}
+
+/// Draws a step's pictures as SVG.
 fn draw_step(
     assembly: &Assembly,
     parts: &[Part],
     pose: &Solution,
     step: &Step,
     [earlier_bodies, new_bodies]: [&[&Body]; 2],
-) -> Vec<(&'static str, &'static str, String)> {
+) -> Vec<(StepPicture, String)> {
     let view = View {
         width: PICTURE_WIDTH,
         ..View::default()
@@ -191,42 +203,65 @@ fn draw_step(
         elevation: 30.0,
         ..view
     };
-    type BodyFilter = fn(&Body) -> bool;
-    type Picture = (&'static str, &'static str, View, f64, BodyFilter);
-    let (all_bodies, corner_bodies): (BodyFilter, BodyFilter) = (|_| true, is_at_corner);
+    let exploded = StepPicture {
+        name: "exploded",
+        caption: "apart",
+        view,
+        lift: 1.0,
+        is_coloured: |_| true,
+        has_part_labels: true,
+    };
     let extra = match step.extra_view {
         ExtraView::None => None,
-        ExtraView::Corner => Some(("near", "the front left corner", corner, 0.6, corner_bodies)),
-        ExtraView::CornerBelow => {
-            let caption = "the front left corner from below";
-            let view = view_from_below(30.0, corner);
-            Some(("below", caption, view, 0.5, corner_bodies))
-        }
-        ExtraView::Below => {
-            let view = view_from_below(300.0, view);
-            Some(("below", "from below", view, 0.0, all_bodies))
-        }
+        ExtraView::Corner => Some(StepPicture {
+            name: "near",
+            caption: "the front left corner",
+            view: corner,
+            lift: 0.6,
+            is_coloured: is_at_corner,
+            ..exploded
+        }),
+        ExtraView::CornerBelow => Some(StepPicture {
+            name: "below",
+            caption: "the front left corner from below",
+            view: view_from_below(30.0, corner),
+            lift: 0.5,
+            is_coloured: is_at_corner,
+            ..exploded
+        }),
+        ExtraView::Below => Some(StepPicture {
+            name: "below",
+            caption: "from below",
+            view: view_from_below(300.0, view),
+            lift: 0.0,
+            ..exploded
+        }),
     };
-    let draw = |(view_name, caption, view, lift, is_coloured): Picture| {
+    // The last picture shows the result of the step, without the names of its parts.
+    let done = StepPicture {
+        name: "done",
+        caption: "done",
+        lift: 0.0,
+        has_part_labels: false,
+        ..exploded
+    };
+    let draw = |picture: StepPicture| {
         let earlier_bodies = earlier_bodies.iter();
         let earlier_bodies = earlier_bodies.map(|body| PictureBody::without_lift(body, true));
         let new_bodies = new_bodies.iter().map(|&body| PictureBody {
             body,
-            lift: lift * EXPLODED_LIFT * (step.lift)(body),
-            is_grey: !is_coloured(body),
+            lift: picture.lift * EXPLODED_LIFT * (step.lift)(body),
+            is_grey: !(picture.is_coloured)(body),
         });
         let drawn_bodies: Vec<_> = earlier_bodies.chain(new_bodies).collect();
         let mut labels: Vec<Label> = legend::make_servo_and_end_labels(assembly, pose);
-        // The last picture shows the result of the step, without the names of its parts.
-        if view_name != "done" {
+        if picture.has_part_labels {
             let part_labels = legend::make_part_labels(assembly, parts, &drawn_bodies, pose);
             labels.extend(part_labels);
         }
-        let drawing = draw_picture(assembly, &drawn_bodies, pose, &view, &labels);
-        (view_name, caption, drawing)
+        let drawing = draw_picture(assembly, &drawn_bodies, pose, &picture.view, &labels);
+        (picture, drawing)
     };
-    let exploded = ("exploded", "apart", view, 1.0, all_bodies);
-    let done = ("done", "done", view, 0.0, all_bodies);
     let pictures = [Some(exploded), extra, Some(done)];
     pictures.into_iter().flatten().map(draw).collect()
 }

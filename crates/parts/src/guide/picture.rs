@@ -19,7 +19,7 @@ pub struct PictureBody<'a> {
     pub body: &'a Body,
     /// Lift of the body in the picture, mm.
     pub lift: f64,
-    /// True to draw the body in grey, because the picture shows other bodies.
+    /// True to draw the body in grey, as the background of the bodies in colour.
     pub is_grey: bool,
 }
 
@@ -103,12 +103,12 @@ impl Eye {
         }
     }
 
-    /// Projects a point in space onto the drawing, mm before scaling, y down.
+    /// Projects a point in space onto the drawing. The result is in mm, before scaling; y points down.
     fn project(&self, point: Vector, z: f64) -> (f64, f64) {
-        let (x, floor_depth) = (point.dot(self.right), point.dot(self.towards_eye));
-        let eye_depth = floor_depth * self.cos + z * self.sin;
-        let height = z * self.cos - floor_depth * self.sin;
-        let scale = EYE_DISTANCE / (EYE_DISTANCE - eye_depth);
+        let (x, floor_nearness) = (point.dot(self.right), point.dot(self.towards_eye));
+        let nearness = floor_nearness * self.cos + z * self.sin;
+        let height = z * self.cos - floor_nearness * self.sin;
+        let scale = EYE_DISTANCE / (EYE_DISTANCE - nearness);
         (x * scale, -height * scale)
     }
 
@@ -211,6 +211,7 @@ fn merge_heights(layers: &mut [Layer]) -> Vec<f64> {
     heights
 }
 
+/// Collects the layers of the bodies at a pose, without the loops that are not drawn.
 fn collect_layers(
     assembly: &Assembly,
     picture_bodies: &[PictureBody],
@@ -223,10 +224,12 @@ fn collect_layers(
         let colour = select_colour(body, is_grey);
         for prism in &body.prisms {
             let outline = Outline::from_prism(prism);
+            let hides_small_holes = is_grey || lift == 0.0;
             let is_drawn = |outline_loop: &&Loop| {
-                let circle = outline_loop.circle().filter(|_| is_grey || lift == 0.0);
+                let circle = outline_loop.circle();
                 let is_small = circle.is_some_and(|(_, radius)| radius < HIDDEN_HOLE_RADIUS);
-                !(is_small && outline_loop.area() < 0.0)
+                let is_hole = outline_loop.area() < 0.0;
+                !(hides_small_holes && is_hole && is_small)
             };
             let to_placed_points = |outline_loop: &Loop| {
                 let points = divide_loop(outline_loop).into_iter();

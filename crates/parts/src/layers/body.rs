@@ -33,12 +33,12 @@ impl Prism {
         }
     }
 
-    /// Creates a layer of a cone from the radii at the bottom and at the top, mm.
-    pub(crate) fn cone(middle: Vector, radii: [f64; 2], hole: Shape, z: Span) -> Self {
+    /// Creates a layer that is a truncated cone with a hole. `radii`: at the bottom and at the top, mm.
+    pub(crate) fn cone(centre: Vector, radii: [f64; 2], hole: Shape, z: Span) -> Self {
         let widest = radii[0].max(radii[1]);
         Self {
             insets: radii.map(|radius| widest - radius),
-            ..Self::new([Shape::disc(middle, widest)], [hole], z)
+            ..Self::new([Shape::disc(centre, widest)], [hole], z)
         }
     }
 
@@ -81,13 +81,13 @@ pub enum Kind {
     Servo,
     /// A servo's horn.
     Horn,
-    /// A screw that forms a joint or holds parts together, by its length below the head, mm.
+    /// A screw that forms a joint or holds parts together, with its length below the head, mm.
     Screw(f64),
-    /// A screw with a hexagonal head, by its length below the head, mm; a pocket in the part holds the head.
+    /// A screw with a hexagonal head, with its length below the head, mm; a pocket in the part holds the head.
     HexScrew(f64),
     /// A self-tapping screw that comes with a servo.
     ServoScrew,
-    /// A small self-tapping screw that holds a horn in its link, by its length, mm.
+    /// A small self-tapping screw that holds a horn in its link, with its length, mm.
     HornScrew(f64),
     /// The wires of a servo within the robot.
     Lead,
@@ -95,7 +95,7 @@ pub enum Kind {
     Fitting(Fitting),
     /// A lock nut.
     Nut,
-    /// A standoff by its length, mm.
+    /// A standoff, with its length, mm.
     Standoff(f64),
     /// A tension spring.
     Spring,
@@ -140,7 +140,7 @@ impl Kind {
 pub enum Mount {
     /// The chassis, which does not move.
     Chassis,
-    /// A servo's horn. Origin at the shaft, x along the crank of head or tail.
+    /// The link on a servo's horn. Origin at the shaft, x along the crank of head or tail.
     Link(usize),
     /// A leg's driven crank. Origin at its pivot; it turns with its servo's link.
     Crank(usize),
@@ -187,7 +187,7 @@ impl Mount {
         servos
     }
 
-    /// Servo of the mount; `None` for the chassis and the sliders.
+    /// The servo after which the mount is named; `None` for the chassis and the sliders.
     pub fn servo(self) -> Option<usize> {
         match self {
             Self::Link(servo)

@@ -1,6 +1,6 @@
 //! Engraved marks for parts that are mirror images of each other.
 //!
-//! A link for A1 and its mirror image for A2 look alike in the hand. If a part has several kinds, each kind therefore
+//! A link for A1 and its mirror image for A2 look alike in the hand. If a part has variants, each variant therefore
 //! has the numbers of its servos engraved: 13 is for A1 and A3. Digits consist of straight strokes.
 
 use lizard_kinematics::Vector;
@@ -17,7 +17,7 @@ const DIGIT_PITCH: f64 = 3.5;
 const STROKE_HALF_WIDTH: f64 = 0.35;
 /// Depth of a stroke, mm: two printed layers.
 pub const MARK_DEPTH: f64 = 0.4;
-/// Smallest width of the face around a mark, mm.
+/// Smallest distance from a mark's strokes to the edge of its face, mm.
 const MIN_BORDER: f64 = 0.7;
 /// Distance in x between the positions tried for a mark, mm; twice the distance in y.
 const POSITION_STEP: f64 = 0.8;

@@ -1,4 +1,4 @@
-//! The formats of XML elements, numbers and names in the model files.
+//! The formats of XML elements, attribute values and numbers in the model files.
 
 use std::fmt::{Display, Write};
 
@@ -21,7 +21,7 @@ pub(super) fn join_numbers(numbers: impl IntoIterator<Item = impl ToString>) -> 
     numbers.collect::<Vec<_>>().join(" ")
 }
 
-/// Escapes a text for use as an attribute's value, within one line.
+/// Escapes a text for use as the value of an XML attribute; a line break becomes `&#10;`.
 pub(super) fn escape_attribute(value: &str) -> String {
     let value = value.replace('&', "&amp;").replace('<', "&lt;");
     value.replace('"', "&quot;").replace('\n', "&#10;")
@@ -37,8 +37,8 @@ pub(super) struct XmlWriter {
 }
 
 impl XmlWriter {
-    /// Writes lines, each with an element, or with the opening or closing tag of an element with children. Their own
-    /// indentation has no effect.
+    /// Writes lines, each with one complete element, or with one opening or closing tag. Each line's own indentation is
+    /// replaced by that of its depth.
     pub fn write(&mut self, lines: impl Display) {
         let lines = lines.to_string();
         for line in lines.lines().map(str::trim_start) {

@@ -1,9 +1,9 @@
 //! The dimensions of the parts to print and to buy: `[parts]` in robot.toml.
 //!
 //! The links' lengths place the joints. This table contains the width and the thickness of the parts that hold the
-//! joints, and the dimensions of bought parts: servos, screws, springs and a battery. No value of this table moves a
-//! joint, so the firmware does not depend on the table, but the positions of the feet do (`hips.rs`). Every key is
-//! optional.
+//! joints, and the dimensions of bought parts: servos, screws, springs and a battery. The positions of the feet
+//! (`hips.rs`) and a strut's geometry and spring (`strut.rs`) follow from this table. The firmware depends on these
+//! only through the threshold and the pace of a measured rail. Every key is optional.
 
 use crate::config::coil::Coil;
 use crate::file::{ReadResult, Section};
@@ -11,7 +11,7 @@ use crate::file::{ReadResult, Section};
 /// Dimensions of the parts, mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parts {
-    /// Clearance on each side of a part that is pushed into or slides in another part.
+    /// Clearance on each side of a part that is pushed into another part or slides in it.
     pub fit: f64,
     /// Smallest thickness of a printed wall.
     pub wall: f64,
@@ -25,8 +25,8 @@ pub struct Parts {
     pub gap: f64,
     /// Width of a cut by a laser or another cutter.
     pub kerf: f64,
-    /// The pivot of the leg's driven crank on the chassis, from the servo's shaft: outward and towards the middle. The
-    /// follower's pivot is farther out by the length of the ground link.
+    /// The pivot of the leg's driven crank on the chassis, from the servo's shaft: outward, and along the chassis
+    /// towards its middle. The follower's pivot is farther out by the length of the ground link.
     pub pivot: [f64; 2],
     /// The foot's position on its coupler, from the crank's joint: outward and towards the middle. The hip, the centre
     /// of the foot's circle, has the same offset from the crank's pivot. `None` if the key is missing;
@@ -45,8 +45,8 @@ pub struct Parts {
     pub screw: Screw,
     /// The pads on which the robot stands.
     pub pad: Pad,
-    /// Width of a strip along each pad, from head to tail, that slides more easily in one direction, such as climbing
-    /// skin; 0 omits the strip.
+    /// Width of a strip with a grain along each pad, from head to tail, which slides more easily in one direction, such
+    /// as climbing skin; 0 omits the strip.
     pub strip: f64,
     /// The legs' springs, which are mounted in their struts.
     pub spring: Coil,
@@ -58,6 +58,12 @@ pub struct Parts {
     pub head: f64,
 }
 
+/// Range of both components of `pivot` and `foot`, mm.
+const OFFSET_RANGE: (f64, f64) = (-500.0, 500.0);
+/// Range of the distance of `anchor`, mm.
+const ANCHOR_DISTANCE_RANGE: (f64, f64) = (1.0, 500.0);
+/// Range of the angle of `anchor`, deg.
+const ANCHOR_ANGLE_RANGE: (f64, f64) = (-180.0, 180.0);
 /// Range of a part's lengths, mm.
 const LENGTH_RANGE: (f64, f64) = (0.1, 200.0);
 
@@ -210,8 +216,8 @@ const KEYS: [&str; 20] = [
     "head",
 ];
 
-/// Reads the struts' spring. Its lengths have the same range as the other parts' lengths.
-fn read_coil(parts: &Section, default: Coil) -> ReadResult<Coil> {
+/// Reads the spring of the struts. Its lengths have the same range as the other parts' lengths.
+fn read_spring(parts: &Section, default: Coil) -> ReadResult<Coil> {
     let section = parts.optional_section("spring", &["wire", "outer", "length"])?;
     let read_mm = |name, default| section.number_or(name, default, LENGTH_RANGE, "mm");
     Ok(Coil {
@@ -232,11 +238,8 @@ impl Parts {
         section.reject_removed_keys(&["strut"], STRUT_REPLACEMENT)?;
         let section = section.require_known_keys(&KEYS)?;
         let read_mm = |name, default, min, max| section.number_or(name, default, (min, max), "mm");
-        let read_pair = |name, default: [f64; 2], min, max| {
-            section.numbers_or(name, default, (min, max), "(mm; an angle in deg)")
-        };
         let foot = match section.has_key("foot") {
-            true => Some(read_pair("foot", [0.0; 2], -500.0, 500.0)?),
+            true => Some(section.numbers("foot", OFFSET_RANGE, "mm")?),
             false => None,
         };
         let battery = section.numbers_or("battery", defaults.battery, (1.0, 500.0), "mm")?;
@@ -248,16 +251,21 @@ impl Parts {
             plate: read_mm("plate", defaults.plate, 2.0, 20.0)?,
             gap: read_mm("gap", defaults.gap, 0.1, 5.0)?,
             kerf: read_mm("kerf", defaults.kerf, 0.0, 2.0)?,
-            pivot: read_pair("pivot", defaults.pivot, -500.0, 500.0)?,
+            pivot: section.numbers_or("pivot", defaults.pivot, OFFSET_RANGE, "mm")?,
             foot,
-            anchor: read_pair("anchor", defaults.anchor, -90.0, 500.0)?,
+            anchor: section.polar_or(
+                "anchor",
+                defaults.anchor,
+                ANCHOR_DISTANCE_RANGE,
+                ANCHOR_ANGLE_RANGE,
+            )?,
             height: read_mm("height", defaults.height, 5.0, 500.0)?,
             servo: ServoBody::read(&section)?,
             horn: Horn::read(&section)?,
             screw: Screw::read(&section)?,
             pad: Pad::read(&section)?,
             strip: read_mm("strip", defaults.strip, 0.0, 100.0)?,
-            spring: read_coil(&section, defaults.spring)?,
+            spring: read_spring(&section, defaults.spring)?,
             battery,
             tail: read_mm("tail", defaults.tail, 0.0, 300.0)?,
             head: read_mm("head", defaults.head, 0.0, 300.0)?,

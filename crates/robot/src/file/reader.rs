@@ -41,7 +41,8 @@ pub(crate) fn read_for_each<T>(
     Ok([a?, b?, c?, d?])
 }
 
-/// Finds the byte offset of a key, or of the innermost table in the key's name that exists; `None` if no table exists.
+/// Finds the byte offset of a key. If the key is missing, finds that of the innermost existing table in its name;
+/// `None` if not even the outermost table exists.
 fn find_key(mut table: &DeTable, key: &str) -> Option<usize> {
     let (mut rest, mut innermost_start) = (key, None);
     loop {
@@ -91,7 +92,7 @@ thread_local! {
 
 /// One table of the file.
 pub(crate) struct Section<'a> {
-    /// Full name of the table, such as `servo.A1`; empty for the file itself.
+    /// Full key of the table, such as `servo.A1`; empty for the file itself.
     pub key: String,
     /// The contents of the table; `None` if an optional table is missing.
     table: Option<&'a DeTable<'a>>,
@@ -154,7 +155,8 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Rejects the keys `names`, which belong to an earlier version of the file; `replacement` is the current notation.
+    /// Rejects the keys `names`, which belong to an earlier version of the file; `replacement` is what the user must
+    /// write instead.
     pub fn reject_removed_keys(&self, names: &[&str], replacement: &str) -> ReadResult<()> {
         match names.iter().find(|name| self.has_key(name)) {
             Some(name) => {
@@ -249,19 +251,7 @@ impl<'a> Section<'a> {
     ) -> ReadResult<[f64; N]> {
         #[cfg(test)]
         self.record_number_read(name, range, unit, None);
-        let expected_type = match N {
-            2 => "an array of two numbers",
-            _ => "an array of three numbers",
-        };
-        let array = self.read_value(name, expected_type, DeValue::as_array)?;
-        let numbers: Option<Vec<f64>> = array
-            .iter()
-            .map(|item| to_decimal_number(item.get_ref()))
-            .collect();
-        let Some(Ok(numbers)) = numbers.map(<[f64; N]>::try_from) else {
-            let message = format!("is an array of {}; it must be {expected_type}", array.len());
-            return Err(self.error(name, message));
-        };
+        let numbers = self.read_array::<N>(name)?;
         for value in numbers {
             self.require_in_range(name, value, range, unit)?;
         }
@@ -281,6 +271,25 @@ impl<'a> Section<'a> {
         } else {
             Ok(default)
         }
+    }
+
+    /// Reads a position in polar coordinates, an array of a distance (mm) and an angle (deg), each in its range;
+    /// returns `default` if the key is missing.
+    pub fn polar_or(
+        &self,
+        name: &str,
+        default: [f64; 2],
+        distance_range: Range,
+        angle_range: Range,
+    ) -> ReadResult<[f64; 2]> {
+        if !self.has_key(name) {
+            return Ok(default);
+        }
+        let [distance, angle] = self.read_array(name)?;
+        Ok([
+            self.require_in_range(name, distance, distance_range, "mm")?,
+            self.require_in_range(name, angle, angle_range, "deg")?,
+        ])
     }
 
     /// Reads an array of strings.
@@ -341,6 +350,26 @@ impl<'a> Section<'a> {
         };
         let value = value.get_ref();
         convert(value).ok_or_else(|| self.type_error(name, value, expected_type))
+    }
+
+    /// Reads an array of exactly `N` numbers of any size.
+    fn read_array<const N: usize>(&self, name: &str) -> ReadResult<[f64; N]> {
+        let expected_type = match N {
+            2 => "an array of two numbers",
+            _ => "an array of three numbers",
+        };
+        let array = self.read_value(name, expected_type, DeValue::as_array)?;
+        if array.len() != N {
+            let message = format!("is an array of {}; it must be {expected_type}", array.len());
+            return Err(self.error(name, message));
+        }
+        let mut numbers = [0.0; N];
+        for (i, item) in array.iter().enumerate() {
+            let value = item.get_ref();
+            numbers[i] = to_decimal_number(value)
+                .ok_or_else(|| self.type_error(&format!("{name}[{i}]"), value, "a number"))?;
+        }
+        Ok(numbers)
     }
 
     /// Returns a key's value if it is in a range, both limits included, otherwise an error.

@@ -5,7 +5,7 @@ use crate::config::servo::LEG_NAMES;
 use crate::gaits::gait::Gait;
 use crate::gaits::waveform::Waveform;
 
-/// A gait whose legs share one waveform, each with its own start and gain.
+/// A gait whose legs have one waveform; each leg has its own start and gain.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bars {
@@ -28,8 +28,8 @@ pub struct Bars {
 }
 
 impl Bars {
-    /// Converts a gait to bars; `None` if a leg stands still or follows a path. A reversed gait is converted to the
-    /// bars of the same movement.
+    /// Converts a gait to bars; `None` if a leg stands still or follows a path. A gait marked as reversed
+    /// becomes bars of the same movement, without the mark.
     pub(crate) fn from_gait(gait: &Gait) -> Option<Self> {
         let amplitudes = gait.strides.each_ref().map(|stride| stride.amplitude);
         let amplitude = amplitudes.map(f64::abs).into_iter().fold(0.0, f64::max);
@@ -84,7 +84,7 @@ impl Bars {
         reversed
     }
 
-    /// Returns the gait as a table of robot.toml, with numbers rounded to thousandths.
+    /// Returns the gait as a table for robot.toml, with numbers rounded to thousandths.
     pub fn to_toml(&self) -> String {
         let format_legs = |values: [f64; 4]| {
             let entries = LEG_NAMES.iter().zip(values);

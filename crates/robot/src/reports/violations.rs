@@ -5,7 +5,7 @@ use lizard_kinematics::{Solution, wrap};
 use crate::config::servo::SERVO_NAMES;
 use crate::robot::Robot;
 
-/// Returns a message for each violation by a solved pose; none if the pose is safe.
+/// Returns a message for each violation by a solved pose; an empty list if the pose is safe.
 pub fn find_pose_violations(robot: &Robot, solution: &Solution) -> Vec<String> {
     let limit_violations = robot.limits().violations(solution);
     let angles = <[f64; 4]>::from(solution.pose);

@@ -1,7 +1,7 @@
 //! `simulated-uno program.hex`: runs a program without a board.
 //!
-//! Prints the lines from the serial port as they arrive, each with its time, and then the pulses that an oscilloscope
-//! would show on each pin.
+//! Prints the lines from the serial port as they arrive, each with its time, then the pulses that an oscilloscope
+//! would show on each pin, and a summary.
 
 mod report;
 
@@ -16,7 +16,8 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, LoadError, State, Uno};
 #[derive(Parser)]
 #[command(
     version,
-    after_help = "The exit status is 1 if the program cannot be loaded or crashes."
+    after_help = "The exit status is 1 if the program cannot be loaded or crashes, or if the output \
+                  cannot be written."
 )]
 struct Arguments {
     /// The program, as Intel HEX (.hex) or ELF (.elf).
@@ -60,6 +61,7 @@ fn main() -> ExitCode {
         Ok(image) => image,
         Err(error) => {
             match error {
+                // This message already names the file.
                 LoadError::Read { .. } => eprintln!("simulated-uno: {error}"),
                 _ => eprintln!("simulated-uno: {}: {error}", arguments.program.display()),
             }
@@ -77,6 +79,7 @@ fn main() -> ExitCode {
     }
 }
 
+/// Runs the program, and prints its lines, its pulses and a summary.
 fn run(arguments: &Arguments, image: Image, out: &mut impl Write) -> io::Result<ExitCode> {
     let fidelity = match arguments.stock {
         true => Fidelity::Stock,
@@ -90,7 +93,7 @@ fn run(arguments: &Arguments, image: Image, out: &mut impl Write) -> io::Result<
     lines.retain(|line| line.ms < arguments.ms);
     if lines.len() < arguments.say.len() {
         let ms = arguments.ms;
-        eprintln!("simulated-uno: lines after --ms {ms} are not sent");
+        eprintln!("simulated-uno: lines at or after --ms {ms} are not sent");
     }
     let mut edges = Vec::new();
     let mut serial_text = report::SerialText::default();

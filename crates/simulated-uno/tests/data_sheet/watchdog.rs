@@ -1,4 +1,4 @@
-//! Tests of the simulated watchdog against the data sheet, chapters 11.8 and 11.9.2.
+//! Tests of the simulated watchdog against the data sheet, sections 11.8 and 11.9.2.
 
 use super::*;
 
@@ -28,8 +28,7 @@ fn run(body: &str, ms: u64) -> Uno {
     uno_after_ms(ms, program(body))
 }
 
-/// Returns a UNO that has run for a number of milliseconds and whose main program clears MCUSR and then runs these
-/// statements once.
+/// Runs a main program that clears MCUSR and then runs these statements once. Returns the UNO after `ms` milliseconds.
 fn run_once(body: &str, ms: u64) -> Uno {
     let program = format!("int main(void) {{ MCUSR = 0; {body} for (;;) {{}} }}");
     run(&program, ms)
@@ -51,7 +50,7 @@ fn time_outs_of_all_prescalers_match_table_11_2() {
                 if (MCUSR & 8) {{ MCUSR = 0; set(0); for (;;) {{}} }}
                 GPIOR0 = 1; set({value}); SMCR = 1; asm volatile (\"sleep\"); for (;;) {{}} }}"
         );
-        let expected = (2048u64 << wdp) * 125;
+        let expected = MIN_TIMEOUT_CYCLES << wdp;
         let uno = uno_after(expected + CYCLES_PER_MS, program(&body));
         assert_eq!(watchdog_reset_cycles(&uno).len(), 1, "WDP = {wdp}");
         let elapsed_cycles = cycles_to_reset(&uno, 0);
@@ -260,6 +259,7 @@ fn a_timer_interrupt_does_not_end_a_sleep_with_interrupts_disabled() {
 
 #[test]
 fn an_interrupt_in_the_cycle_of_the_sleep_instruction_does_not_end_the_sleep() {
+    // OCR1A is 20: with one of these offsets, the interrupt occurs in the cycle of `sleep`.
     for nops in 0..30 {
         let source = format!(
             "ldi r16, 0 $ out MCUSR, r16 $ ldi r16, 8 $ sts WDTCSR, r16

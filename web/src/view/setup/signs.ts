@@ -32,21 +32,21 @@ export const signsStep: Step = {
 function makeQuestion(dialog: SetupDialog, turn: Turn): Node[] {
   const { servo, session } = dialog;
   const { pin } = session.description.servos[servo];
-  const observe = (fault: 'other' | 'none') => () => {
+  const recordFault = (fault: 'other' | 'none') => () => {
     turn.fault = fault;
     dialog.redraw();
   };
   const advice = {
-    other: `Two signal wires are swapped. Switch off the servo supply and connect the signal of the ${SERVO_POSITIONS[servo]} servo to pin D${pin}. Then turn it again.`,
-    none: `Check that its supply is on, that its ground is connected to the UNO's ground, and that its plug is the right way round, with the signal (orange) on pin D${pin}. Then turn it again.`,
+    other: `Two signal wires are swapped. Switch off the servo supply and connect the signal of the ${SERVO_POSITIONS[servo]} servo to pin D${pin}. Then turn the servo again.`,
+    none: `Check that the servo supply is on, that its ground is connected to the UNO's ground, and that the servo's plug is the right way round, with the signal (orange) on pin D${pin}. Then turn the servo again.`,
   };
   return [
     paragraph('Did the servo turn in the direction of the arrow?'),
     row(
-      button('Yes', () => markChecked(dialog), true),
+      button('Yes', () => confirmSign(dialog), true),
       button('No, in the other direction', () => reverseSign(dialog)),
-      button('Another servo turned', observe('other')),
-      button('No servo turned', observe('none')),
+      button('Another servo turned', recordFault('other')),
+      button('No servo turned', recordFault('none')),
     ),
     ...(turn.fault ? [paragraph(advice[turn.fault])] : []),
   ];
@@ -71,13 +71,14 @@ function reverseSign(dialog: SetupDialog): void {
 }
 
 /** Marks this sign as checked and goes to the next unchecked servo, or to the next step. */
-function markChecked(dialog: SetupDialog): void {
+function confirmSign(dialog: SetupDialog): void {
   dialog.markDone(toSignKey(dialog.servo));
   dialog.lastTurn = null;
   const [nextServo] = findUncheckedServos(dialog);
   if (nextServo !== undefined) {
     dialog.servo = nextServo;
-    return dialog.redraw();
+    dialog.redraw();
+    return;
   }
   dialog.markDone('Signs');
   dialog.perform((calibrator) => calibrator.stand(), 'All four servos turn in the right direction.');

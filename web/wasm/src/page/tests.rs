@@ -155,7 +155,7 @@ fn the_prediction_depends_on_the_servos_dead_band_torque_and_supply() {
     let sg90_mm = predict_walk_mm(&page);
     page.set_servos("ideal");
     let ideal_mm = predict_walk_mm(&page);
-    // The loss is 1 deg of 40, as in crates/twin/tests/stream.rs, plus up to 2 %, because a waveform's samples cut its
+    // The loss is 1 deg of 40, as in crates/twin/tests/frames.rs, plus up to 2 %, because a waveform's samples cut its
     // corners; the prediction for ideal servos has no such samples.
     assert!(
         (sg90_mm / ideal_mm - 39.0 / 40.0).abs() < 0.02,

@@ -57,13 +57,13 @@ impl TopView<'_> {
     }
 
     /// Adds the leg parts beside and below the plate to `group`.
-    pub(super) fn draw_feet(&self, mut group: Group) -> Group {
+    pub(super) fn draw_lower_leg_parts(&self, mut group: Group) -> Group {
         for (leg, colour) in self.legs().into_iter().zip(SERVO_COLOURS) {
-            let [driven_joint, idle_joint] = leg.joints;
+            let [crank_joint, follower_joint] = leg.joints;
             group = group
-                .add(self.draw_bar(idle_joint, leg.foot, LEAF_COLOUR, 2.2))
+                .add(self.draw_bar(follower_joint, leg.foot, LEAF_COLOUR, 2.2))
                 .add(self.draw_disc(leg.foot, FOOT_RADIUS_MM, DARK))
-                .add(self.draw_bar(driven_joint, idle_joint, colour, 4.2));
+                .add(self.draw_bar(crank_joint, follower_joint, colour, 4.2));
         }
         group
     }
@@ -88,12 +88,12 @@ impl TopView<'_> {
         group
     }
 
-    /// Adds the leg parts above the plate, and the servo arms that drive the struts, to `group`.
-    pub(super) fn draw_cranks(&self, mut group: Group) -> Group {
+    /// Adds the leg parts above the plate, and the servos' links, which drive the struts, to `group`.
+    pub(super) fn draw_upper_leg_parts(&self, mut group: Group) -> Group {
         let legs = self.legs().into_iter();
         for ((leg, shaft), colour) in legs.zip(self.shafts()).zip(SERVO_COLOURS) {
-            let [servo_arm_tip, crank_joint] = leg.strut_anchors;
-            group = group.add(self.draw_bar(leg.pivots[0], crank_joint, colour, 3.2));
+            let [link_anchor, crank_anchor] = leg.strut_anchors;
+            group = group.add(self.draw_bar(leg.pivots[0], crank_anchor, colour, 3.2));
             for (pivot, joint) in leg.pivots.into_iter().zip(leg.joints) {
                 group = group
                     .add(self.draw_bar(pivot, joint, colour, 3.2))
@@ -101,14 +101,14 @@ impl TopView<'_> {
                     .add(self.draw_joint(joint, 1.7));
             }
             group = group
-                .add(self.draw_bar(servo_arm_tip, crank_joint, STRUT_COLOUR, 1.6))
-                .add(self.draw_joint(crank_joint, 1.2))
-                .add(self.draw_bar(shaft, servo_arm_tip, colour, 3.0));
+                .add(self.draw_bar(link_anchor, crank_anchor, STRUT_COLOUR, 1.6))
+                .add(self.draw_joint(crank_anchor, 1.2))
+                .add(self.draw_bar(shaft, link_anchor, colour, 3.0));
         }
         group
     }
 
-    /// Adds the screws that hold the struts to the servo arms. They lie above all other parts.
+    /// Adds the screws that hold the struts to the servos' links. They lie above all other parts.
     pub(super) fn draw_strut_screws(&self, group: Group) -> Group {
         let anchors = self.legs().map(|leg| leg.strut_anchors[0]);
         let screws = anchors.map(|anchor| self.draw_joint(anchor, 1.2));

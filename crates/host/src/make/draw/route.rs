@@ -18,13 +18,14 @@ pub fn route_between_rows(
 ) -> Vec<Path> {
     let leads_right = |wire: usize| ends[wire].0 > starts[wire].0;
     let route_wire = |wire: usize| {
-        // The wires on the side to which this wire leads; those that also lead there turn first.
+        // The wires farther out on the side to which this wire leads. Those of them that lead to the same side turn
+        // before this wire.
         let outer_wires = match leads_right(wire) {
             true => wire + 1..starts.len(),
             false => 0..wire,
         };
-        let is_same_side = |outer_wire: &usize| leads_right(*outer_wire) == leads_right(wire);
-        let outer_count = outer_wires.filter(is_same_side).count();
+        let leads_to_same_side = |outer_wire: &usize| leads_right(*outer_wire) == leads_right(wire);
+        let outer_count = outer_wires.filter(leads_to_same_side).count();
         let turn_y = first_turn_y + WIRE_SPACING * outer_count as f64;
         let (start, end) = (starts[wire], ends[wire]);
         vec![start, (start.0, turn_y), (end.0, turn_y), end]
@@ -32,8 +33,8 @@ pub fn route_between_rows(
     (0..starts.len()).map(route_wire).collect()
 }
 
-/// Returns the point near a board's lower right corner (`corner`) where a wire to the lower row of pins turns; `index`
-/// counts these wires from the board outwards.
+/// Returns the point near a board's lower right corner (`corner`) where wire `index` to the lower row of pins turns.
+/// The wires are counted from the board outwards.
 pub fn turn_point(corner: (f64, f64), index: usize) -> (f64, f64) {
     let offset = WIRE_SPACING * (index as f64 + 1.0);
     (corner.0 + offset, corner.1 + offset)

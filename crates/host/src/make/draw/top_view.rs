@@ -26,9 +26,9 @@ const STEEL_COLOUR: &str = "#555555";
 pub fn draw_top_view(robot: &Robot, solution: &Solution, has_labels: bool) -> String {
     let view = TopView::new(robot, solution);
     let mut group = view.draw_skin(Group::new());
-    group = view.draw_feet(group);
+    group = view.draw_lower_leg_parts(group);
     group = view.draw_plate(group);
-    group = view.draw_cranks(group);
+    group = view.draw_upper_leg_parts(group);
     for side in Side::ALL {
         group = view.draw_slider(group, side);
     }

@@ -27,9 +27,9 @@ use crate::{Failure, RobotArgs};
   lizard parts out/fit --coupon
   lizard parts out/corner --corner
 
-Print the coupon first: the first column that takes every part by hand is the `fit` of
-your printer; enter it under [parts] in robot.toml. Then print one corner: a seat for A1,
-its link, leg, strut and foot.")]
+Print the coupon first: the first column into which you can push every part by hand has
+the `fit` of your printer; enter it under [parts] in robot.toml. Then print one corner: a
+seat for A1, its link, leg, strut and foot.")]
 pub struct Args {
     /// Output folder; it is created if it does not exist
     #[arg(value_name = "DIR")]
@@ -70,7 +70,7 @@ impl From<BuildError> for Failure {
 /// Builds all files and writes them.
 ///
 /// # Errors
-/// Fails if robot.toml is invalid, if the parts do not fit, or if a file cannot be written. Writes nothing before all
+/// Fails if robot.toml is invalid, if parts would collide, or if a file cannot be written. Writes nothing before all
 /// files are built.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
@@ -88,11 +88,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
             false => assembly.collect_parts(),
         });
     }
-    let bar = create_progress_bar(parts.len(), "{wide_bar} {pos}/{len} {msg}");
+    let progress_bar = create_progress_bar(parts.len(), "{wide_bar} {pos}/{len} {msg}");
     let mut files = Vec::new();
     let mut entries = Vec::new();
     for part in &parts {
-        bar.set_message(part.name.clone());
+        progress_bar.set_message(part.name.clone());
         let new_files = make_part_files(part, kerf)?;
         entries.push(PartEntry {
             part: part.name.clone(),
@@ -103,9 +103,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
             files: new_files.iter().map(|file| file.path.clone()).collect(),
         });
         files.extend(new_files);
-        bar.inc(1);
+        progress_bar.inc(1);
     }
-    bar.finish_and_clear();
+    progress_bar.finish_and_clear();
     let mut weight_note = None;
     if !args.coupon && !args.corner {
         let pose = robot.lizard().solve(&robot.neutral_pose())?;
@@ -122,8 +122,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
         serde_json::to_writer_pretty(&mut out, &entries)?;
         writeln!(out)?;
     } else {
-        let needed_entries = entries.iter().filter(|part| part.instead_of.is_none());
-        let piece_count: usize = needed_entries.map(|part| part.count).sum();
+        let needed_entries = entries.iter().filter(|entry| entry.instead_of.is_none());
+        let piece_count: usize = needed_entries.map(|entry| entry.count).sum();
         writeln!(
             out,
             "{} parts, {piece_count} pieces, {} files in {}",
@@ -138,7 +138,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-/// Formats a note that the mass or the centre of mass in robot.toml differs from the parts.
+/// Formats a note that robot.toml has another mass or centre of mass than the parts.
 fn format_weight_note(bill: &Bill, robot: &Robot) -> String {
     let body = &robot.ground().body;
     let (mass, centre) = (body.mass, body.centre_of_mass);

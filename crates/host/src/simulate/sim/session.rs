@@ -38,7 +38,7 @@ pub struct DialogueLine {
 pub enum Event<'a> {
     /// The next line of the dialogue.
     Line(&'a DialogueLine),
-    /// The simulated time in ms since power-on, reported every 20 ms.
+    /// The simulated time in ms since power-on, reported every 20 ms and at the end.
     Time(u64),
 }
 
@@ -49,7 +49,7 @@ pub struct Recording {
     pub banner: Option<String>,
     /// The answer to each command of the script; `None` if no answer arrived before the end of the run.
     pub answers: Vec<Option<String>>,
-    /// Every servo pulse.
+    /// The servo pulses of each frame.
     pub frames: FrameLog,
     /// The bytes that the UNO received completely, each with its cycle.
     pub received_by_uno: Vec<SerialByte>,
@@ -119,7 +119,7 @@ pub fn play(
     })
 }
 
-/// The traffic on the serial line.
+/// The dialogue on the serial line: collects the answers and reports the lines.
 struct Dialogue<F> {
     reader: LineReader,
     banner: Option<String>,

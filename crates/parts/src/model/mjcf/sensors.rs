@@ -34,7 +34,7 @@ impl Writer<'_> {
         );
     }
 
-    /// Writes the site that measures the load of a servo's pad.
+    /// Writes the site that measures the load of the pad on a servo's leg.
     pub(super) fn write_pad_site(&mut self, servo: usize) {
         let radius = self.assembly.robot().parts().pad.radius;
         let (leg, position) = (LEG_NAMES[servo], format_metres(self.dome_centre(servo)));

@@ -66,7 +66,7 @@ fn the_longest_possible_status_fits_into_an_output_line() {
     dialogue.expect_accepted(name);
     let line = dialogue.send_line("status");
     let values = parse_pairs(line.strip_prefix("ok ").expect("the line is a status"));
-    // The longest possible value of each key whose value in this line may be shorter.
+    // The keys whose values could be longer than in this line, each with its longest possible value.
     let longest_values = [
         ("phase", "0.999"),
         ("pose", "359.99,359.99,359.99,359.99"),
@@ -75,8 +75,8 @@ fn the_longest_possible_status_fits_into_an_output_line() {
         ("frames", "4294967295"),
         ("guard", "clear"),
     ];
-    let extra_bytes = longest_values.map(|(key, longest)| longest.len() - values[key].len());
-    let extra_bytes: usize = extra_bytes.iter().sum();
+    let extra_lengths = longest_values.map(|(key, longest)| longest.len() - values[key].len());
+    let extra_bytes: usize = extra_lengths.iter().sum();
     assert!(line.len() + extra_bytes + "\r\n".len() <= usize::from(MAX_OUTPUT_LINE_BYTES));
 }
 

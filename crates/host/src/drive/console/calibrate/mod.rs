@@ -47,7 +47,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let result = result.and_then(|mut guide| run_guide(&mut guide));
     match result {
         Ok(is_saved) => {
-            // The terminal may be gone; a failed message is not an error.
+            // The terminal may be gone; a message that cannot be written is not an error.
             let message = if is_saved {
                 "the calibration is saved"
             } else {
@@ -56,7 +56,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
             let _ = writeln!(io::stdout(), "{message}");
             Ok(())
         }
-        // Opening the port again resets the board, so unsaved settings are lost then.
+        // The next program that opens the port resets the board, which discards unsaved settings.
         Err(DialogueError::Link(error)) => Err(Failure::Operation(format!(
             "{}: {error}; unsaved settings are lost when the port is opened again",
             board.name
@@ -77,6 +77,7 @@ fn run_guide<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, 
     }
 }
 
+/// As [`run_guide`], but closing the terminal is an error.
 fn run_steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, DialogueError> {
     let mut screen = FullScreen::new()?;
     let mut last_view = None;
@@ -125,7 +126,7 @@ fn is_suspend_key(key: KeyEvent) -> bool {
     key.code == KeyCode::Char('z') && key.modifiers.contains(KeyModifiers::CONTROL)
 }
 
-/// Returns a key's meaning in the guide; `None` if it has none or was released.
+/// Returns a key's meaning in the guide; `None` if it has none, or if the event is its release.
 fn interpret_key(key: KeyEvent) -> Option<Key> {
     if key.kind == KeyEventKind::Release {
         return None;

@@ -9,9 +9,9 @@
 //! matter to the stack, so the decoder is shorter than a parser of the listing, and the program needs no other tool.
 //!
 //! The bound rests on the following assumptions, and any violation is an error that names the function. Interrupts do
-//! not nest; only a handler that never returns, such as the watchdog's, may be interrupted once more. No function calls
-//! itself, and no code jumps to a computed address. The stack pointer changes only by `push`, `pop`, calls, returns,
-//! and stack frames addressed by r29:r28.
+//! not nest, except that one other handler may interrupt a handler that never returns, such as the watchdog's. No
+//! function calls itself, and no code jumps to a computed address. The stack pointer changes only by `push`, `pop`,
+//! calls, returns, and stack frames addressed by r29:r28.
 
 mod analysis;
 mod instruction;

@@ -7,7 +7,7 @@ fn paper_robot() -> Robot {
     Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid")
 }
 
-/// Computes a gait's pulse widths at a phase, us, from the firmware's table.
+/// Computes a gait's pulse widths (us) at a phase from the firmware's table.
 fn compute_pulse_widths(robot: &Robot, gait: &CheckedGait, phase: u16) -> [Option<f64>; 4] {
     let angles = gait.table_angles(phase);
     std::array::from_fn(|i| Some(robot.servos()[i].pulse(angles[i])))
@@ -34,10 +34,11 @@ fn simulate_last_of_four_cycles(
     totals
 }
 
-/// Asserts that two movements differ by less than `max_forward`, mm, and 0.2 deg.
+/// Asserts that two movements differ by less than `max_forward_difference` (mm) and 0.2 deg.
 #[track_caller]
-fn assert_close(a: Travel, b: Travel, max_forward: f64, message: &str) {
-    assert!((a.forward - b.forward).abs() < max_forward, "{message}");
+fn assert_close(a: Travel, b: Travel, max_forward_difference: f64, message: &str) {
+    let forward_difference = (a.forward - b.forward).abs();
+    assert!(forward_difference < max_forward_difference, "{message}");
     assert!((a.turn - b.turn).abs() < 0.2, "{message}");
 }
 
@@ -55,7 +56,8 @@ fn a_robot_with_ideal_servos_moves_as_predicted_for_the_gait() {
         for gait in robot.gaits().iter().filter(|gait| gait.name() != "look") {
             let totals =
                 simulate_last_of_four_cycles(&robot, gait.name(), ServoModel::Ideal, &ground);
-            let (travel, expected) = (totals.travel(), gait.simulate_cycle(&ground).travel);
+            let travel = totals.travel();
+            let expected = gait.simulate_cycle(&ground).travel;
             let name = gait.name();
             let message = format!("{name}: expected {expected:?}, got {travel:?}");
             assert_close(travel, expected, 0.35, &message);
@@ -73,7 +75,7 @@ fn a_dead_band_shortens_the_walk_by_its_fraction_of_the_stroke() {
             .travel()
             .forward
     });
-    // The dead band takes 1 of 40 degrees when a leg reverses.
+    // At each reversal, the dead band takes 1 deg of the stroke of 40 deg.
     assert!(
         (sg90_forward / ideal_forward - 39.0 / 40.0).abs() < 0.01,
         "{sg90_forward} mm with SG-90 servos, {ideal_forward} mm with ideal servos"
@@ -113,25 +115,26 @@ fn three_feet_do_not_slip_while_the_fourth_swings() {
 #[test]
 fn a_robot_without_pulses_does_not_move() {
     let robot = paper_robot();
-    let walk = robot.gait("walk").expect("the robot has the gait");
+    let walk = robot.gait("walk").expect("paper.toml has the gait");
     let mut twin = Twin::new(&robot, ServoModel::SG90);
     for (_, phase) in walk.frames().take(20) {
         twin.simulate_pulses(compute_pulse_widths(&robot, walk, phase));
     }
-    let state_before = (twin.angles(), twin.simulate_pulses([None; 4]).body_pose);
+    let angles_before = twin.angles();
+    let body_pose_before = twin.simulate_pulses([None; 4]).body_pose;
     let state_after = twin.simulate_pulses([None; 4]);
-    assert_eq!((state_after.angles, state_after.body_pose), state_before);
-    assert_eq!(
-        (state_after.has_pulse, state_after.slips, state_after.frame),
-        ([false; 4], [0.0; 4], 22)
-    );
+    assert_eq!(state_after.angles, angles_before);
+    assert_eq!(state_after.body_pose, body_pose_before);
+    assert_eq!(state_after.has_pulse, [false; 4]);
+    assert_eq!(state_after.slips, [0.0; 4]);
+    assert_eq!(state_after.frame, 22);
 }
 
 #[test]
 fn simulate_angles_moves_the_robot_like_the_equivalent_pulses() {
     let robot =
         Robot::parse(include_str!("../../../robots/unequal.toml")).expect("unequal.toml is valid");
-    let walk = robot.gait("walk").expect("the robot has the gait");
+    let walk = robot.gait("walk").expect("unequal.toml has the gait");
     let mut twins = [0, 1].map(|_| Twin::new(&robot, ServoModel::SG90));
     for (_, phase) in walk.frames() {
         let pulse_state = twins[0].simulate_pulses(compute_pulse_widths(&robot, walk, phase));
