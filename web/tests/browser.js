@@ -70,6 +70,8 @@ function addTimeouts(object, name, methods) {
 
 /** A phone that is held upright. */
 export const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+/** A phone that is held sideways. */
+export const LANDSCAPE = { viewport: { width: 844, height: 390 }, hasTouch: true, isMobile: true };
 
 /** Errors and warnings of the current test's pages. */
 export const browserErrors = [];

@@ -3,18 +3,17 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 
-import { DIST, address, advance, openStanding, startDrag, useBrowser, testPage, waitForGait } from './browser.js';
+import { DIST, LANDSCAPE, address, advance, openStanding, startDrag, useBrowser, testPage, waitForGait } from './browser.js';
 
 useBrowser();
 
-const PHONE = { viewport: { width: 844, height: 390 }, hasTouch: true, isMobile: true };
 /** A thumb's reach from its corner of the screen, CSS pixels. */
 const REACH_PX = 220;
 /** Smallest size of a button that a thumb hits without looking, CSS pixels. */
 const TARGET_PX = 120;
 
 async function openRemote() {
-  const page = await openStanding(PHONE);
+  const page = await openStanding(LANDSCAPE);
   await page.evaluate(() => {
     window.wakeLockCount = 0;
     window.vibrationCount = 0;
@@ -35,7 +34,7 @@ test('a phone can install the page, with its icons, for use without a network', 
     assert.equal(type, bytes[0] === 0x89 ? 'image/png' : 'image/svg+xml');
     assert.ok(worker.includes(`"${src}"`), `${src} is stored`);
   }
-  const page = await openStanding(PHONE);
+  const page = await openStanding(LANDSCAPE);
   const devTools = await page.context().newCDPSession(page);
   const { url, errors, data } = await devTools.send('Page.getAppManifest');
   assert.equal(url, `${address()}manifest.webmanifest`);
@@ -45,7 +44,7 @@ test('a phone can install the page, with its icons, for use without a network', 
 });
 
 testPage('stick and stop are in reach of the thumbs, and the robot fills the screen', openRemote, async (page) => {
-  const { width, height } = PHONE.viewport;
+  const { width, height } = LANDSCAPE.viewport;
   const [stick, stop, floor] = await Promise.all(['#stick', 'button.stop', 'section.floor'].map((name) => page.locator(name).boundingBox()));
   for (const box of [stick, stop]) assert.ok(Math.min(box.width, box.height) >= TARGET_PX, JSON.stringify(box));
   assert.ok(stick.x + stick.width <= REACH_PX && height - stick.y <= REACH_PX, JSON.stringify(stick));

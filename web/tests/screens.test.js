@@ -3,11 +3,9 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 
-import { address, advance, openBlankPage, browserErrors, openPage, measureOverflow, openStanding, readBox, unfold, withTimeout, useBrowser, chooseRobot, testPage, clickAndAdvance, PHONE, findGaitButton, readGait } from './browser.js';
+import { address, advance, openBlankPage, browserErrors, openPage, measureOverflow, openStanding, readBox, unfold, withTimeout, useBrowser, chooseRobot, testPage, clickAndAdvance, LANDSCAPE, PHONE, findGaitButton, readGait } from './browser.js';
 
 useBrowser();
-
-const LANDSCAPE = { viewport: { width: 844, height: 390 }, hasTouch: true, isMobile: true };
 
 async function isOnScreen(page, selector) {
   const [{ top, bottom, left, right }, { width, height }] = [await readBox(page, selector), await page.evaluate(() => ({ width: innerWidth, height: innerHeight }))];

@@ -25,18 +25,18 @@ const setGamepads = (page, ...gamepads) =>
     for (let frame = 0; frame < 2; frame++) await new Promise(requestAnimationFrame);
   }, gamepads);
 
-const waitForGait = (page, gait) => page.waitForFunction((gait) => document.querySelector('#doing').textContent === gait, gait);
+const waitForShownGait = (page, gait) => page.waitForFunction((gait) => document.querySelector('#doing').textContent === gait, gait);
 
 /** Presses a key (`down`) or releases it (`up`), and waits until the robot does a gait. */
 async function moveKey(page, direction, key, gait) {
   await page.keyboard[direction](key);
-  await waitForGait(page, gait);
+  await waitForShownGait(page, gait);
 }
 
 /** Sets the state of the gamepads, and waits until the robot does a gait. */
 async function steer(page, gait, ...gamepads) {
   await setGamepads(page, ...gamepads);
-  await waitForGait(page, gait);
+  await waitForShownGait(page, gait);
 }
 
 testPage('arrow keys make the robot walk, bend and turn while they are held, and stop it when released', openPredicted, async (page) => {
@@ -65,11 +65,11 @@ testPage('the robot walks in the direction of the stick on the screen', openPred
   const { x, y, width, height } = await stick.boundingBox();
   const [middleX, middleY] = [x + width / 2, y + height / 2];
   await startDrag(page, [middleX, middleY], [middleX, y + 2]);
-  await waitForGait(page, 'walk');
+  await waitForShownGait(page, 'walk');
   await page.mouse.move(x + width - 2, middleY);
-  await waitForGait(page, 'right');
+  await waitForShownGait(page, 'right');
   await page.mouse.up();
-  await waitForGait(page, 'stop');
+  await waitForShownGait(page, 'stop');
 });
 
 testPage('a stick held half way halves the pace, and its release restores the pace', openPredicted, async (page) => {
@@ -78,7 +78,7 @@ testPage('a stick held half way halves the pace, and its release restores the pa
   const deflectStick = (forward, pressed = false) => setGamepads(page, { axes: [0, -forward], buttons: [{ pressed }] });
   await waitForPace(80);
   await deflectStick(0.5);
-  await waitForGait(page, 'walk');
+  await waitForShownGait(page, 'walk');
   await waitForPace(40);
   // An unsteady thumb must not change the pace in each frame.
   await deflectStick(0.7);
@@ -89,12 +89,12 @@ testPage('a stick held half way halves the pace, and its release restores the pa
   await deflectStick(0.5);
   await waitForPace(40);
   await deflectStick(0);
-  await waitForGait(page, 'stop');
+  await waitForShownGait(page, 'stop');
   await waitForPace(80);
   await deflectStick(0.5);
   await waitForPace(40);
   await deflectStick(0.5, true);
-  await waitForGait(page, 'stop');
+  await waitForShownGait(page, 'stop');
   await waitForPace(80);
   // A pace that the robot has not confirmed yet is halved, too, and not replaced by the previous pace.
   await deflectStick(0);
@@ -121,7 +121,7 @@ testPage('a stick held half way halves the pace, and its release restores the pa
 testPage('the robot stops when the window loses the focus', openPredicted, async (page) => {
   await moveKey(page, 'down', 'w', 'walk');
   await page.evaluate(() => void window.dispatchEvent(new Event('blur')));
-  await waitForGait(page, 'stop');
+  await waitForShownGait(page, 'stop');
 });
 
 testPage('a gamepad drives', openPredicted, async (page) => {
@@ -147,7 +147,7 @@ testPage('a gamepad button stops the robot once, and the stick drives again only
 
 testPage('a gamepad button stops a gait that a button of the page has started', openPredicted, async (page) => {
   await findGaitButton(page, 'walk').click();
-  await waitForGait(page, 'walk');
+  await waitForShownGait(page, 'walk');
   await steer(page, 'stop', { axes: [0, 0], buttons: [{ pressed: true }] });
 });
 
@@ -159,17 +159,17 @@ testPage('a second gamepad and the direction pad drive, too', openPredicted, asy
 testPage('a held gamepad does not keep the robot walking when another window gets the focus', openPredicted, async (page) => {
   await steer(page, 'walk', { axes: [0, -1], buttons: [] });
   await page.evaluate(() => void window.dispatchEvent(new Event('blur')));
-  await waitForGait(page, 'stop');
+  await waitForShownGait(page, 'stop');
   await page.waitForTimeout(500);
   assert.equal(await page.locator('#doing').textContent(), 'stop');
 });
 
 test('the page opens with the robot walking slowly, unless reduced motion is preferred', async () => {
   const movingPage = await openPage({ reducedMotion: 'no-preference' });
-  await waitForGait(movingPage, 'walk');
+  await waitForShownGait(movingPage, 'walk');
   await movingPage.waitForFunction(() => document.querySelector('#speed').value === '50');
   const stillPage = await openPredicted();
-  await waitForGait(stillPage, 'stand');
+  await waitForShownGait(stillPage, 'stand');
   // On a page with motion, the robot would have begun to walk within this time.
   await advance(stillPage, 6000);
   assert.equal(await stillPage.locator('#doing').textContent(), 'stand');
@@ -191,7 +191,7 @@ test('the robot walks at the start even if walk and trot are predicted before th
   assert.equal(await page.locator('#where').textContent(), 'waiting for the simulated UNO');
   await advance(page, 2500);
   await page.clock.runFor(1000);
-  await waitForGait(page, 'walk');
+  await waitForShownGait(page, 'walk');
 });
 
 testPage('a robot with other gaits is driven by its own gaits', openPredicted, async (page) => {

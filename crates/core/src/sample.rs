@@ -5,7 +5,6 @@
 //! has another value, and every servo has its own gain, neutral width and travel. Therefore a test fails if the code
 //! confuses the numbers of two parts.
 
-pub mod bounds;
 mod five_bar;
 mod measurements;
 

@@ -104,7 +104,8 @@ impl<T> Derivative<T> {
         Self { rate, acceleration }
     }
 
-    fn map<U>(self, f: impl Fn(T) -> U) -> Derivative<U> {
+    /// Applies a function to the rate and to the acceleration; it must be linear, such as a coordinate of a vector.
+    pub fn map<U>(self, f: impl Fn(T) -> U) -> Derivative<U> {
         Derivative::new(f(self.rate), f(self.acceleration))
     }
 }

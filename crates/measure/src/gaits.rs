@@ -48,6 +48,8 @@ pub struct Gaits<'a> {
     pub(crate) robot: &'a Robot,
     /// Pace, percent of each gait's nominal pace.
     pub(crate) pace_percent: u8,
+    /// Pace as a multiple of each gait's nominal pace.
+    pub(crate) pace: f64,
     /// The gaits that the user names, in the user's order.
     named_candidates: Vec<Candidate<'a>>,
     /// All gaits that are fast enough to be considered; predicted on the first use.
@@ -63,14 +65,10 @@ impl<'a> Gaits<'a> {
         Self {
             robot,
             pace_percent,
+            pace,
             named_candidates: named_gaits.iter().map(to_candidate).collect(),
             all_candidates: OnceCell::new(),
         }
-    }
-
-    /// Returns the pace as a multiple of each gait's nominal pace.
-    pub(crate) fn pace(&self) -> f64 {
-        f64::from(self.pace_percent) / 100.0
     }
 
     /// Returns the gaits that a walk can have: the named gaits, or all gaits if the user names none.
@@ -85,7 +83,7 @@ impl<'a> Gaits<'a> {
     fn all_candidates(&self) -> &[Candidate<'a>] {
         self.all_candidates.get_or_init(|| {
             let moving_gaits = self.robot.gaits().iter().filter(|gait| gait.has_movement());
-            let pace = self.pace();
+            let pace = self.pace;
             let candidates = moving_gaits.map(|gait| Candidate::new(self.robot, gait, pace));
             // A gait that hardly moves the robot would make the minimum duration of a rest too long.
             let is_fast =

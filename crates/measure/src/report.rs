@@ -265,7 +265,7 @@ impl<'a> GaitReport<'a> {
             mean_path: cycle_path.iter().map(to_phase_point).collect(),
             largest_deviation: LargestDeviation::find(cycle_path, predicted_values),
             mujoco,
-            prediction_range: PredictionRange::compute(robot, candidate.gait, gaits.pace()),
+            prediction_range: PredictionRange::compute(robot, candidate.gait, gaits.pace),
             predicted_path: &predicted_gait.path,
         }
     }

@@ -25,7 +25,7 @@ struct reset {
 	avr_t *avr;
 	bool follows_data_sheet;
 	bool has_boot_loader;     /* a boot loader clears MCUSR before the firmware starts */
-	uint8_t requested_causes; /* causes of the requested reset; 0 if none is requested */
+	uint8_t requested_causes; /* causes of the requested reset or power cut; 0 if none */
 	uint8_t mcusr;            /* MCUSR, which simavr's reset clears */
 	uint64_t noise_state;     /* state of the random generator whose output fills the SRAM */
 	uint8_t initial_sram[CHIP_SRAM_END]; /* the data space right after power-on */

@@ -68,7 +68,7 @@ uint32_t uno_pin_levels(const struct uno *uno);
 uint16_t uno_lowest_stack_address(const struct uno *uno);
 /* The last error that simavr logged; empty if none. */
 const char *uno_error_message(const struct uno *uno);
-/* The data space: registers r0 to r31, I/O registers and SRAM; 0x900 bytes. */
+/* The data space: registers r0 to r31, I/O registers and SRAM; CHIP_SRAM_END bytes. */
 const uint8_t *uno_data(const struct uno *uno);
 /* CHIP_VECTOR_COUNT items, indexed by the vector number. */
 const struct vector_stats *uno_vectors(const struct uno *uno);

@@ -162,7 +162,7 @@ impl<'a> CheckedRobot<'a> {
 
     /// Commands a pose. Returns false if the robot refuses the pose, because rounding to hundredths of a degree moves it
     /// beyond a limit.
-    pub fn accepts_pose(&mut self, pose: &Pose) -> bool {
+    pub fn try_pose(&mut self, pose: &Pose) -> bool {
         let answer = self.say(&pose_command(self.robot.firmware(), pose));
         answer.starts_with("ok")
     }

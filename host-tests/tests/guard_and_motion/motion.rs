@@ -118,7 +118,7 @@ fn in_a_move_all_servos_turn_by_the_same_fraction_and_arrive_together() {
         for _ in 0..DIALOGUE_COUNT {
             let goal = random_safe_pose(&mut rng, named.robot.firmware());
             let mut checked_robot = CheckedRobot::power_on_and_stand(named);
-            if !checked_robot.accepts_pose(&goal) {
+            if !checked_robot.try_pose(&goal) {
                 continue;
             }
             let mut poses = vec![checked_robot.pose()];
@@ -156,7 +156,7 @@ fn servos_wake_one_by_one_in_the_pose_before_the_rest() {
         let safe_pose = random_safe_pose(&mut rng, named.robot.firmware());
         for pose_before_rest in [Pose::NEUTRAL, safe_pose] {
             if pose_before_rest != Pose::NEUTRAL {
-                checked_robot.accepts_pose(&pose_before_rest);
+                checked_robot.try_pose(&pose_before_rest);
                 checked_robot.settle();
                 checked_robot.expect_ok("rest");
                 checked_robot.run_frames(10);

@@ -71,8 +71,8 @@ fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
         let NamedRobot { name, robot } = named;
         for [start_pose, end_pose] in find_pairs_with_unsafe_path(&mut rng, robot) {
             let mut checked_robot = CheckedRobot::power_on_and_stand(named);
-            let is_at_start = checked_robot.accepts_pose(&start_pose) && checked_robot.settle();
-            if !is_at_start || !checked_robot.accepts_pose(&end_pose) {
+            let is_at_start = checked_robot.try_pose(&start_pose) && checked_robot.settle();
+            if !is_at_start || !checked_robot.try_pose(&end_pose) {
                 continue;
             }
             let start_pose = checked_robot.pose();
@@ -104,7 +104,7 @@ fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
             let status = checked_robot.say("status");
             assert!(status.contains(" guard=held "), "{name}");
             // The robot can move back, unless the guard stops it again.
-            let is_accepted = checked_robot.accepts_pose(&start_pose);
+            let is_accepted = checked_robot.try_pose(&start_pose);
             assert!(is_accepted, "{name}: {start_pose:?}");
             if checked_robot.settle() {
                 let status = checked_robot.say("status");

@@ -16,11 +16,16 @@ export function loadHex(text, flash) {
     if (type === 0) {
       if (address + data.length > flash.length) throw makeError('is beyond the flash');
       flash.set(data, address);
-    } else if (type === 1) hasEnded = true;
-    else if (type === 2) baseAddress = upperAddress << 4;
-    else if (type === 4) baseAddress = upperAddress * 0x10000;
-    // Types 3 and 5 are start addresses, which the chip does not use.
-    else if (type > 5) throw makeError('has an unknown type');
+    } else if (type === 1) {
+      hasEnded = true;
+    } else if (type === 2) {
+      baseAddress = upperAddress << 4;
+    } else if (type === 4) {
+      baseAddress = upperAddress * 0x10000;
+    } else if (type > 5) {
+      // Types 3 and 5 are start addresses, which the chip does not use.
+      throw makeError('has an unknown type');
+    }
   });
   if (!hasEnded) throw new Error('the HEX file has no end record');
 }

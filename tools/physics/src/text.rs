@@ -16,7 +16,7 @@ use crate::crate_dir;
 pub fn load_stored<T: DeserializeOwned>(file: &str) -> T {
     let text = fs::read_to_string(crate_dir().join(file)).expect(file);
     serde_json::from_str(&text)
-        .unwrap_or_else(|error| panic!("{file} has the expected format: {error:?}"))
+        .unwrap_or_else(|error| panic!("{file} does not have the expected format: {error}"))
 }
 
 /// Formats nested maps and lists as the text of a stored file: JSON with a line for each entry down to this depth.

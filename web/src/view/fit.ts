@@ -180,8 +180,8 @@ export class FitView {
 }
 
 /**
- * Returns the smallest distance between two parts, mm; null if the distance is unknown; or an error if the parts do
- * not fit.
+ * Returns the smallest distance between two parts, mm; null if the distance is unknown or `signal` was aborted; or an
+ * error if the parts do not fit.
  */
 async function proveParts(toml: string, signal: AbortSignal) {
   const { proveFit, UnfitError } = await import('../parts/make-parts');

@@ -19,8 +19,9 @@ const BAR_WIDTH = 16;
 /** Fraction of the cycle that a bar covers in a gait whose legs hold still in between. */
 const HELD_STANCE_FRACTION = 0.25;
 
-/** The keys of a gait's numbers with an input, which has the number's range in robot.toml. */
+/** The keys of a gait's numbers that have an input. In index.html, each input has the number's range in robot.toml. */
 const GAIT_NUMBERS = ['period', 'duty', 'amplitude'] as const;
+/** Ranges of a leg's numbers in robot.toml, and the steps of their inputs. */
 const LEG_NUMBER_RANGES = { start: { min: '0', max: '1', step: '0.005' }, gain: { min: '-2', max: '2', step: '0.05' } };
 
 /** Rounds a value to a multiple of `step`. */
@@ -102,7 +103,9 @@ export class GaitEditorView {
     this.bars.push(bar);
     this.handles.push(handle);
     this.addDragHandler(bar, (cycles, startGait) => this.setLegValue('start', leg, roundToMultiple(wrapPhase((startGait.start[leg] ?? 0) + cycles), 0.005)));
-    this.addDragHandler(handle, (cycles, startGait) => this.changeGait({ duty: roundToMultiple(Math.min(0.95, Math.max(0.05, startGait.duty + cycles)), 0.005) }));
+    const { min, max } = element<HTMLInputElement>('gait-duty');
+    const clampDuty = (duty: number) => Math.min(Number(max), Math.max(Number(min), duty));
+    this.addDragHandler(handle, (cycles, startGait) => this.changeGait({ duty: roundToMultiple(clampDuty(startGait.duty + cycles), 0.005) }));
     const row = element('gait-legs').appendChild(tableRow([LEGS[leg] ?? '']));
     for (const [key, label] of [['start', 'starts at'], ['gain', 'gain']] as const) {
       const input = make('input', { type: 'number', ...LEG_NUMBER_RANGES[key], ariaLabel: `${LEGS[leg]} ${label}` });

@@ -47,6 +47,7 @@
 use lizard_kinematics as kinematics;
 use lizard_kinematics::Vector;
 
+use crate::numbers::section::FiveBarLengths;
 use crate::numbers::slider::Slider;
 use crate::numbers::units::Scale;
 
@@ -70,13 +71,17 @@ const Q10_STEP: f64 = 1.0 / 1024.0;
 ///
 /// Two kinds of values are wrong. A rise above 32, the largest value of an entry, is cut off, so the value is too
 /// small; a step that begins at 32 ends at `17/16 R / 1024`, where the sine is at most .065. For couplers of nearly
-/// equal length, the table over `s` holds the largest rise at all arguments below the peak, so the value is too large;
-/// the resulting sine is at most .045, because the peak is below `2 N`.
+/// equal length, the table over `s` holds the largest rise at all arguments below the peak, so the value is too large
+/// (see [`MAX_OVERSTATED_MARGIN`]).
 ///
 /// The true margin is then below a tenth. According to part 2 of the derivation, it is at most the root of `m'^2 + q`.
 /// With the shortest couplers, of 2048 U, and `e` at most 3.1, `q` is at most `7.3 k / ab`: .0071 for stretched
 /// couplers of equal length, where `m'` is .031, and .0031 for folded couplers of a ratio of 8, where `m'` is .077.
 pub const MIN_KNOWN_MARGIN: f64 = 0.08;
+
+/// The largest type-2 margin, a sine, that results from a value of the tables that is too large (see
+/// [`MIN_KNOWN_MARGIN`]). It is so small because the peak of the table over `s` is below `2 N`.
+pub const MAX_OVERSTATED_MARGIN: f64 = 0.045;
 
 /// The largest errors of the triangle's shape that is read from the tables of a pair of couplers.
 ///
@@ -253,6 +258,15 @@ pub struct RoundedLengths {
     pub couplers: [i16; 2],
 }
 
+impl From<&FiveBarLengths> for RoundedLengths {
+    fn from(lengths: &FiveBarLengths) -> Self {
+        Self {
+            scale: lengths.scale,
+            couplers: lengths.couplers,
+        }
+    }
+}
+
 /// The largest errors of a five-bar's margins, at one pair of crank angles or over a range of pairs.
 #[derive(Clone, Copy, Debug)]
 pub struct EndErrors {
@@ -267,7 +281,7 @@ pub struct EndErrors {
     /// The smallest true type-2 margin in the range, a sine; 0 if the loop does not close in all of the range.
     pub min_type2: f64,
     /// True if the tables have a correct value in all of the range. Otherwise the computed margins may be too small by
-    /// more than these errors, and a type-2 margin of at most .045 may be too large (see [`MIN_KNOWN_MARGIN`]).
+    /// more than these errors, and a type-2 margin of at most [`MAX_OVERSTATED_MARGIN`] may be too large.
     pub are_margins_known: bool,
 }
 

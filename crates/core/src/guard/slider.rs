@@ -44,8 +44,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::guard::bounds;
     use crate::numbers::units::Angle;
-    use crate::sample::{Sample, bounds, slider_in_steps, steps_per_mm, to_degrees};
+    use crate::sample::{Sample, slider_in_steps, steps_per_mm, to_degrees};
 
     /// Yields random sliders, in mm, of robots that hobby servos can move.
     fn any_slider() -> impl Strategy<Value = kinematics::Slider> {

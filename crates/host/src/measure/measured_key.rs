@@ -37,17 +37,17 @@ pub(super) struct MeasuredKey {
 }
 
 impl MeasuredKey {
-    /// Creates a key from its measured value and its value in robot.toml. `scale` converts the latter to the supply
-    /// voltage of the measurement.
+    /// Creates a key from its measured value and its value in robot.toml. `supply_factor` converts the latter to the
+    /// supply voltage of the measurement.
     pub(super) fn new(
         table: &str,
         name: &'static str,
         decimals: usize,
         estimate: Estimate,
         file_value: f64,
-        scale: f64,
+        supply_factor: f64,
     ) -> Self {
-        let robot_value = file_value * scale;
+        let robot_value = file_value * supply_factor;
         let difference = (estimate.value - robot_value) / estimate.standard_error.max(1e-9);
         Self {
             table: table.to_owned(),
@@ -58,7 +58,7 @@ impl MeasuredKey {
             difference,
             agrees: difference.abs() <= AGREEMENT_LIMIT,
             decimals,
-            scale: 1.0 / scale,
+            scale: 1.0 / supply_factor,
         }
     }
 }

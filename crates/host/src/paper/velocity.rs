@@ -1,6 +1,6 @@
 //! `lizard pose --show rates`: computes the rates and accelerations of the passive joints from the servos' motion.
 
-use lizard_kinematics::{Derivative, Lizard, Pose, ServoMotion, Solution, wrap};
+use lizard_kinematics::{Derivative, Derivatives, Lizard, Pose, ServoMotion, Solution, wrap};
 use serde::Serialize;
 
 use crate::Failure;
@@ -115,20 +115,13 @@ fn format_text(rows: &[Row]) -> String {
 /// The name, unit, value and derivative of a joint or coordinate.
 type Joint = (&'static str, &'static str, f64, Derivative<f64>);
 
-/// Lists all joints and coordinates of a solution.
-fn list_joints(solution: &Solution, servo_motion: &ServoMotion) -> [Joint; 12] {
-    let derivatives = solution.derivatives(servo_motion);
+/// Lists all joints and coordinates of a solution, with their derivatives.
+fn list_joints(solution: &Solution, derivatives: &Derivatives) -> [Joint; 12] {
     let (head, tail) = (solution.head_point(), solution.tail_point());
     let (left, right) = (&solution.left, &solution.right);
     let ends = [derivatives.head, derivatives.tail];
-    let [head_x, tail_x] = ends.map(|end| Derivative {
-        rate: end.rate.x,
-        acceleration: end.acceleration.x,
-    });
-    let [head_y, tail_y] = ends.map(|end| Derivative {
-        rate: end.rate.y,
-        acceleration: end.acceleration.y,
-    });
+    let [head_x, tail_x] = ends.map(|end| end.map(|vector| vector.x));
+    let [head_y, tail_y] = ends.map(|end| end.map(|vector| vector.y));
     [
         ("theta2", "deg", solution.theta2(), derivatives.theta2),
         ("theta3", "deg", solution.theta3(), derivatives.theta3),
@@ -147,6 +140,7 @@ fn list_joints(solution: &Solution, servo_motion: &ServoMotion) -> [Joint; 12] {
 
 /// Computes rates and accelerations in closed form, and compares them with finite differences of neighbouring poses.
 fn compute_rows(lizard: &Lizard, solution: &Solution, servo_motion: &ServoMotion) -> Vec<Row> {
+    let derivatives = solution.derivatives(servo_motion);
     let start_angles = <[f64; 4]>::from(solution.pose);
     let largest_magnitude = |values: [f64; 4]| values.map(f64::abs).into_iter().fold(0.0, f64::max);
     // If the servos stand still, the quotients are infinite and do not limit the step.
@@ -160,14 +154,15 @@ fn compute_rows(lizard: &Lizard, solution: &Solution, servo_motion: &ServoMotion
                 + servo_motion.rates[i] * t
                 + servo_motion.accelerations[i] * t * t / 2.0
         });
-        let solution = lizard.solve(&Pose::from(angles)).ok()?;
-        Some(list_joints(&solution, servo_motion).map(|(_, _, value, _)| value))
+        let neighbour = lizard.solve(&Pose::from(angles)).ok()?;
+        // Only the values are of the neighbouring pose; its derivatives are not needed.
+        Some(list_joints(&neighbour, &derivatives).map(|(_, _, value, _)| value))
     };
     let neighbours = match [-2.0, -1.0, 1.0, 2.0].map(compute_values) {
         [Some(a), Some(b), Some(c), Some(d)] => Some([a, b, c, d]),
         _ => None,
     };
-    list_joints(solution, servo_motion)
+    list_joints(solution, &derivatives)
         .into_iter()
         .enumerate()
         .map(|(i, (joint, unit, value, derivative))| {

@@ -98,8 +98,9 @@ impl RobotArgs {
         })
     }
 
-    /// Finds the robot's source. A file takes precedence over a built-in robot with the same name. Without `--robot`,
-    /// looks for robot.toml in the current folder and the folders above it.
+    /// Finds the robot's source: the text of `from_text`, or else the robot of `--robot`, where a file takes precedence
+    /// over a built-in robot with the same name. Without `--robot`, looks for robot.toml in the current folder and the
+    /// folders above it.
     fn find_source(&self) -> Result<RobotSource<'_>, Failure> {
         if let Some(text) = &self.text {
             return Ok(RobotSource::Text(text));

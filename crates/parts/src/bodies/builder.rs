@@ -10,10 +10,21 @@ use crate::layers::stack::{
     HEAD_CLEARANCE, HEX_HEAD_HEIGHT, Span, Stack, find_screw_length, order_heights,
 };
 
-/// Direction of a screw whose tip is above its head.
-pub const UP: f64 = 1.0;
-/// Direction of a screw whose tip is below its head.
-pub const DOWN: f64 = -1.0;
+/// The direction from a screw's head to its tip.
+#[derive(Clone, Copy)]
+pub enum ScrewDirection {
+    Up,
+    Down,
+}
+
+impl ScrewDirection {
+    fn sign(self) -> f64 {
+        match self {
+            Self::Up => 1.0,
+            Self::Down => -1.0,
+        }
+    }
+}
 
 /// Name of a leg's strut, slotted or rigid.
 pub fn strut_name(is_slotted: bool, servo: usize) -> String {
@@ -45,8 +56,8 @@ pub struct Screw {
     pub position: Vector,
     /// Height of the face under the screw's head, mm.
     pub seat_z: f64,
-    /// Direction from the screw's head to its tip: [`UP`] or [`DOWN`].
-    pub direction: f64,
+    /// Direction from the screw's head to its tip.
+    pub direction: ScrewDirection,
     /// Names of the bodies with other mounts that screw and nut may touch.
     pub allowed_contacts: Vec<String>,
     /// True for a hexagon head sunk into the part; false for a button head.
@@ -60,7 +71,7 @@ impl Screw {
         mount: Mount,
         position: Vector,
         seat_z: f64,
-        direction: f64,
+        direction: ScrewDirection,
     ) -> Self {
         Self {
             name: name.into(),
@@ -183,14 +194,14 @@ impl<'a> AssemblyBuilder<'a> {
     /// Adds a bolt: a screw that is long enough for its nut, and the nut. `nut_z` is the height of the face on which
     /// the nut bears, mm.
     pub fn add_bolt(&mut self, screw: &Screw, nut_z: f64) {
-        let nut_end = nut_z + screw.direction * self.parts.screw.nut_height;
+        let nut_end = nut_z + screw.direction.sign() * self.parts.screw.nut_height;
         self.add_screw(screw, find_screw_length((nut_end - screw.seat_z).abs()));
         self.add_nut(screw, nut_z);
     }
 
     /// Adds the nut of a screw. `nut_z` is the height of the face on which the nut bears, mm.
     pub fn add_nut(&mut self, screw: &Screw, nut_z: f64) {
-        let nut_end = nut_z + screw.direction * self.parts.screw.nut_height;
+        let nut_end = nut_z + screw.direction.sign() * self.parts.screw.nut_height;
         let prism = self.make_nut(screw.position, order_heights(nut_z, nut_end));
         let nut = self.add_body(
             format!("nut {}", screw.name),
@@ -210,7 +221,8 @@ impl<'a> AssemblyBuilder<'a> {
 
     /// Adds a screw of a length (mm) below its head, without a nut.
     pub fn add_screw(&mut self, screw: &Screw, length: f64) {
-        let (size, direction, seat_z) = (self.parts.screw, screw.direction, screw.seat_z);
+        let (size, seat_z) = (self.parts.screw, screw.seat_z);
+        let direction = screw.direction.sign();
         let shank = Shape::disc(screw.position, size.diameter / 2.0);
         let (head, height, kind) = if screw.has_hex_head {
             let hexagon = Shape::hexagon(screw.position, size.nut);
@@ -238,7 +250,8 @@ impl<'a> AssemblyBuilder<'a> {
         top: f64,
         allowed_contact: &str,
     ) {
-        let mut screw = Screw::new(name, mount, position, self.stack.hex_head_face, UP);
+        let seat_z = self.stack.hex_head_face;
+        let mut screw = Screw::new(name, mount, position, seat_z, ScrewDirection::Up);
         screw.has_hex_head = true;
         self.add_bolt(&screw.touching(allowed_contact), top + HEAD_CLEARANCE);
     }

@@ -3,7 +3,8 @@
 use lizard_kinematics::{End, Vector};
 use lizard_robot::servo::SERVO_NAMES;
 
-use crate::bodies::builder::{AssemblyBuilder, DOWN, Screw, UP};
+use crate::bodies::builder::ScrewDirection::{Down, Up};
+use crate::bodies::builder::{AssemblyBuilder, Screw};
 use crate::bodies::fittings;
 use crate::bodies::layout::{STANDOFF_DISTANCES, STANDOFF_RADIUS, UNO_BOARD_THICKNESS, UNO_SIZE};
 use crate::bodies::leads;
@@ -244,8 +245,8 @@ fn add_deck(builder: &mut AssemblyBuilder) {
         let name = format!("standoff {number}");
         builder.add_body(&name, Kind::Standoff(length), Mount::Chassis, [post]);
         for (end, seat_z, direction) in [
-            ("below", stack.plate[0], UP),
-            ("above", stack.deck[1], DOWN),
+            ("below", stack.plate[0], Up),
+            ("above", stack.deck[1], Down),
         ] {
             let name = format!("{name} {end}");
             let screw = Screw::new(name, Mount::Chassis, position, seat_z, direction);
@@ -267,7 +268,7 @@ fn add_board(builder: &mut AssemblyBuilder) {
     for (index, position) in UNO_HOLES.into_iter().enumerate() {
         if index != UNO_SCREWLESS_HOLE {
             let name = format!("board {}", index + 1);
-            let screw = Screw::new(name, Mount::Chassis, position, top, DOWN);
+            let screw = Screw::new(name, Mount::Chassis, position, top, Down);
             builder.add_screw(&screw, 10.0);
         }
     }

@@ -8,7 +8,8 @@
 use lizard_kinematics::{End, Solution, Vector};
 use lizard_robot::servo::SERVO_NAMES;
 
-use crate::bodies::builder::{AssemblyBuilder, DOWN, Screw};
+use crate::bodies::builder::ScrewDirection::Down;
+use crate::bodies::builder::{AssemblyBuilder, Screw};
 use crate::layers::body::{Kind, Mount, Prism, coupler_length, end_and_index};
 use crate::layers::shape::Shape;
 use crate::layers::stack::HEAD_CLEARANCE;
@@ -179,6 +180,6 @@ fn add_part(builder: &mut AssemblyBuilder, servo: usize, name: &str, part: FlatP
     };
     cut.push(hole);
     builder.add_body(name, Kind::Printed, mount, [Prism::new(filled, cut, z)]);
-    let screw = Screw::new(name, mount, position, seat_z, DOWN);
+    let screw = Screw::new(name, mount, position, seat_z, Down);
     builder.add_screw(&screw, SECOND_SCREW_LENGTH);
 }

@@ -3,7 +3,8 @@
 use lizard_kinematics::{End, Vector};
 use lizard_robot::servo::SERVO_NAMES;
 
-use crate::bodies::builder::{AssemblyBuilder, Screw, UP};
+use crate::bodies::builder::ScrewDirection::Up;
+use crate::bodies::builder::{AssemblyBuilder, Screw};
 use crate::bodies::decoration;
 use crate::layers::body::{Mount, Prism, coupler_length};
 use crate::layers::shape::Shape;
@@ -32,7 +33,7 @@ pub fn add(builder: &mut AssemblyBuilder) {
         let end_point = Vector::new(coupler_length(builder.robot, left), 0.0);
         let decoration = decoration::add(builder, end);
         let (seat_z, mount) = (lower[0] - decoration.lower_thickness, Mount::Coupler(left));
-        let mut screw = Screw::new(end.name(), mount, end_point, seat_z, UP);
+        let mut screw = Screw::new(end.name(), mount, end_point, seat_z, Up);
         screw.allowed_contacts = decoration.upper_bodies;
         let nut_z = upper[1] + decoration.upper_thickness + HEAD_CLEARANCE;
         builder.add_bolt(&screw.touching(Mount::Coupler(right).name()), nut_z);

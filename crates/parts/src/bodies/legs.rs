@@ -7,7 +7,8 @@
 use lizard_kinematics::Vector;
 use lizard_robot::servo::LEG_NAMES;
 
-use crate::bodies::builder::{AssemblyBuilder, DOWN, Screw, UP};
+use crate::bodies::builder::ScrewDirection::{Down, Up};
+use crate::bodies::builder::{AssemblyBuilder, Screw};
 use crate::bodies::pads;
 use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::shape::Shape;
@@ -163,11 +164,11 @@ fn add_foot(builder: &mut AssemblyBuilder, servo: usize) {
     builder.add_body(format!("foot {leg}"), Kind::Printed, mount, prisms);
     for (number, position) in (1..).zip(clamps) {
         let name = format!("foot {leg} {number}");
-        let screw = Screw::new(name, mount, position, clamp_seat_z(builder), DOWN);
+        let screw = Screw::new(name, mount, position, clamp_seat_z(builder), Down);
         builder.add_screw(&screw, CLAMP_SCREW_LENGTH);
     }
     let seat_z = stack.pad[1] - PAD_LIP_HEIGHT;
-    let screw = Screw::new(format!("height {leg}"), mount, foot, seat_z, UP);
+    let screw = Screw::new(format!("height {leg}"), mount, foot, seat_z, Up);
     builder.add_screw(&screw, FOOT_SCREW_LENGTH);
     let nut = builder.make_nut(foot, [stack.leaf[0], nut_z]);
     builder.add_body(format!("height nut {leg}"), Kind::Nut, mount, [nut]);
@@ -188,14 +189,14 @@ fn add_screws(builder: &mut AssemblyBuilder, servo: usize) {
     let (pivot, crank) = (Vector::default(), Mount::Crank(servo));
     for (mount, part) in [(crank, "crank"), (Mount::Follower(servo), "follower")] {
         let (name, seat_z) = (format!("{part} pivot {leg}"), stack.bearing[1]);
-        let screw = Screw::new(name, mount, pivot, seat_z + HEAD_CLEARANCE, DOWN);
+        let screw = Screw::new(name, mount, pivot, seat_z + HEAD_CLEARANCE, Down);
         builder.add_bolt(&screw.touching("plate"), stack.plate[0] - HEAD_CLEARANCE);
         let (name, seat_z) = (format!("{part} joint {leg}"), stack.leg_coupler[0]);
-        let screw = Screw::new(name, mount, joint, seat_z, UP).touching(&coupler);
+        let screw = Screw::new(name, mount, joint, seat_z, Up).touching(&coupler);
         builder.add_bolt(&screw, stack.crank[1] + HEAD_CLEARANCE);
     }
     let (name, seat_z) = (format!("leg anchor {leg}"), stack.anchor_head_face);
-    let screw = Screw::new(name, crank, anchor, seat_z, DOWN).touching(strut);
+    let screw = Screw::new(name, crank, anchor, seat_z, Down).touching(strut);
     builder.add_screw(&screw, stack.anchor_screw_length());
     builder.add_nut(&screw, stack.anchor_pocket_top(parts));
 }

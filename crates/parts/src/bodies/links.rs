@@ -6,7 +6,8 @@ use lizard_kinematics::Vector;
 use lizard_robot::Horn;
 use lizard_robot::servo::SERVO_NAMES;
 
-use crate::bodies::builder::{AssemblyBuilder, DOWN, Screw};
+use crate::bodies::builder::ScrewDirection::Down;
+use crate::bodies::builder::{AssemblyBuilder, Screw};
 use crate::bodies::chassis::SPLINE_RADIUS;
 use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::shape::Shape;
@@ -164,6 +165,6 @@ fn add_anchor(builder: &mut AssemblyBuilder, servo: usize) {
     let ring = builder.add_body(format!("strut ring {name}"), Kind::Printed, mount, [prism]);
     ring.allowed_contacts = vec![strut.clone()];
     let (name, seat_z) = (format!("anchor {name}"), stack.counterbore[0]);
-    let screw = Screw::new(name, mount, position, seat_z, DOWN).touching(strut);
+    let screw = Screw::new(name, mount, position, seat_z, Down).touching(strut);
     builder.add_bolt(&screw, stack.strut_floor[0] - HEAD_CLEARANCE);
 }

@@ -55,8 +55,8 @@ pub fn list_counted_names(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
     texts.collect()
 }
 
-/// A point in front of the robot on its left, chassis frame, mm. Of several bodies with the same
-/// name, the one nearest to this point is labelled.
+/// A point in front of the robot on its left, chassis frame, mm. Of several bodies with the same name, the one nearest
+/// to this point is labelled.
 const LABEL_VIEWPOINT: Vector = Vector::new(-60.0, 80.0);
 
 /// Makes labels for the bodies in a picture that are not grey: each name once, with its count, at the body nearest to
@@ -67,8 +67,7 @@ pub fn make_part_labels(
     picture_bodies: &[PictureBody],
     pose: &Solution,
 ) -> Vec<Label> {
-    // The labels of all bodies with the same name, without the count, each with its distance from
-    // LABEL_VIEWPOINT, mm.
+    // The labels of all bodies with the same name, without the count, each with its distance from LABEL_VIEWPOINT, mm.
     let mut labels_by_name: BTreeMap<String, Vec<(f64, Label)>> = BTreeMap::new();
     let coloured_bodies = picture_bodies.iter().filter(|body| !body.is_grey);
     for PictureBody { body, lift, .. } in coloured_bodies {

@@ -160,7 +160,7 @@ pub enum Mount {
 }
 
 impl Mount {
-    /// Name of the mount and of its printed body; the body of the chassis has another name.
+    /// Name of the mount and of its printed body. The body of the chassis and a rigid strut have other names.
     pub(crate) fn name(self) -> String {
         let (kind, owner) = match self {
             Self::Chassis => return "chassis".to_owned(),

@@ -298,8 +298,9 @@ impl Assembly {
         Some(self.make_nearest_pair(bodies, mm, Some((pose, mm)), None))
     }
 
-    /// Names two bodies with a lower bound of their distance, mm: an accepted pose with its distance, and the angles of
-    /// some servos near which no larger distance could be proved. Angles without effect on the distance are neutral.
+    /// Makes the result for two bodies, given as indices in [`Assembly::bodies`]. `lower_bound` is that of their
+    /// distance, mm; `nearest` is an accepted pose with the distance at this pose, mm; `unproved_angles` are angles of
+    /// some servos near which no larger distance could be proved. Angles without effect on the distance become neutral.
     fn make_nearest_pair(
         &self,
         bodies: [usize; 2],

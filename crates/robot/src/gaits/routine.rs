@@ -114,7 +114,7 @@ pub(crate) fn read_routines(
     names.iter().map(read_named_routine).collect()
 }
 
-/// The names of a robot that a step may contain by right or by mistake.
+/// The names by which a step is understood: gaits and inputs, which it may contain, and routines, which it must not.
 struct KnownNames<'a> {
     gaits: &'a [&'a str],
     routines: &'a [&'a str],

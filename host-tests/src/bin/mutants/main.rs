@@ -72,8 +72,8 @@ fn try_generated_mutants(filters: &[String], count: usize, seed: u64) -> Result<
     }
     let generated_count = mutants.len();
     println!("seed {seed}: {count} of {generated_count} generated mutants");
-    let file = "crates/core/src/lib.rs";
     compile_firmware_tests()?;
+    let file = "crates/core/src/lib.rs";
     let unchanged = Mutant::without_change(file, read_text(&root().join(file))?);
     if !matches!(scratch.try_mutant(&unchanged)?, Outcome::Missed) {
         return Err("a test fails or hangs in the unchanged tree".into());
@@ -295,9 +295,7 @@ impl ScratchTree {
                         false => failed_tests.join(", "),
                     }));
                 }
-                Some((true, output_text))
-                    if !output_text.lines().any(|line| line.starts_with("test ")) =>
-                {
+                Some((true, output_text)) if !has_run_a_test(&output_text) => {
                     return Err(format!("no test of {package} has {filter:?} in its name"));
                 }
                 Some(_) => {}
@@ -355,17 +353,19 @@ fn run_firmware_tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, S
             ("LIZARD_FUZZ", "5".as_ref()),
         ],
     )?;
-    let Some((_, output_text)) = result else {
+    let Some((have_passed, output_text)) = result else {
         return Ok(None);
     };
-    if !output_text.contains("test result:") {
-        // A test had started and reached the limit of processor time.
-        if output_text.contains("running ") {
-            return Ok(None);
-        }
+    if !output_text.contains("running ") {
         return Err("the tests of the firmware did not run; run make test to see the error".into());
     }
-    Ok(Some(find_failed_tests(&output_text)))
+    if have_passed && !has_run_a_test(&output_text) {
+        return Err(format!("no test of the firmware has {filter:?} in its name"));
+    }
+    let failed_tests = find_failed_tests(&output_text);
+    // If no test has failed, one of the two test programs has reached the limit of processor time, or has crashed.
+    let is_hanging = !have_passed && failed_tests.is_empty();
+    Ok((!is_hanging).then_some(failed_tests))
 }
 
 /// Runs `cargo test` in a folder. Returns true if the tests passed, and their output; `None` if the tests do not end
@@ -394,6 +394,13 @@ fn run_cargo_test(
     Ok(has_ended.then_some((output.status.success(), output_text)))
 }
 
+/// True if at least one test has run, according to the output of the test harness.
+fn has_run_a_test(output_text: &str) -> bool {
+    // The summary, which begins with `test result: `, is not the line of a test.
+    let is_test_line = |line: &str| line.starts_with("test ") && line.contains(" ... ");
+    output_text.lines().any(is_test_line)
+}
+
 /// Finds the names of the failed tests in the output of the test harness.
 fn find_failed_tests(output_text: &str) -> Vec<String> {
     let failed_name = |line: &str| {
@@ -409,6 +416,13 @@ mod tests {
     fn the_old_texts_of_all_listed_mutants_are_current() {
         let list = super::read_list().expect("the list is current");
         assert!(list.len() > 50, "only {} mutants are listed", list.len());
+    }
+
+    #[test]
+    fn a_summary_is_no_test_that_has_run() {
+        let summary = "running 0 tests\n\ntest result: ok. 0 passed; 0 failed\n";
+        assert!(!super::has_run_a_test(summary));
+        assert!(super::has_run_a_test("running 1 test\ntest walks ... ok\n"));
     }
 
     #[test]

@@ -64,7 +64,8 @@ impl World {
         if answer == "ok load" {
             self.check_loaded_limits()?;
         }
-        if answer.starts_with("err 8")
+        let is_refused_for_supply = answer.starts_with("err 8");
+        if is_refused_for_supply
             && !self.observer.was_supply_low(0, 70 * FRAME)
             && Time::from(self.running_robot.motion().frame_count()) * FRAME > SUPPLY_SETTLING_TIME
         {

@@ -17,7 +17,7 @@ export const scaleStep: Step = {
     return [
       paragraph(`Mark the direction of the crank of ${formatServo(servo)}, turn the servo, and measure the angle.`),
       row(button(`Turn A${servo + 1}`, () => turnServo(dialog), !turn)),
-      ...(turn ? [row(numberBox('Measured angle, degrees', null, '0.1', (degrees) => setMeasuredTurn(dialog, turn, degrees)))] : []),
+      ...(turn ? [row(numberBox('Measured angle, degrees', null, '0.1', (measuredDegrees) => setMeasuredTurn(dialog, turn, measuredDegrees)))] : []),
       paragraph(`Scale: ${currentScale === undefined ? '–' : `${currentScale.toFixed(2)} µs per degree`}`),
       note('Most servos have about 10 µs per degree. Without a protractor, skip this step.'),
     ];
@@ -33,11 +33,11 @@ function turnServo(dialog: SetupDialog): void {
   });
 }
 
-function setMeasuredTurn(dialog: SetupDialog, { servo, degrees: commandedDegrees }: Turn, degrees: number): void {
+function setMeasuredTurn(dialog: SetupDialog, { servo, degrees: commandedDegrees }: Turn, measuredDegrees: number): void {
   dialog.run(async (calibrator) => {
-    if (degrees <= 0) return 'The measured angle must be more than 0 degrees.';
+    if (measuredDegrees <= 0) return 'The measured angle must be more than 0 degrees.';
     dialog.lastTurn = null;
-    const scale = await calibrator.setScaleFromTurn(servo, commandedDegrees, degrees);
+    const scale = await calibrator.setScaleFromTurn(servo, commandedDegrees, measuredDegrees);
     dialog.markDone('Scale');
     return `The scale of A${servo + 1} is ${scale.toFixed(2)} µs per degree.`;
   });

@@ -9,9 +9,9 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 
 use super::*;
+use crate::guard::bounds::{self, MAX_DIRECTION_ERROR, Q15_STEP};
 use crate::numbers::limits::Limits;
 use crate::numbers::units::Sweep;
-use crate::sample::bounds::{self, MAX_DIRECTION_ERROR, Q15_STEP};
 use crate::sample::{Measurements, Sample, steps_per_mm, to_f64};
 
 /// Yields random robots, each with several poses, because building a robot takes longer than testing a pose.

@@ -53,10 +53,9 @@ fn each_of_a_thousand_saves_is_loaded_again() {
     assert_eq!(loaded, (Settings::for_robot(&robot), SavedState::Blank));
     for n in 0..1000 {
         let new_settings = make_settings(&robot, n % 70);
-        let saved_settings = save_settings(&new_settings, &mut eeprom);
+        let mut saved_settings = save_settings(&new_settings, &mut eeprom);
         let loaded = load_settings(&robot, &eeprom);
         assert_eq!(loaded, (saved_settings, SavedState::Latest), "{n}");
-        let mut saved_settings = saved_settings;
         saved_settings.set_save_number(0);
         assert_eq!(saved_settings, new_settings);
     }

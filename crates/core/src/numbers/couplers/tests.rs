@@ -3,10 +3,10 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::guard::bounds::{self, MIN_KNOWN_MARGIN};
 use crate::numbers::curve::ENTRY_COUNT;
 use crate::numbers::link_lengths::MIN_COUPLER_STEPS;
 use crate::sample::SampleCouplers;
-use crate::sample::bounds::{self, MIN_KNOWN_MARGIN};
 
 /// The longest coupler that the scale of a five-bar allows, in steps.
 const MAX_COUPLER_STEPS: i16 = 32_511;

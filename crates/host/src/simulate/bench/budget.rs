@@ -1,4 +1,4 @@
-//! The budget of each measurement, and the values of the Arduino Servo library for comparison.
+//! A measurement with its budget and the value of the Arduino Servo library, and the budgets with a derivation.
 
 use serde::Serialize;
 

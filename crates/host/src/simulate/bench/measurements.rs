@@ -1,4 +1,4 @@
-//! Measurements of the firmware, each on its own simulated board.
+//! Measurements of the firmware, each on its own simulated board and with its budget.
 
 use std::iter::zip;
 use std::path::Path;
@@ -138,8 +138,8 @@ pub fn measure(
     let code_bytes = firmware::count_code_bytes(image, robot);
     let frame_count = idle_run.cycles as f64 / FRAME_CYCLES as f64;
     // The mean of the gait with the largest mean, and the longest tick in any motion.
-    let mean_tick = gait_calls.map(|calls| compute_mean_cycles(calls));
-    let mean_tick = some_if_moving(mean_tick.fold(0.0, f64::max));
+    let mean_ticks = gait_calls.map(|calls| compute_mean_cycles(calls));
+    let mean_tick = some_if_moving(mean_ticks.fold(0.0, f64::max));
     let max_tick = compute_max_cycles(&tick_calls.concat());
     let mean_routine_tick = routine_calls.as_deref().map(compute_mean_cycles);
     let max_routine_tick = routine_calls.as_deref().map(compute_max_cycles);

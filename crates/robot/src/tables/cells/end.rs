@@ -44,16 +44,12 @@ pub(super) struct EndConditions {
 impl EndConditions {
     /// Creates the conditions of one end of a robot, with the guard's limits.
     pub fn new(lizard: &Lizard, numbers: &Content, end: End) -> Self {
-        let five_bar_lengths = &numbers.ends[end as usize];
         let Limits { type2, type1, leg } = numbers.limits;
         let to_sine = |limit: Sine| f64::from(limit.0) / ONE_Q15;
         Self {
             end,
             five_bar: lizard.end(end),
-            rounded_lengths: bounds::RoundedLengths {
-                scale: five_bar_lengths.scale,
-                couplers: five_bar_lengths.couplers,
-            },
+            rounded_lengths: (&numbers.ends[end as usize]).into(),
             type2_limit: to_sine(type2),
             type1_limit: to_sine(type1),
             leg_limit: to_sine(leg),
