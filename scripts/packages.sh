@@ -29,6 +29,10 @@ update_lists() {
     done
 }
 
+run_apt_install() {
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout="$LOCK_WAIT" install -y -q --no-install-recommends "${missing[@]}"
+}
+
 install_missing() {
     missing=()
     local package
@@ -37,5 +41,6 @@ install_missing() {
     command -v apt-get >/dev/null || { say "not a Debian machine: install the equivalents of ${missing[*]}, then run this again"; exit 1; }
     say "installing Debian packages: ${missing[*]}"
     update_lists
-    as_root env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout="$LOCK_WAIT" install -y -q --no-install-recommends "${missing[@]}"
+    # After a set-up that was killed, apt-get does nothing until dpkg has configured what was half installed.
+    run_apt_install || { as_root env DEBIAN_FRONTEND=noninteractive dpkg --configure -a && run_apt_install; }
 }
