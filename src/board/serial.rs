@@ -1,7 +1,7 @@
 //! The serial port, 8N1, with interrupt-driven buffers in both directions.
 //!
 //! At 115 200 baud a byte takes 1389 cycles and the receiver holds two bytes, while main may be busy with a frame for
-//! 12 000 cycles. Therefore each direction has a ring buffer between main and an interrupt handler. One side moves only
+//! 20 000 cycles. Therefore each direction has a ring buffer between main and an interrupt handler. One side moves only
 //! the head, the other side only the tail. Head and tail are single bytes, so no lock is necessary. The handlers are
 //! short, because a pulse edge may have to wait for a handler.
 
@@ -15,7 +15,7 @@ use servo_pulses::cells::{SharedByte, SharedCounter};
 use ufmt::uWrite;
 
 /// The size of the receive ring in bytes. The ring holds a complete line, so main may be busy for the time of 64 bytes,
-/// 89 000 cycles, which is seven times the limit for a frame.
+/// 89 000 cycles, which is four times the limit for a frame.
 const RECEIVE_RING_SIZE: usize = 64;
 
 /// The size of the send ring in bytes. The longest line of the console fits, and arithmetic modulo 256 is the fastest.

@@ -282,13 +282,13 @@ impl Controller {
             .safety
             .check_frame(health, &supplies, state, deadman_ms)
         {
-            Reaction::None => {}
+            Reaction::Boot if self.motion.hazard().is_none() => self.execute_boot(state),
+            Reaction::None | Reaction::Boot => {}
             Reaction::Freeze => self.stop(),
             Reaction::EndPulses => {
                 self.stop();
                 self.motion.rest();
             }
-            Reaction::Boot => self.execute_boot(state),
         }
         self.motion.set_slow(self.safety.is_slow());
     }
@@ -400,15 +400,22 @@ impl Controller {
     /// Freezes the pose and ends the routine.
     #[inline(never)]
     fn stop(&mut self) {
+        // A robot that rests in a routine now stays at rest, and its pose must survive a loss of power.
+        if self.routine.is_under_way() && self.motion.is_resting() {
+            return self.rest();
+        }
         self.routine = Routine::NONE;
         self.motion.stop();
     }
 
-    /// Prepares for a motion that an order starts: ends the routine, clears the fault and the count of suspected
-    /// brown-outs, and invalidates the saved rest pose.
+    /// Prepares for a motion that an order starts: ends the routine, clears the fault, the guard's hazard and the count
+    /// of suspected brown-outs, and invalidates the saved rest pose.
     fn prepare_for_motion(&mut self) {
         self.routine = Routine::NONE;
         self.safety.clear_fault();
+        // A routine may begin with a wait or a rest, or before the pulses have settled, so its motion clears the hazard
+        // too late.
+        self.motion.clear_hazard();
         self.suspected_brown_outs = 0;
         self.rest_pose_write = Some(REST_POSE_ADDRESS.start_invalidation());
     }

@@ -247,6 +247,11 @@ impl Motion {
         self.freeze(State::Resting);
     }
 
+    /// Forgets the hazard because of which the guard stopped the robot.
+    pub fn clear_hazard(&mut self) {
+        self.hazard = None;
+    }
+
     /// Sets the pace of gaits, in percent of the pace in robot.toml, 10..=100.
     pub fn set_speed(&mut self, percent: u8) {
         self.speed_percent = percent;

@@ -27,6 +27,21 @@ fn boot_is_executed_three_seconds_after_power_on_unless_a_byte_arrives() {
 }
 
 #[test]
+fn boot_is_not_executed_while_the_guard_holds_the_robot() {
+    // The guard stops `stand` soon after the servos are awake.
+    let robot = Sample::asymmetric().with_changes(|content| {
+        let stray = GAIT_NAMES.iter().position(|name| *name == "stray");
+        content.gaits[0].channels = content.gaits[stray.expect("the robot has it")].channels;
+    });
+    let mut dialogue = wake_robot(robot);
+    dialogue.expect_all_accepted(&["boot sway", "save"]);
+    let mut unattended_dialogue = dialogue.power_on_copy();
+    let printed_lines = unattended_dialogue.run_frames(300);
+    assert_line_starts(&printed_lines, &["# lizard", "# held"]);
+    unattended_dialogue.expect_status(&[("gait", "stop"), ("fault", "guard")]);
+}
+
+#[test]
 fn without_a_robot_commands_that_need_one_are_refused_with_code_10() {
     let mut dialogue = Dialogue::with_flash(Region::new(&[]), VirtualBoard::default());
     for line in ["stand", "pose 90 90 270 270", "cal", "walk 3"] {

@@ -322,6 +322,33 @@ fn only_a_free_pin_of_the_board_gets_a_pull_up() {
 }
 
 #[test]
+fn a_routine_that_starts_while_the_guard_holds_the_robot_still_waits_for_its_contacts() {
+    let walk_to_wall = [
+        (UNTIL, "nose", 0),
+        (FRAMES, "sway", ENDLESS),
+        (CYCLES, "back", 1),
+    ];
+    let robot = Sample::asymmetric()
+        .with_routine("patrol", 1, &PATROL_STEPS)
+        .with_routine("wander", 1, &walk_to_wall);
+    let mut held_dialogue = wake_robot(robot);
+    let printed_lines = held_dialogue.send_and_run("stray", LONG_FRAMES);
+    assert_line_starts(&printed_lines, &["# held"]);
+    let mut waiting_dialogue = held_dialogue.clone();
+    let printed_lines = waiting_dialogue.send_and_run("patrol", 10);
+    assert_eq!(printed_lines, ["# waiting for button"]);
+    waiting_dialogue.expect_status(&[("gait", "patrol"), ("fault", "none")]);
+    press(&mut waiting_dialogue, BUTTON, DEBOUNCE_FRAMES);
+    assert_eq!(activity_name(&waiting_dialogue), "sway");
+    // The first step begins only after the pulses have settled.
+    held_dialogue.expect_all_accepted(&["trim 1 15", "wander"]);
+    held_dialogue.run_frames(10);
+    assert_eq!(held_dialogue.status_value("gait"), "wander");
+    press(&mut held_dialogue, NOSE, DEBOUNCE_FRAMES);
+    assert_eq!(activity_name(&held_dialogue), "back");
+}
+
+#[test]
 fn a_routine_brakes_its_last_gait_before_it_is_done() {
     for steps in [
         &[(FRAMES, "sway", 90)][..],

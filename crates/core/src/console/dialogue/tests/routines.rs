@@ -3,11 +3,12 @@
 use super::*;
 
 /// The steps of a routine, each with its kind, its gait and its count of cycles or frames. Two consecutive steps have
-/// the gait `sway`.
-const PATROL_STEPS: [(u8, &str, u16); 5] = [
+/// the gait `sway`, and the robot rests after them.
+const PATROL_STEPS: [(u8, &str, u16); 6] = [
     (FRAMES, "stand", 30),
     (CYCLES, "sway", 2),
     (CYCLES, "sway", 1),
+    (REST, "stand", 50),
     (FRAMES, "back", 60),
     (CYCLES, "sway left", 1),
 ];
@@ -34,18 +35,27 @@ fn run_and_record_activities(dialogue: &mut Dialogue, frames: u32) -> (Vec<Strin
     (activities, printed_lines)
 }
 
-/// Starts the routine. Returns clones of the dialogue at many times during the routine.
+/// Starts the routine. Returns clones of the dialogue at many times during the routine, in some of which it rests.
 fn record_snapshots() -> Vec<Dialogue> {
     let mut dialogue = start_patrol(0, &PATROL_STEPS);
     let mut snapshots = Vec::new();
     for _ in 0..40 {
         dialogue.run_frames(17);
-        if dialogue.status_value("gait") == "patrol" {
-            snapshots.push(dialogue.clone());
-        }
+        snapshots.push(dialogue.clone());
     }
-    assert!(snapshots.len() > 20, "{}", snapshots.len());
+    let is_resting = |snapshot: &Dialogue| snapshot.motion().is_resting();
+    assert!(snapshots.iter().any(is_resting));
     snapshots
+}
+
+/// Checks that a robot that now rests has saved its pose: after a loss of power it wakes in this pose.
+fn assert_rest_pose_is_saved(mut dialogue: Dialogue, event: &str) {
+    let pose = *dialogue.motion().pose();
+    if dialogue.motion().is_resting() {
+        dialogue.lose_power(None);
+        dialogue.run_frames(1);
+        assert_eq!(*dialogue.motion().pose(), pose, "{event}");
+    }
 }
 
 #[test]
@@ -57,7 +67,8 @@ fn a_routine_executes_its_steps_in_order_and_prints_done_once() {
         let (gaits, printed_lines) =
             run_and_record_activities(&mut dialogue, LONG_FRAMES * u32::from(rounds));
         assert_eq!(printed_lines, ["# done"]);
-        let mut expected_gaits = ["stand", "sway", "back", "sway left"].repeat(rounds.into());
+        let mut expected_gaits =
+            ["stand", "sway", "Rest", "back", "sway left"].repeat(rounds.into());
         expected_gaits.push("Stop");
         assert_eq!(gaits, expected_gaits);
         assert_eq!(dialogue.status_value("gait"), "stop");
@@ -114,6 +125,7 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
             let line_count = usize::from(line == "back 1");
             assert_eq!(printed_lines.len(), line_count, "{line}: {printed_lines:?}");
             assert_ne!(dialogue.status_value("gait"), "patrol");
+            assert_rest_pose_is_saved(dialogue, line);
         }
         let mut repeated_dialogue = snapshot.clone();
         repeated_dialogue.send_line("patrol");
@@ -121,10 +133,12 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
         assert_eq!(gaits.last().map(String::as_str), Some("sway"));
         let mut low_supply_dialogue = snapshot.clone();
         low_supply_dialogue.run_at_supply(4_200, 60);
-        low_supply_dialogue.expect_status(&[("gait", "stop"), ("fault", "supply")]);
+        assert_eq!(low_supply_dialogue.status_value("fault"), "supply");
         set_supply(&mut low_supply_dialogue, 5_000);
         let (gaits, _) = run_and_record_activities(&mut low_supply_dialogue, 300);
-        assert_eq!(gaits, ["Stop"], "the routine does not continue by itself");
+        let is_continued = gaits != ["Stop"] && gaits != ["Rest"];
+        assert!(!is_continued, "the routine continues by itself: {gaits:?}");
+        assert_rest_pose_is_saved(low_supply_dialogue, "a low supply");
         let mut failing_supply_dialogue = snapshot.clone();
         failing_supply_dialogue.run_at_supply(3_900, 60);
         assert_eq!(failing_supply_dialogue.status_value("gait"), "rest");
@@ -132,9 +146,9 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
             let mut reset_dialogue = snapshot.clone();
             reset_dialogue.reset(cause);
             let (gaits, printed_lines) = run_and_record_activities(&mut reset_dialogue, 400);
-            let case = format!("{cause:?}: {gaits:?}");
-            assert_eq!(gaits.len(), 1, "{case}");
-            assert!(["stand", "Stop"].contains(&gaits[0].as_str()), "{case}");
+            // A robot that rested rests until `boot` makes it stand.
+            let is_ended = |gait: &String| ["stand", "Stop", "Rest"].contains(&gait.as_str());
+            assert!(gaits.iter().all(is_ended), "{cause:?}: {gaits:?}");
             assert!(!printed_lines.contains(&"# done".to_string()));
         }
     }
@@ -161,7 +175,9 @@ fn silence_ends_a_routine_that_a_command_began_but_not_one_that_boot_began() {
     for mut dialogue in record_snapshots() {
         let notice = "# fault: no command within the deadman time, stopped";
         assert_eq!(dialogue.send_and_run("deadman 200", 100), [notice]);
-        assert_eq!(dialogue.status_value("gait"), "stop");
+        let gait = dialogue.status_value("gait");
+        assert!(["stop", "rest"].contains(&gait.as_str()), "{gait}");
+        assert_rest_pose_is_saved(dialogue, "silence");
     }
     let mut dialogue = wake_robot(robot_with_routine(0));
     dialogue.expect_all_accepted(&["boot patrol", "deadman 200", "save"]);
@@ -208,27 +224,9 @@ fn after_a_rest_in_a_routine_the_servos_wake_one_by_one() {
 }
 
 #[test]
-fn a_resting_routine_can_be_stopped_and_its_last_rest_pose_is_saved() {
-    let start_and_rest = || {
-        let mut dialogue = start_patrol(2, &[(CYCLES, "sway", 1), (REST, "stand", 50)]);
-        while !dialogue.motion().is_resting() {
-            dialogue.run_frames(1);
-        }
-        dialogue.run_frames(5);
-        assert_eq!(dialogue.status_value("gait"), "rest");
-        dialogue
-    };
-    for line in ["stop", "rest"] {
-        let mut dialogue = start_and_rest();
-        assert!(dialogue.send_and_run(line, LONG_FRAMES).is_empty());
-        assert!(dialogue.motion().is_resting());
-    }
-    let mut dialogue = start_and_rest();
+fn a_routine_that_ends_with_a_rest_saves_its_rest_pose() {
+    let mut dialogue = start_patrol(2, &[(CYCLES, "sway", 1), (REST, "stand", 50)]);
     assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# done"]);
     assert!(dialogue.motion().is_resting());
-    let pose = *dialogue.motion().pose();
-    dialogue.lose_power(None);
-    dialogue.run_frames(1);
-    let waking_pose = *dialogue.motion().pose();
-    assert_eq!(waking_pose, pose, "the robot wakes in its rest pose");
+    assert_rest_pose_is_saved(dialogue, "the last round");
 }
