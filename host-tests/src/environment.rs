@@ -1,5 +1,4 @@
-//! Numbers from environment variables, such as the tests' number of random inputs and duration of dialogues, which are
-//! small on a developer's machine and large in continuous integration.
+//! Numbers from environment variables, such as the number of a test's random inputs and the duration of its dialogue.
 
 /// Returns a count of random inputs, multiplied by the environment variable `LIZARD_FUZZ` (default 1).
 ///
@@ -27,9 +26,11 @@ pub fn read_number(name: &str) -> Option<u64> {
     Some(number.unwrap_or_else(|_| panic!("{name} must be a whole number, but is {text:?}")))
 }
 
-/// Returns the number in an environment variable, or a default if the variable is not set. Rejects 0, because a test
-/// without inputs would check nothing.
-fn read_positive_number(name: &str, default: u64) -> u64 {
+/// Returns the whole number in an environment variable, or a default if the variable is empty or not set.
+///
+/// # Panics
+/// If its value is not a whole number of at least 1. With 0 inputs, a test would check nothing.
+pub fn read_positive_number(name: &str, default: u64) -> u64 {
     let number = read_number(name).unwrap_or(default);
     assert!(number > 0, "{name} must be at least 1, but is 0");
     number

@@ -11,7 +11,7 @@ mod robots;
 pub mod trouble;
 
 pub use bench::FirmwareBench;
-pub use environment::{dialogue_minutes, read_number, scaled_count};
+pub use environment::{dialogue_minutes, read_number, read_positive_number, scaled_count};
 pub use helpers::{assert_contains, decode_text, pulse_widths};
 pub use lizard_host::sim::frame::{FRAME_CYCLES, Frame};
 pub use lizard_host::sim::lines::Line;

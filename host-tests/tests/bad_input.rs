@@ -2,7 +2,7 @@
 //! valid lines and two thousand EEPROM contents. Each line must get one answer, every pulse must be within the limits,
 //! and the EEPROM must always be valid.
 //!
-//! With `LIZARD_FUZZ=3`, as in continuous integration, the number of inputs is three times as large.
+//! The environment variable `LIZARD_FUZZ` multiplies the number of inputs.
 
 use std::thread;
 

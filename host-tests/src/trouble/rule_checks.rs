@@ -252,8 +252,8 @@ fn check_refusals(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks that successive pulses of a servo start exactly one frame apart, unless there was a reset or a block of
-/// interrupts between them.
+/// Checks that successive pulses of a servo start exactly one frame apart, unless the servo rested or there was a reset
+/// or a block of interrupts between them.
 fn check_pulse_times(record: &Record) -> Result<(), String> {
     for servo in 0..4 {
         let is_of_servo = |(_, pulse): &&(u64, Pulse)| pulse.servo == servo;
@@ -262,13 +262,13 @@ fn check_pulse_times(record: &Record) -> Result<(), String> {
         for pair in start_cycles.windows(2) {
             let (from, to) = (pair[0], pair[1]);
             let span = from..to;
-            // A longer interval means a missing frame, which another rule covers.
-            let is_next_frame = to - from < FRAME_CYCLES + FRAME_CYCLES / 2;
+            // A servo that rests wakes five frames after its last pulse at the earliest.
+            let has_rested = to - from > 4 * FRAME_CYCLES;
             let mut blocks = record.interrupt_blocks.iter();
             let is_delayed = blocks.any(|block| overlap(block, &span));
             let mut starts = record.starts.iter();
             let was_reset = starts.any(|start| span.contains(&start.cycle));
-            if is_next_frame && to - from != FRAME_CYCLES && !is_delayed && !was_reset {
+            if !has_rested && to - from != FRAME_CYCLES && !is_delayed && !was_reset {
                 let late_cycles = to as i64 - (from + FRAME_CYCLES) as i64;
                 let (number, ms) = (servo + 1, to / MS);
                 return Err(format!(

@@ -23,6 +23,7 @@ fn assert_harmless(mut next_bytes: impl FnMut(&mut Rng) -> Vec<u8>) {
     let mut bench = boot_to_stand(Fidelity::DataSheet);
     let mut rng = lizard_host_tests::rng(77);
     bench.uno.take_edges();
+    let mut pulse_count = 0;
     for second in 0..lizard_host_tests::scaled_count(FLOOD_SECONDS) {
         let mut sent_bytes = Vec::new();
         while sent_bytes.len() < BYTES_PER_SECOND {
@@ -33,6 +34,7 @@ fn assert_harmless(mut next_bytes: impl FnMut(&mut Rng) -> Vec<u8>) {
         for (pulses, servo) in recorded_pulses(&bench).iter().zip(robot().servos()) {
             let us_to_cycles = |us: f64| (us * CYCLES_PER_US).round() as u64;
             let allowed_cycles = us_to_cycles(servo.min_us) - 2..=us_to_cycles(servo.max_us) + 2;
+            pulse_count += pulses.len();
             for pulse in pulses {
                 let is_allowed = allowed_cycles.contains(&pulse.width);
                 assert!(is_allowed, "{pulse:?} in second {second}");
@@ -40,6 +42,7 @@ fn assert_harmless(mut next_bytes: impl FnMut(&mut Rng) -> Vec<u8>) {
         }
         bench.uno.take_edges();
     }
+    assert!(pulse_count > 0, "no servo had a pulse");
     let reset_count = bench.uno.reset_events().len();
     assert_eq!(reset_count, 1, "the board was reset after power-on");
     // Waits for the bytes that are still queued in the sender and in the robot.

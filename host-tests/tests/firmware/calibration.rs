@@ -192,6 +192,35 @@ fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
 }
 
 #[test]
+fn a_byte_that_arrives_as_a_write_of_the_memory_begins_does_not_prevent_it() {
+    let save_while_sending = |byte_cycle: Option<u64>| {
+        let mut bench = boot_to_stand(Fidelity::DataSheet);
+        bench.expect_ok("deadman 54321");
+        bench.send("save");
+        if let Some(cycle) = byte_cycle {
+            bench.uno.run_until_cycle(cycle);
+            bench.uno.send(b" ");
+        }
+        bench.run_ms(500);
+        bench
+    };
+    let undisturbed_board = save_while_sending(None);
+    let operations = undisturbed_board.uno.eeprom_operations();
+    let last_write = operations.last().expect("a byte was written").cycle;
+    let early_cycle = last_write - 5_000;
+    let received_bytes = save_while_sending(Some(early_cycle)).uno.received_by_uno();
+    let arrival = received_bytes.last().expect("the byte has arrived").cycle;
+    let transfer_cycles = arrival - early_cycle;
+    for lead in 0..20 {
+        let board = save_while_sending(Some(last_write - transfer_cycles - lead));
+        assert!(
+            board.uno.eeprom() == undisturbed_board.uno.eeprom(),
+            "a byte {lead} cycles before a write prevents it"
+        );
+    }
+}
+
+#[test]
 fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_walking(fidelity);

@@ -32,52 +32,6 @@ fn the_banner_and_an_answer_come_within_a_second_of_power_on() {
     });
 }
 
-#[test]
-fn cr_and_lf_and_crlf_each_end_one_line() {
-    run_in_both_simulations(|fidelity| {
-        for end in ["\r", "\n", "\r\n"] {
-            let mut bench = boot_to_stand(fidelity);
-            let line_count_before = bench.lines().len();
-            let text = format!("{end}{end} \t{end}stand{end}{end}stop{end}status{end}");
-            bench.uno.send(text.as_bytes());
-            bench.run_ms(300);
-            let lines = bench.texts_from(line_count_before);
-            assert_eq!(lines.len(), 3, "{end:?}: {lines:?}");
-            assert_eq!(lines[..2], ["ok stand", "ok stop"]);
-            assert!(lines[2].starts_with("ok gait=stop "));
-        }
-    });
-}
-
-#[test]
-fn letter_case_and_whitespace_do_not_matter() {
-    let mut bench = boot_to_stand(Fidelity::DataSheet);
-    assert_eq!(bench.say("  StaNd\t "), "ok stand");
-    // The test uses the gait with the most words in its name.
-    let mut gaits = gait_commands();
-    gaits.sort_by_key(|gait| gait.split(' ').count());
-    let gait = gaits.pop().expect("every robot has `stand`");
-    let typed_gait = gait.to_uppercase().replacen(' ', "   \t", 1);
-    expect_answer(&mut bench, &format!(" {typed_gait} "), "ok ");
-    expect_answer(&mut bench, " speed\t50 ", "ok speed");
-    let gait_key = gait.replace(' ', "-");
-    Status::read(&mut bench).assert_has(&format!("gait={gait_key} speed=50"));
-}
-
-#[test]
-fn a_line_has_at_most_63_characters() {
-    let mut bench = boot_to_stand(Fidelity::DataSheet);
-    let longest_line = format!("stand{}", " ".repeat(58));
-    assert_eq!(bench.say(&longest_line), "ok stand");
-    expect_answer(&mut bench, &format!("{longest_line} "), "err 6 ");
-    expect_answer(&mut bench, &"x".repeat(500), "err 6 ");
-    let answer = bench.say("stop");
-    assert_eq!(
-        answer, "ok stop",
-        "the remainder of the overlong line was not discarded"
-    );
-}
-
 /// Returns poses that violate a servo's travel, a margin and a slider's stroke, each with its error code. The pose for
 /// the stroke is missing if every such pose of this robot also violates a limit that the guard checks earlier.
 fn find_refused_poses() -> BTreeMap<u8, String> {
@@ -190,22 +144,6 @@ fn while_the_servos_rest_only_stand_moves_them() {
         bench.run_ms(1000);
         bench.expect_ok(&first_moving_gait());
     });
-}
-
-#[test]
-fn help_names_every_gait_and_the_main_commands() {
-    let mut bench = boot_to_stand(Fidelity::DataSheet);
-    for line in ["help", "?"] {
-        let (notes, answer) = bench.ask(line);
-        assert_eq!(answer, "ok help");
-        let text = notes.join("\n");
-        for gait in robot().gaits() {
-            assert!(text.contains(&gait.command()), "{}", gait.name());
-        }
-        for word in ["stop", "rest", "trim", "save", "deadman", "watch"] {
-            assert!(text.contains(word), "{word}");
-        }
-    }
 }
 
 #[test]

@@ -48,7 +48,6 @@ mod slow_main;
 mod stock_simavr;
 mod stopping;
 mod supply;
-mod ten_minutes;
 mod watchdog;
 
 const FRAMES_PER_SECOND: u64 = 50;

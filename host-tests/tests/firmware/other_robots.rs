@@ -5,7 +5,7 @@ use lizard_host::bench::measure_longest_step;
 use lizard_host::board::SimulatedBoard;
 use lizard_host::sim::gait_choice;
 use lizard_host_tests::random_robot::{random_robot, with_many_gaits};
-use lizard_host_tests::{FirmwareBench, read_number, rng};
+use lizard_host_tests::{FirmwareBench, read_positive_number, rng};
 use lizard_robot::{Robot, to_command};
 use simulated_uno::Fidelity;
 
@@ -32,7 +32,7 @@ fn assert_frames_exact(robot: &Robot, gait: &str, flood: &str, robot_name: &str)
 #[test]
 fn no_frame_of_a_random_robot_is_late_or_wrong_under_any_flood() {
     // `make other-robots` sets the number of robots to 100.
-    let robot_count = read_number("LIZARD_ROBOTS").unwrap_or(4);
+    let robot_count = read_positive_number("LIZARD_ROBOTS", 4);
     for_each_in_parallel(&[0, 1], |parity| {
         for number in (*parity..robot_count).step_by(2) {
             let mut rng = rng(2_000 + number);

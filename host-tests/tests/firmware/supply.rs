@@ -2,7 +2,7 @@
 
 use lizard_host_tests::{FirmwareBench, Line, robot};
 use lizard_robot::Rail;
-use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin};
+use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Fidelity, Pin};
 
 use crate::measurements::{assert_flashes, assert_no_pulse, measure_widths};
 use crate::{Status, assert_near, boot_to_stand, boot_to_walk, expect_answer, first_moving_gait};
@@ -35,6 +35,16 @@ fn status_reports_the_supply_within_thirty_millivolts() {
         let volts = f64::from(mv) / 1000.0;
         assert_near(printed_volts, volts, 0.030, "printed voltage, V");
     }
+}
+
+#[test]
+fn the_converter_runs_at_a_rate_that_gives_ten_bits() {
+    /// The data address of ADCSRA, whose lowest three bits select the divider of the clock.
+    const ADCSRA: u16 = 0x7a;
+    let bench = boot_to_stand(Fidelity::DataSheet);
+    let divider = 1 << (bench.uno.peek(ADCSRA) & 7);
+    // Data sheet, section 24.4.
+    assert!((50_000..=200_000).contains(&(FREQUENCY / divider)));
 }
 
 /// Lowers a supply through its three thresholds (V), and asserts that the robot reports its reaction at each threshold,

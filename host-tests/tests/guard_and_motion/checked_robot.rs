@@ -17,7 +17,7 @@ use crate::reference::{
 };
 
 /// Number of frames after which all servos are awake.
-pub const WAKING_FRAMES: u32 = 20;
+const WAKING_FRAMES: u32 = 20;
 
 /// The speed of one angle step per frame, deg/s.
 pub const STEP_SPEED_DEG_PER_S: f64 = 50.0 * 360.0 / 65536.0;

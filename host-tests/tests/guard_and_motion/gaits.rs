@@ -1,6 +1,6 @@
 //! Tests that the core's gaits match the gaits in floating point and robot.toml, for every robot.
 
-use lizard_core::numbers::gaits::{Gait, GaitId};
+use lizard_core::numbers::gaits::Gait;
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::{CYCLE, Sweep};
 use lizard_host_tests::{NamedRobot, paper_robot, robots};
@@ -53,18 +53,6 @@ fn leg_angle_deg(robot: &Robot, gait: &Gait, servo: usize, phase: f64) -> f64 {
 /// Mirrors a pose: swaps left and right, and negates every sweep.
 fn mirror(pose: Pose) -> Pose {
     Pose(OPPOSITE_SERVO.map(|servo| Sweep(-pose.0[servo].0)))
-}
-
-#[test]
-fn the_core_has_the_files_gaits_in_the_same_order() {
-    for NamedRobot { name, robot } in robots() {
-        let firmware = robot.firmware();
-        let names: Vec<String> = GaitId::all(firmware.gait_count())
-            .map(|id| firmware.gait_name(id).map(char::from).collect())
-            .collect();
-        let expected: Vec<String> = robot.gaits().iter().map(CheckedGait::command).collect();
-        assert_eq!(names, expected, "{name}");
-    }
 }
 
 #[test]

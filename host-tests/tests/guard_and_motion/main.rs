@@ -4,11 +4,9 @@
 //! `reference` computes the expected values without the core. `checked_robot` commands a robot through its console and
 //! checks every frame that the robot sends.
 
-mod calibration;
 mod checked_robot;
 mod displacement;
 mod gaits;
-mod guard_limits;
 mod guard_poses;
 mod motion;
 mod motion_guard;

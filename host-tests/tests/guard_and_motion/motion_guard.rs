@@ -1,4 +1,4 @@
-//! Tests of the guard during moves between two safe poses with an unsafe pose on the path, and during gaits.
+//! Test of the guard during moves between two safe poses with an unsafe pose on the path.
 
 use fastrand::Rng;
 use lizard_core::guard::clearance::Clearance;
@@ -9,7 +9,7 @@ use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::NamedRobot;
 use lizard_robot::{CoreRobot, Robot};
 
-use crate::checked_robot::{CheckedRobot, check_running_gaits};
+use crate::checked_robot::CheckedRobot;
 use crate::reference::{is_clearly_unsafe, is_safe, random_pose, robots_with_rngs};
 
 /// Number of random pairs of poses that are tried for each robot. Some robots have no unsafe path between safe poses.
@@ -75,6 +75,8 @@ fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
             if !is_at_start || !checked_robot.try_pose(&end_pose) {
                 continue;
             }
+            // Rounding to hundredths of a degree may move the commanded pose by a step.
+            assert!(checked_robot.pose().max_turn_to(&start_pose) <= 1, "{name}");
             let start_pose = checked_robot.pose();
             // `settle` checks that every frame is safe.
             checked_robot.settle();
@@ -138,13 +140,4 @@ fn violates_condition_ahead(
                 .first_hazard(firmware)
                 .is_some_and(is_same_condition)
     })
-}
-
-#[test]
-fn a_running_gait_is_never_stopped_by_the_guard() {
-    check_running_gaits(0, |NamedRobot { name, .. }, gait, checked_robot| {
-        checked_robot.run_frames((2.0 * gait.period() * 50.0) as u32);
-        let hazard = checked_robot.motion().hazard();
-        assert_eq!(hazard, None, "{name}: {}", gait.name());
-    });
 }

@@ -39,7 +39,7 @@ pub const MARGINS: [Margin; 10] = [
 pub const MARGIN_FIVE_BARS: [usize; 6] = [0, 1, 0, 0, 1, 1];
 
 /// Converts an angle of the core to degrees between 0 and 360.
-pub fn to_degrees(angle: Angle) -> f64 {
+fn to_degrees(angle: Angle) -> f64 {
     f64::from(angle.0) * 360.0 / 65536.0
 }
 
@@ -256,17 +256,6 @@ pub fn random_pose_within(rng: &mut Rng, calibration: &[Calibration; 4], fractio
     let pose = random_pose(rng, calibration);
     let scale = |sweep: Sweep| Sweep((f64::from(sweep.0) * fraction) as i16);
     Pose(pose.0.map(scale))
-}
-
-/// Returns a random pose that the guard accepts.
-pub fn random_safe_pose(rng: &mut Rng, firmware: &CoreRobot) -> Pose {
-    let calibration = firmware.calibration();
-    (0..1_000_000)
-        .map(|attempt| {
-            random_pose_within(rng, &calibration, if attempt % 2 == 0 { 1.0 } else { 0.4 })
-        })
-        .find(|pose| is_safe(firmware, pose))
-        .expect("poses near neutral are safe")
 }
 
 /// True if the guard accepts a pose.

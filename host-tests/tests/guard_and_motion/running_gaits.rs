@@ -80,12 +80,15 @@ fn a_gait_that_is_commanded_again_continues() {
 }
 
 #[test]
-fn every_frame_of_a_running_gait_is_a_pose_of_the_gait() {
+fn every_frame_of_a_running_gait_is_a_pose_of_the_gait_and_the_guard_never_stops_it() {
     check_running_gaits(0, |NamedRobot { name, robot }, gait, checked_robot| {
         let firmware = robot.firmware();
         let core_gait = firmware.gait(gait_id(gait));
-        for _ in 0..100 {
+        let frame_count = (2.0 * gait.period() * 50.0).max(100.0) as u32;
+        for _ in 0..frame_count {
             checked_robot.run_frames(1);
+            let hazard = checked_robot.motion().hazard();
+            assert_eq!(hazard, None, "{name}: {}", gait.name());
             let phase = checked_robot.motion().phase();
             let expected = core_gait.pose(firmware.waves(), phase);
             assert_eq!(checked_robot.pose(), expected, "{name}");

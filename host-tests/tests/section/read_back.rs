@@ -115,13 +115,13 @@ fn the_limits_the_slew_limit_and_the_gaits_travel_are_read_back() {
         ] {
             let rounding_up = f64::from(stored.0) - 32768.0 * exact;
             assert!(
-                (-1e-5..1.0).contains(&rounding_up),
+                (-2e-6..1.0).contains(&rounding_up),
                 "{name}: {stored:?} for {exact}"
             );
         }
         let steps_per_frame = file_robot.speed_limits().slew * STEPS_PER_DEGREE / 50.0;
         let rounding_down = steps_per_frame - f64::from(robot.slew().per_frame);
-        let is_rounded_down = (-1e-5..1.0).contains(&rounding_down);
+        let is_rounded_down = (-2e-6..1.0).contains(&rounding_down);
         assert!(is_rounded_down, "{name}: {rounding_down}");
         // The smallest and largest sweeps of all gaits in floating point, for each servo.
         let mut sweep_ranges = [[0.0f64; 2]; 4];
@@ -196,7 +196,7 @@ fn the_link_lengths_and_the_sliders_are_read_back() {
             ];
             let is_rounded_inwards = inward_rounding
                 .iter()
-                .all(|steps_inward| (-1e-5..1.0).contains(steps_inward));
+                .all(|steps_inward| (-2e-6..1.0).contains(steps_inward));
             assert!(is_rounded_inwards, "{name} {side:?}: {inward_rounding:?}");
         }
     });

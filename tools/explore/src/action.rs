@@ -73,7 +73,7 @@ const LINES: [&str; 30] = [
     "deadman 0",
     "status",
     "cal",
-    "garbage",
+    "nonsense",
 ];
 
 impl Action {

@@ -10,6 +10,7 @@ use lizard_core::numbers::units::Sweep;
 use lizard_core::virtual_board::Eeprom;
 
 use crate::action::Action::{self, Frames, Line, PowerLoss, Reset, Stall, SupplyMv};
+use crate::small_robot::straying_robot;
 use crate::world::World;
 
 /// An initial state, and the actions that lead to it.
@@ -75,6 +76,9 @@ const PREPARED_MEMORIES: [(&str, &[Action]); 5] = [
 /// The description of power-on with a boot loader, which hides the cause of each reset.
 const BOOT_LOADER_CONDITIONS: &str = "a boot loader and a blank memory";
 
+/// The description of power-on with a robot that the guard holds although no line has arrived.
+const STRAYING_CONDITIONS: &str = "saved settings and a `stand` that leaves the safe poses";
+
 /// Sequences of actions between power-on and the start of the search.
 const ACTIVITIES: [&[Action]; 11] = [
     &[],
@@ -108,7 +112,8 @@ fn build_short_travel_memory(robot: &Robot) -> Eeprom {
     Eeprom::with_bytes(*memory.bytes())
 }
 
-/// Returns all initial states: each EEPROM with each activity. Leaves out a combination that violates a rule.
+/// Returns all initial states of a robot: each EEPROM with each activity. Also includes each activity of the
+/// [`straying_robot`]. Leaves out a combination that violates a rule.
 pub fn prepare_all(robot: Robot<'static>) -> Vec<InitialState> {
     let mut memories: Vec<(&'static str, Eeprom)> = PREPARED_MEMORIES
         .iter()
@@ -125,7 +130,7 @@ pub fn prepare_all(robot: Robot<'static>) -> Vec<InitialState> {
     let (_, saved_memory) = memories[1].clone();
     let mut foreign_memory = saved_memory.clone();
     foreign_memory.bytes_mut().rotate_left(1);
-    let mut worn_memory = saved_memory;
+    let mut worn_memory = saved_memory.clone();
     worn_memory.is_worn = true;
     let short_travel_conditions = "saved settings with too little travel for the gaits";
     memories.extend([
@@ -133,9 +138,12 @@ pub fn prepare_all(robot: Robot<'static>) -> Vec<InitialState> {
         ("a worn memory", worn_memory),
         (short_travel_conditions, build_short_travel_memory(&robot)),
         (BOOT_LOADER_CONDITIONS, Eeprom::blank()),
+        (STRAYING_CONDITIONS, saved_memory),
     ]);
     let mut states = Vec::new();
     for (conditions, memory) in memories {
+        let is_straying = conditions == STRAYING_CONDITIONS;
+        let robot = if is_straying { straying_robot() } else { robot };
         for actions in ACTIVITIES {
             let mut world = World::power_on(robot, memory.clone());
             world.running_robot.board.has_boot_loader = conditions == BOOT_LOADER_CONDITIONS;
@@ -159,7 +167,7 @@ mod tests {
 
     #[test]
     fn no_initial_state_violates_a_rule() {
-        let memory_count = PREPARED_MEMORIES.len() + 4;
+        let memory_count = PREPARED_MEMORIES.len() + 5;
         let states = prepare_all(small_robot());
         assert_eq!(states.len(), memory_count * ACTIVITIES.len());
     }

@@ -1,4 +1,4 @@
-//! A small robot for the search: the paper's robot with a few short gaits, so that states soon repeat. One gait leaves
+//! Small robots for the search: the paper's robot with a few short gaits, so that states soon repeat. One gait leaves
 //! the safe poses; no robot.toml can have such a gait.
 
 use lizard_core::numbers::calibration::SweepRange;
@@ -27,6 +27,27 @@ pub const NOSE_PIN: u8 = 16;
 /// # Panics
 /// If robots/paper.toml is not valid.
 pub fn small_robot() -> Robot<'static> {
+    open(&small_content())
+}
+
+/// Returns the small robot with the motion of `stray` in its gait `stand`, so that the guard holds the robot soon after
+/// power-on.
+///
+/// # Panics
+/// If robots/paper.toml is not valid.
+pub fn straying_robot() -> Robot<'static> {
+    let mut content = small_content();
+    let (stand, stray) = (0, 3);
+    content.gaits[stand].increment = content.gaits[stray].increment;
+    content.gaits[stand].channels = content.gaits[stray].channels;
+    open(&content)
+}
+
+fn open(content: &Content) -> Robot<'static> {
+    Robot::open(flash(&content.section_bytes())).expect("the section is valid")
+}
+
+fn small_content() -> Content {
     let text = include_str!("../../../robots/paper.toml");
     let paper = lizard_robot::Robot::parse(text).expect("robots/paper.toml is valid");
     let angle_rad = |sample: usize| sample as f64 / SAMPLES_PER_WAVE as f64 * std::f64::consts::TAU;
@@ -66,7 +87,7 @@ pub fn small_robot() -> Robot<'static> {
         (Step::CYCLES, trot, 1),
     ];
     add_routine(&mut content, "patrol", &patrol);
-    Robot::open(flash(&content.section_bytes())).expect("the section is valid")
+    content
 }
 
 /// Adds a gait whose four servos follow the same wave.

@@ -3,6 +3,8 @@
 mod checks;
 mod lines;
 
+use std::hash::{DefaultHasher, Hash, Hasher};
+
 use lizard_core::console::line::GARBLED_BYTE;
 use lizard_core::control::fault::Fault;
 use lizard_core::memory::copies::{COPY_ADDRESSES, REST_POSE_ADDRESS};
@@ -79,7 +81,9 @@ impl World {
     pub fn fingerprint(&self) -> u64 {
         let board = &self.running_robot.board;
         let mut fingerprint = Fingerprint(coarse_fingerprint(&self.running_robot.main));
-        fingerprint.add(coarse_fingerprint(&self.observer.coarse_state()));
+        let mut hasher = DefaultHasher::new();
+        self.observer.coarse_state().hash(&mut hasher);
+        fingerprint.add(hasher.finish());
         let memory = board.memory.bytes();
         for address in COPY_ADDRESSES.into_iter().chain([REST_POSE_ADDRESS]) {
             let record = &memory[usize::from(address.0)..][..usize::from(RECORD_BYTES)];
@@ -93,6 +97,7 @@ impl World {
             }
         }
         fingerprint.add(coarse_fingerprint(&board.ram.peek_restart(None)));
+        fingerprint.add(u64::from(self.robot().hash()));
         fingerprint.add(u64::from(board.rate as u8) << 2 | u64::from(self.sender_rate as u8));
         let reading = board.adc.true_reading();
         let flags = [
@@ -262,7 +267,7 @@ impl World {
             // Main no longer runs; the watchdog resets the processor soon.
             return self.stall_main(20);
         }
-        // After `stand` and `stop` within one frame, the guard still holds the robot, which is already reported.
+        // The guard may hold the robot since an earlier frame, which is already reported.
         let was_held = self.running_robot.motion().hazard().is_some();
         let frame_start = self.now;
         let was_resting = self.running_robot.motion().is_resting();

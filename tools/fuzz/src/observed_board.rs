@@ -150,10 +150,24 @@ impl ObservedBoard {
         self.running_robot.run_frame();
         let widths = self.running_robot.board.started_pulses().0;
         let widths = widths.map(|width| width.0);
+        self.update_max_changes();
         self.observer.observe_frame(self.now, widths);
         self.now += 20 * MS;
         self.settle();
         self.assert_rules_hold();
+    }
+
+    /// Sets the observer's limits for the changes of pulses, which depend on the scales of the servos.
+    fn update_max_changes(&mut self) {
+        /// Tolerance for the rounding of angles and pulses, cycles.
+        const ROUNDING_CYCLES: u32 = 8;
+        let speed_limits = self.robot.speed_limits();
+        let max_speed = speed_limits.slew.max(speed_limits.gait_slew);
+        let steps_per_frame = (max_speed / 50.0 * 65536.0 / 360.0) as u16;
+        let calibrations = self.running_robot.motion().calibration().each_ref();
+        self.observer.limits.max_change_cycles = calibrations.map(|calibration| {
+            u32::from(calibration.max_width_change(steps_per_frame)) + ROUNDING_CYCLES
+        });
     }
 
     /// Runs the robot for a number of frames.

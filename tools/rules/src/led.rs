@@ -32,8 +32,19 @@ pub fn fault_code(fault: &str) -> Result<u8, String> {
 /// LED's changes: a time, and true if the LED was switched on.
 ///
 /// # Errors
-/// Returns a message about the first flash, pause or count that does not match this code.
+/// Returns a message about an LED that does not change, or about the first flash, pause or count that does not match
+/// this code.
 pub fn check_pattern(edges: &[(Time, bool)], from: Time, to: Time, code: u8) -> Result<(), String> {
+    let mut last_change = from;
+    let times = edges.iter().map(|(time, _)| *time);
+    let changes = times.filter(|time| (from..to).contains(time));
+    for time in changes.chain([to]) {
+        let ms = (time - last_change) / MS;
+        if ms > *PAUSE_MS.end() {
+            return Err(format!("fault {code}: no change for {ms} ms"));
+        }
+        last_change = time;
+    }
     let mut flash_count = None;
     for pair in edges.windows(2) {
         let ((start, is_on), (end, _)) = (pair[0], pair[1]);

@@ -17,6 +17,7 @@ mod reports;
 mod rule;
 mod supply;
 
+pub use coarse_state::CoarseState;
 pub use event::{Event, MS, Pulse, Time};
 pub use observer::{Limits, Observer};
 pub use rule::{Rule, Violation};

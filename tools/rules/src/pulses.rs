@@ -93,7 +93,7 @@ impl Permission {
 }
 
 /// The event since a servo's last complete pulse that selects the rule for the next change of its width.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Interruption {
     /// No event: the slew limit applies.
     Nothing,

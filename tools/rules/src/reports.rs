@@ -50,8 +50,9 @@ impl Reports {
 impl Observer {
     /// Checks a line that the robot has printed. `first_byte_at` is the time at which its first byte was written.
     pub(crate) fn check_printed_line(&mut self, first_byte_at: Time, line: &str) {
-        // If a reset cuts a line off, the banner follows in the same line. Such a line is not an answer.
-        if is_answer(line) && !line.contains("# lizard ") {
+        // If a reset cuts a line off, the banner follows in the same line. Such a line is no answer and no report.
+        let is_complete = !line.contains("# lizard ");
+        if is_answer(line) && is_complete {
             self.unanswered_line_count -= 1;
             if self.unanswered_line_count < 0 {
                 self.record_violation(Rule::OneAnswer, format!("unsolicited answer: {line}"));
@@ -62,7 +63,7 @@ impl Observer {
             }
         }
         self.record_accepted_command(line);
-        if line.starts_with("# fault: ") || line.starts_with("# held") {
+        if is_complete && (line.starts_with("# fault: ") || line.starts_with("# held")) {
             self.reports.is_reported = true;
             self.reports.reported_at = Some(self.now);
             if line.contains("no command within") {
@@ -89,6 +90,11 @@ impl Observer {
             self.check_supply_report(report);
         }
         if let Some(boot_action) = line.strip_prefix("# boot: ") {
+            // A fault just after `boot` is reported before `boot`.
+            let is_earlier = |time| self.now - time > self.limits.max_report_time;
+            if self.reports.reported_at.is_some_and(is_earlier) {
+                self.record_violation(Rule::NoBootAfterStop, line);
+            }
             if boot_action == "rest" {
                 self.boot_rest_at = self.now;
             }
@@ -163,7 +169,7 @@ impl Observer {
         self.check_stop_is_reported();
         if has_fault && self.reports.stopped_at.is_none() {
             self.reports.stopped_at = Some(now);
-            self.reports.is_reported = true;
+            self.reports.is_reported = self.reports.reported_at.is_some();
         }
         if gait == Some("rest") {
             self.forbid_pulses(Rule::NoPulsesInRest);

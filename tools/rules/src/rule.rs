@@ -34,6 +34,7 @@ rules! {
     NoPulsesInRest = "status says rest only when there are no pulses";
     RestEndsPulses = "rest ends the pulses within a frame";
     StandWorks = "after stand the robot stands, whatever its previous state";
+    MotionBegins = "an accepted motion is carried out, unless a new fault stops it";
     RefusalChangesNothing = "a refused command changes nothing";
     InvalidRefused = "a line that is not a valid command is refused";
     OtherRateIgnored = "a line sent at another baud rate than the robot's has no effect";
@@ -55,6 +56,7 @@ rules! {
     WakesInRestPose = "a robot that has rested wakes in its rest pose, whatever reset it";
     RestPoseKept = "the rest pose stays in the EEPROM, even across a reset";
     StopReported = "status and the console name the cause of a stop until the next motion command";
+    NoBootAfterStop = "boot moves no robot that a fault or the guard has stopped since the start";
     GuardFaultNamed = "status names a fault whenever the guard holds the robot";
     LedShowsFault = "the LED shows the fault that status reports";
     BrownOutsEnd = "a series of brown-outs comes to an end";

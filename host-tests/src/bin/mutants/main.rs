@@ -71,6 +71,9 @@ fn try_generated_mutants(filters: &[String], count: usize, seed: u64) -> Result<
         }
     }
     let generated_count = mutants.len();
+    if generated_count.min(count) == 0 {
+        return Err("SAMPLE and ONLY select no mutant".into());
+    }
     println!("seed {seed}: {count} of {generated_count} generated mutants");
     compile_firmware_tests()?;
     let file = "crates/core/src/lib.rs";
@@ -117,6 +120,9 @@ fn try_listed_mutants(filters: &[String]) -> Result<usize, String> {
         filters.is_empty() || filters.iter().any(matches_part)
     };
     let list: Vec<&Mutant> = list.iter().filter(is_selected).collect();
+    if list.is_empty() {
+        return Err("ONLY selects no mutant".into());
+    }
     let scratch = ScratchTree::copy()?;
     if list.iter().any(|mutant| mutant.package.is_none()) {
         compile_firmware_tests()?;
@@ -360,7 +366,9 @@ fn run_firmware_tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, S
         return Err("the tests of the firmware did not run; run make test to see the error".into());
     }
     if have_passed && !has_run_a_test(&output_text) {
-        return Err(format!("no test of the firmware has {filter:?} in its name"));
+        return Err(format!(
+            "no test of the firmware has {filter:?} in its name"
+        ));
     }
     let failed_tests = find_failed_tests(&output_text);
     // If no test has failed, one of the two test programs has reached the limit of processor time, or has crashed.

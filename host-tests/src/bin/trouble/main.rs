@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use lizard_host_tests::trouble::{Failure, Scenario, collect_events, run_and_check, run_campaign};
-use lizard_host_tests::{FirmwareBench, patrolling_robot, read_number};
+use lizard_host_tests::{FirmwareBench, patrolling_robot, read_number, read_positive_number};
 use lizard_rules::{Event, MS, Time};
 use simulated_uno::{FREQUENCY, Image};
 
@@ -23,7 +23,7 @@ fn main() -> ExitCode {
     if let Some(scenario_number) = read_number("ONLY") {
         return run_verbosely(&image, seed, scenario_number);
     }
-    let count = read_number("COUNT").unwrap_or(10_000);
+    let count = read_positive_number("COUNT", 10_000);
     let start = Instant::now();
     let report = |done_count: u64, failure: Option<&Failure>| {
         if let Some(failure) = failure {

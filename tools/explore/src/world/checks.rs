@@ -7,6 +7,7 @@ use lizard_core::guard::clearance::Clearance;
 use lizard_core::memory::copies;
 use lizard_core::motion::Activity;
 use lizard_core::numbers::gaits::GaitId;
+use lizard_core::numbers::part::Servo;
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::robot::Robot;
 use lizard_core::virtual_board::Eeprom;
@@ -34,6 +35,12 @@ const SUPPLY_SETTLING_TIME: Time = 14 * FRAME;
 pub(super) fn observer_limits(robot: &Robot) -> Limits {
     let board = robot.supplies().board;
     Limits {
+        width_ranges: Servo::ALL.map(|servo| {
+            let calibration = robot.servo_calibration(servo);
+            let ends = [calibration.travel_min, calibration.travel_max];
+            let [first, last] = ends.map(|sweep| u32::from(calibration.width(sweep).0));
+            (first.min(last), first.max(last))
+        }),
         levels_mv: [board.slow_mv, board.stop_mv, board.rest_mv].map(u32::from),
         // The console reports at once that `boot` begins.
         can_boot_to_rest: true,
@@ -82,10 +89,13 @@ impl World {
                 || self.observer.was_supply_low(1, SUPPLY_SETTLING_TIME)
             {
                 self.observer.drop_pending_promises();
-            } else if answer == "ok stand" && is_stack_intact {
-                self.check_robot_stands(answer)?;
-            } else if COUNTED_MOTIONS.contains(&line) {
-                self.check_motion_ends(answer)?;
+            } else if is_stack_intact {
+                self.check_motion_begins(answer)?;
+                if answer == "ok stand" {
+                    self.check_robot_stands(answer)?;
+                } else if COUNTED_MOTIONS.contains(&line) {
+                    self.check_motion_ends(answer)?;
+                }
             }
         }
         self.observer.take_verdict()
@@ -153,6 +163,22 @@ impl World {
         let readable_memory = Eeprom::with_bytes(*self.running_robot.board.memory.bytes());
         motion.is_resting()
             && copies::read_rest_pose(motion.robot(), &readable_memory) == Some(*motion.pose())
+    }
+
+    /// Checks that a motion that is under way continues in the next frame, unless a new fault stops it.
+    fn check_motion_begins(&self, answer: &str) -> Verdict {
+        let mut future_robot = self.running_robot.clone();
+        future_robot.run_without_reader(1);
+        let control = self.running_robot.main.control();
+        let future_control = future_robot.main.control();
+        if control.activity() != Activity::Stop
+            && future_control.activity() == Activity::Stop
+            && future_control.fault() == control.fault()
+        {
+            let observation = format!("{answer}, and then {}", future_robot.send_line("status"));
+            return report_violation(Rule::MotionBegins, observation);
+        }
+        Ok(())
     }
 
     fn check_robot_stands(&self, answer: &str) -> Verdict {
