@@ -23,10 +23,16 @@ const GAIT_KEY = `${CHANGES_KEY} gait`;
 /** Largest number of robots put aside; older robots are dropped. */
 const MAX_ROBOTS_ASIDE = 8;
 
+/** The values that the browser did not store, as JSON; they last until the page is closed. */
+const unstoredValues = new Map<string, string>();
+
 function store(key: string, value: unknown): void {
+  const json = JSON.stringify(value);
+  unstoredValues.delete(key);
   try {
-    localStorage.setItem(key, JSON.stringify(value));
+    localStorage.setItem(key, json);
   } catch (error) {
+    unstoredValues.set(key, json);
     console.info(`Changes will not survive a reload: ${String(error)}`);
   }
 }
@@ -34,7 +40,7 @@ function store(key: string, value: unknown): void {
 /** Loads a stored value; returns null if it is missing or damaged. */
 function load(key: string): unknown {
   try {
-    return JSON.parse(localStorage.getItem(key) ?? 'null');
+    return JSON.parse(unstoredValues.get(key) ?? localStorage.getItem(key) ?? 'null');
   } catch {
     return null;
   }

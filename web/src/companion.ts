@@ -41,8 +41,8 @@ export class Companion {
 
   /** Advances by one frame of 20 ms. */
   step(): void {
-    const output = this.robot.runCoreFrame(this.pendingLines, this.volts);
+    const widths = this.robot.runCoreFrame(this.pendingLines, this.volts);
     this.pendingLines = '';
-    if (output) this.frame = this.robot.followPulses(output.widths) ?? this.frame;
+    if (widths) this.frame = this.robot.followPulses(widths) ?? this.frame;
   }
 }

@@ -9,6 +9,7 @@ export class LatestRequestQueue<Request, Response> {
   constructor(
     private readonly getResponse: (request: Request) => Promise<Response>,
     private readonly onResponse: (response: Response) => void,
+    private readonly onError: (error: unknown) => void,
   ) {}
 
   /** Sends a request at once or, while another request is pending, queues it in place of the queued request. */
@@ -20,9 +21,13 @@ export class LatestRequestQueue<Request, Response> {
   private async send(request: Request): Promise<void> {
     this.isBusy = true;
     this.queuedRequest = null;
-    const response = await this.getResponse(request).finally(() => (this.isBusy = false));
-    // The callback may submit another request, which replaces the queued request.
-    this.onResponse(response);
+    try {
+      const response = await this.getResponse(request).finally(() => (this.isBusy = false));
+      // The callback may submit another request, which replaces the queued request.
+      this.onResponse(response);
+    } catch (error) {
+      this.onError(error);
+    }
     if (this.queuedRequest !== null && !this.isBusy) void this.send(this.queuedRequest);
   }
 }

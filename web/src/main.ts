@@ -12,6 +12,7 @@ import { hasSerial, NO_SERIAL_MESSAGE, PortLink } from './link/port-link';
 import { installServiceWorker } from './offline';
 import { Predictor } from './predictor';
 import { canLag, load } from './robot';
+import { workerFailure } from './robot-requests';
 import { Session } from './session';
 import type { BoardBanner } from './session-state';
 import { getMessage } from './problem';
@@ -63,6 +64,7 @@ declare global {
 }
 
 const problems = new ProblemList();
+workerFailure.subscribe((message) => problems.setMessage('page', message || null));
 
 async function start(): Promise<void> {
   const [module, choice] = await Promise.all([files.robotModule(), files.robots().then((robots) => new RobotChoice(robots))]);
@@ -182,7 +184,7 @@ async function start(): Promise<void> {
     const { version, name, hash } = description;
     element('where').parentElement!.dataset.longestText = describeBoard(link.name, { version, robot: { name, hash } }, hash);
     element('heard').hidden = !isReal;
-    element<HTMLButtonElement>('reset').disabled = link.kind === 'radio';
+    element<HTMLButtonElement>('reset').disabled = isBusy || link.kind === 'radio';
     connectButton.textContent = isReal ? 'Back to the simulation' : 'Connect a board…';
     // While the boot loader uses the line, no other action may use it.
     connectButton.disabled = isBusy || (!isReal && !hasSerial());
@@ -229,9 +231,9 @@ async function start(): Promise<void> {
   const ownRobots = new OwnRobots(session, problems, (file) => (choice.select(file), loadChosenFile()), (names) => choice.showOwn(names));
   /** Loads another robot with `loadRobot`, and puts the user's changed robot aside. */
   const replaceRobot = async (loadRobot: () => Promise<unknown>) => {
-    const saved = browserStorage.getChanges();
+    const { changes } = session;
     await loadRobot();
-    ownRobots.putAside(saved);
+    ownRobots.putAside(changes);
   };
   choice.list.addEventListener('change', () => void (choice.chosenOwnIndex === null ? replaceRobot(loadChosenFile) : ownRobots.restore(choice.chosenOwnIndex)));
 

@@ -15,6 +15,8 @@ export async function installServiceWorker(onUpdate: (load: () => void) => void)
       const { waiting } = registration;
       if (!waiting || isFirstVisit) return;
       onUpdate(() => {
+        // Another tab has loaded it.
+        if (waiting.state !== 'installed') return location.reload();
         serviceWorker.addEventListener('controllerchange', () => location.reload(), { once: true });
         waiting.postMessage('take over');
       });

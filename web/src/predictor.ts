@@ -5,7 +5,7 @@ import { signal } from '@preact/signals-core';
 import { follow } from './follow';
 import type { CallableWorker } from './callable-worker';
 import type { GaitPrediction } from './robot';
-import { startRobotWorker } from './robot-requests';
+import { reportWorkerFailure, startRobotWorker } from './robot-requests';
 import type { RobotWorkerApi } from './robot-worker';
 import type { Session } from './session';
 
@@ -25,7 +25,7 @@ export class Predictor {
   constructor(private readonly session: Session) {
     session.followRobot(() => (this.predictions.value = new Map()));
     const { description, floor, servos } = session.state;
-    follow([description, floor, servos], () => description.value && void this.predict());
+    follow([description, floor, servos], () => description.value && void this.predict().catch(reportWorkerFailure));
   }
 
   /** The gaits with a prediction, in the robot's order. */

@@ -7,24 +7,20 @@ const SLICE_MS = 4;
 /** CPU time limit of the simulation per animation frame, ms; beyond it, the simulation falls behind real time. */
 const FRAME_BUDGET_MS = 30;
 
-/** In each animation frame, calls `advance` with slices of the time since the previous frame, and then `draw`. */
+/**
+ * In each animation frame, calls `advance` with slices of the time since the previous frame, and then `draw`. Neither
+ * may throw.
+ */
 export function runInRealTime(advance: (ms: number) => void, draw: () => void): void {
   let previousTime: number | null = null;
-  let hasFailed = false;
   const handleFrame = async (now: number) => {
     let remainingMs = previousTime === null ? 0 : Math.min(MAX_CATCH_UP_MS, Math.max(0, now - previousTime));
     previousTime = now;
     const start = performance.now();
-    try {
-      while (remainingMs > 0 && !hasFailed && performance.now() - start < FRAME_BUDGET_MS) {
-        advance(Math.min(SLICE_MS, remainingMs));
-        remainingMs -= SLICE_MS;
-        await Promise.resolve();
-      }
-    } catch (error) {
-      // A failure is reported only once, and the page continues without the simulation.
-      hasFailed = true;
-      console.error(error);
+    while (remainingMs > 0 && performance.now() - start < FRAME_BUDGET_MS) {
+      advance(Math.min(SLICE_MS, remainingMs));
+      remainingMs -= SLICE_MS;
+      await Promise.resolve();
     }
     draw();
     requestAnimationFrame((time) => void handleFrame(time));

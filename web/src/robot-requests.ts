@@ -1,15 +1,25 @@
 // Starts workers, each with its own robot, and queues requests to them.
+import { signal } from '@preact/signals-core';
 import type { Remote } from 'comlink';
 
 import { files } from './files';
 import { CallableWorker } from './callable-worker';
 import { LatestRequestQueue } from './latest-request-queue';
+import { getMessage } from './problem';
 import type { RobotWorkerApi } from './robot-worker';
+
+/** The message about the first failure of a worker; empty while none has failed. */
+export const workerFailure = signal('');
+
+export function reportWorkerFailure(error: unknown): void {
+  console.error(error);
+  workerFailure.value ||= `The page cannot compute predictions or check changes (${getMessage(error)}). Reload it to try again.`;
+}
 
 export async function startRobotWorker(): Promise<CallableWorker<RobotWorkerApi>> {
   const module = await files.robotModule();
   const worker = new CallableWorker<RobotWorkerApi>(new Worker(new URL('./robot-worker.ts', import.meta.url), { type: 'module' }));
-  void worker.call((robot) => robot.load(module));
+  worker.call((robot) => robot.load(module)).catch(reportWorkerFailure);
   return worker;
 }
 
@@ -19,5 +29,5 @@ export function createRobotQueue<Request, Response>(
   onResponse: (response: Response) => void,
 ): LatestRequestQueue<Request, Response> {
   let worker: Promise<CallableWorker<RobotWorkerApi>> | null = null;
-  return new LatestRequestQueue(async (request) => (await (worker ??= startRobotWorker())).call((robot) => call(robot, request)), onResponse);
+  return new LatestRequestQueue(async (request) => (await (worker ??= startRobotWorker())).call((robot) => call(robot, request)), onResponse, reportWorkerFailure);
 }

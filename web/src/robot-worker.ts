@@ -49,7 +49,7 @@ const api = {
   tryLengths({ toml, edits, isLast, keys }: { toml: string; edits: Edits; isLast: boolean; keys: string[] }) {
     const result = Robot.tryLengths(toml, edits, isLast);
     const range = keys.length === 0 ? null : Robot.lengthRange(toml, keys);
-    return { ...result, edits, scene: result.refusal ? null : loadNeutralScene(result.text), isLast, range };
+    return { ...result, toml, edits, scene: result.refusal ? null : loadNeutralScene(result.text), isLast, range };
   },
 };
 

@@ -29,7 +29,7 @@ export class SessionState {
   readonly pace = signal(FULL_PACE);
   /** The robot's refusal of the last drive command; empty if the robot accepted the command. */
   readonly refusal = signal('');
-  /** The last answer to `status`; null before the first answer. */
+  /** The board's last answer to `status`; null before its first answer. */
   readonly status = signal<Status | null>(null);
   /** True while a line has had no answer for `SILENCE_MS`, or a radio is out of range. */
   readonly isSilent = signal(false);

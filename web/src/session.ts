@@ -74,6 +74,8 @@ export class Session {
   toml = '';
   /** The unchanged text of the robot's file. */
   original = '';
+  /** The robot and the user's changes to it, as this page last stored them; null before the first robot. */
+  changes: SavedChanges | null = null;
   /** The page's predictions for the gaits in `original`; null if they are missing. */
   private predictions: Predictions | null = null;
   /** The robot's section of flash. */
@@ -110,6 +112,10 @@ export class Session {
   private isWatching = false;
   /** Number of calls of `loadFile` so far; a file that arrives after a later call is dropped. */
   private loadCount = 0;
+  /** The simulated UNO that has failed and no longer advances; null for none. */
+  private failedLink: UnoLink | null = null;
+  /** The link that `disconnect` is closing, or has closed; null for none. */
+  private closingLink: Link | null = null;
 
   constructor(
     readonly robot: Robot,
@@ -196,7 +202,9 @@ export class Session {
   private storeChanges(): void {
     const { file, original, toml, servos, volts } = this;
     const floor = this.state.floor.value;
-    if (file !== '') browserStorage.putChanges({ file, original, toml, floor, servos, volts });
+    if (file === '') return;
+    this.changes = { file, original, toml, floor, servos, volts };
+    browserStorage.putChanges(this.changes);
   }
 
   private loadToml(toml: string, floorSetting: Floor | null, originalFile: [string, Predictions | null] = [this.original, this.predictions]): Refusal | null {
@@ -314,8 +322,11 @@ export class Session {
 
   /** Waits for the banner of a restarted board; returns true if it arrives in time. */
   async waitForBanner(): Promise<boolean> {
+    const { bannerCount } = this.state;
+    const previousCount = bannerCount.value;
     const bannerPromise = new Promise<boolean>((resolve) => (this.resolveBanner = () => resolve(true)));
-    return Promise.race([bannerPromise, this.link.wait(BANNER_TIMEOUT_MS).then(() => false)]);
+    // A later call may have replaced `resolveBanner`.
+    return Promise.race([bannerPromise, this.link.wait(BANNER_TIMEOUT_MS).then(() => bannerCount.value !== previousCount)]);
   }
 
   /** Resolves to true if this firmware answers `status`; used if the port does not reset the board. */
@@ -344,8 +355,10 @@ export class Session {
     await this.ask(`${WORDS.watch} ${FRAMES_PER_REPORT[this.link.kind]}`);
   }
 
-  /** Stops a board, disconnects it and returns to the simulation. */
+  /** Stops a board, disconnects it and returns to the simulation, unless an earlier call is doing this. */
   async disconnect(): Promise<void> {
+    if (this.closingLink === this.link) return;
+    this.closingLink = this.link;
     const hasStopped = await this.stop();
     await this.simulate();
     if (!hasStopped) {
@@ -377,9 +390,12 @@ export class Session {
     if (this.pendingDriveCount === 0 && !this.isBoardWalking) this.deadman.restore();
   }
 
-  /** Stops a board that walks while the user may not see it; if `stop` does not arrive, `deadman` stops the board. */
+  /**
+   * Stops a board that walks, or will soon walk, while the user may not see it; if `stop` does not arrive, `deadman`
+   * stops the board.
+   */
   stopIfWalking(): void {
-    if (!this.isBoardWalking) return;
+    if (!this.isBoardWalking && this.pendingDriveCount === 0) return;
     this.deadman.stopRepeating();
     void this.ask(WORDS.stop);
   }
@@ -404,12 +420,13 @@ export class Session {
       // An earlier radio's silence does not concern the new link.
       this.state.isSilent.value = false;
       this.state.refusal.value = '';
+      this.state.status.value = null;
       this.isWatching = false;
       this.mayAsk = false;
       this.startDialogue();
       this.setGait('');
     });
-    for (const cause of ['line', 'board', 'fault'] as const) this.listener.onProblem(cause, null);
+    for (const cause of ['line', 'board', 'fault', 'simulation'] as const) this.listener.onProblem(cause, null);
   }
 
   private startDialogue(): void {
@@ -532,7 +549,10 @@ export class Session {
   /** Handles a status as soon as its line is received, because it could later overwrite a newer state. */
   private handleStatus(status: Status): void {
     if (status.pace !== null) this.setPace(status.pace);
-    this.listener.onProblem('fault', status.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself, because it received no line for too long.' : null);
+    // A fault lasts until the robot moves again, but is reported only once.
+    if (status.fault !== this.state.status.value?.fault) {
+      this.listener.onProblem('fault', status.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself, because it received no line for too long.' : null);
+    }
     const gait = status.gait.replaceAll('-', ' ');
     // The robot reports `center` as a pose, and the rest of a routine as `rest`.
     const isSameActivity = (gait === WORDS.pose && this.gait === WORDS.center) || (gait === WORDS.rest && this.isRoutineRunning && status.fault === null);
@@ -604,19 +624,21 @@ export class Session {
     return this.link instanceof UnoLink ? this.link : null;
   }
 
-  /** Advances the simulation; does nothing with a real board. */
+  /** Advances the simulation until it fails, which is reported; does nothing with a real board. */
   advance(ms: number): void {
+    const { simulatedLink } = this;
+    if (!simulatedLink || simulatedLink === this.failedLink) return;
     try {
-      const { simulatedLink } = this;
       // The steps are short, so that each line of the robot gets its own time, even on a slow machine that catches up.
-      for (let remainingMs = simulatedLink ? ms : 0; remainingMs > 0; remainingMs -= CLOCK_STEP_MS) {
+      for (let remainingMs = ms; remainingMs > 0; remainingMs -= CLOCK_STEP_MS) {
         const stepMs = Math.min(remainingMs, CLOCK_STEP_MS);
         this.clock += stepMs / 1000;
-        simulatedLink?.advance(stepMs);
+        simulatedLink.advance(stepMs);
       }
     } catch (error) {
+      this.failedLink = simulatedLink;
+      console.error(error);
       this.listener.onProblem('simulation', `The simulated UNO has stopped: ${getMessage(error)}`);
-      throw error;
     }
   }
 

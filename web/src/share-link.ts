@@ -19,7 +19,7 @@ async function pipeThrough(bytes: Uint8Array<ArrayBuffer>, stream: CompressionSt
 /** Compresses a robot.toml for the parameter `robot` of an address. */
 export async function pack(toml: string): Promise<string> {
   const bytes = await pipeThrough(new TextEncoder().encode(toml), new CompressionStream('deflate-raw'));
-  const base64 = btoa(String.fromCharCode(...bytes));
+  const base64 = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(''));
   // base64url needs no escapes in an address.
   return base64.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
 }

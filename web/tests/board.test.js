@@ -22,7 +22,7 @@ testPage('the page identifies a new UNO, and one button writes its firmware', op
   assert.equal(await readText(page, '#where'), 'on a board on USB without this firmware');
   await page.getByRole('button', { name: 'Write firmware and robot to it' }).click();
   await page.locator('#flash-message', { hasText: 'calling the boot loader' }).waitFor();
-  for (const control of ['#robot', '#connect']) {
+  for (const control of ['#robot', '#connect', '#reset']) {
     assert.ok(await page.locator(control).isDisabled(), `${control} would take the port from the boot loader`);
   }
   await waitForText(page, '#flash-message', /^written and verified in [\d.]+ s$/);
@@ -36,6 +36,20 @@ testPage('the page identifies a new UNO, and one button writes its firmware', op
 testPage('for a board that does not answer, the page asks whether it is a UNO or a Nano', openWithDeafBoard, async (page) => {
   await waitForText(page, '#problems', /no boot loader answers\. Is it a UNO or a Nano\?/);
   assert.ok(await page.locator('#problems').isVisible());
+});
+
+testPage('a port stays closed after the user has left a board that is still being identified', openWithDeafBoard, async (page) => {
+  await page.evaluate(() => {
+    window.openCount = 0;
+    window.onPortOpen = () => (window.openCount += 1);
+  });
+  const readOpenCount = () => page.evaluate(() => window.openCount);
+  await runUntil(page, 'the page tries another baud rate', async () => (await readOpenCount()) > 0);
+  await page.locator('#connect').click();
+  await waitForText(page, '#where', /simulated UNO/);
+  const openCount = await readOpenCount();
+  await page.clock.runFor(5000);
+  assert.equal(await readOpenCount(), openCount);
 });
 
 testPage('the page queries and tracks a board that its port does not reset', () => openWithBoard('robot', 5000, { boardKeepsRunning: true }), async (page) => {
@@ -91,6 +105,21 @@ testPage('disconnecting a board stops it', openWalking, async (page) => {
   await page.locator('#log div', { hasText: /^ok stop$/ }).waitFor();
   assert.match(await page.evaluate(() => window.receivedText), /\nstop\n(deadman 0\n)?$/, 'the last lines from the page');
   assert.match(await readText(page, '#where'), /simulated UNO/);
+});
+
+testPage('a press of the button while the port is closing has no effect', openWalking, async (page) => {
+  await page.evaluate(async () => {
+    const port = await navigator.serial.requestPort();
+    const { close } = port;
+    port.close = async () => {
+      document.querySelector('#connect').click();
+      await close();
+    };
+  });
+  await page.locator('#connect').click();
+  await waitForText(page, '#where', /simulated UNO/);
+  await page.clock.runFor(500);
+  assert.equal(await page.locator('#problems').isVisible(), false);
 });
 
 testPage('the page reports a board that does not confirm the stop', openWalking, async (page) => {

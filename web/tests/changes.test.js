@@ -182,6 +182,13 @@ testPage('with rigid legs and ideal servos, sliders without an effect are disabl
   for (const label of ['Pad friction', 'Mass', 'Pull in the strut']) assert.ok(await page.getByLabel(label).isEnabled(), label);
 });
 
+testPage('a slider changes no value but its own', openStanding, async (page) => {
+  await page.evaluate(() => window.lizard.change(window.lizard.toml, { ...window.lizard.floor, friction: 0.53 }));
+  await setSlider(page, 'Mass', '412');
+  const { mass, friction } = await page.evaluate(() => window.lizard.floor);
+  assert.deepEqual({ mass, friction }, { mass: 412, friction: 0.53 });
+});
+
 testPage('the page has stored predictions for unchanged robots, and computes new ones after a change', openStanding, async (page) => {
   const countWorkers = () => page.workers().filter((worker) => worker.url().includes('robot-worker')).length;
   const readNotes = () => page.locator('#gaits button[data-command] small').allInnerTexts();

@@ -12,7 +12,7 @@ class FakeWorker {
 
   getResponse = (request) => {
     this.receivedRequests.push(request);
-    return new Promise((resolve) => (this.resolveResponse = resolve));
+    return new Promise((resolve, reject) => Object.assign(this, { resolveResponse: resolve, rejectResponse: reject }));
   };
 
   async respond() {
@@ -45,4 +45,16 @@ test('the newest request gets the last response, even if it is submitted when a 
   for (let n = 0; n < 2; n++) await worker.respond();
   assert.deepEqual(responses.at(-1), 'response to newest', `${worker.receivedRequests}`);
   assert.equal(worker.receivedRequests.at(-1), 'newest', 'no older request is sent after the newest request');
+});
+
+test('an error is reported, and the queued request is sent', async () => {
+  const worker = new FakeWorker();
+  const errors = [];
+  const queue = new LatestRequestQueue(worker.getResponse, assert.fail, (error) => errors.push(error));
+  queue.submit('first');
+  queue.submit('second');
+  worker.rejectResponse('no worker');
+  await new Promise((resolve) => setTimeout(resolve));
+  assert.deepEqual(errors, ['no worker']);
+  assert.deepEqual(worker.receivedRequests, ['first', 'second']);
 });

@@ -182,6 +182,9 @@ testPage('a robot out of range stops, and reports the reason when it is in range
   await page.clock.runFor(3000);
   assert.equal(await readText(page, '#doing'), 'stop');
   await page.locator('#log div', { hasText: '# fault: no command within the deadman time' }).waitFor();
+  await page.locator('#problems', { hasText: 'The robot has stopped by itself' }).getByRole('button', { name: 'Dismiss' }).click();
+  await page.clock.runFor(2000);
+  assert.equal(await page.locator('#problems').isVisible(), false, 'a fault is reported once');
 });
 
 testPage('stopping the robot restores its own deadman', openWithBoard, async (page) => {
@@ -223,6 +226,14 @@ test('the page treats an HC-05 at a serial port with 9600 baud as a radio', asyn
 testPage('a hidden page stops the robot', openWalking, async (page) => {
   await hidePage(page);
   await page.clock.runFor(500);
+  assert.equal(await readGait(page), 'stop');
+});
+
+testPage('a gait that waits for the confirmation of deadman does not start on a hidden page', openWithBoard, async (page) => {
+  await findGaitButton(page, 'walk').click();
+  await hidePage(page);
+  await page.clock.runFor(3000);
+  assert.doesNotMatch(await readReceivedText(page), /^walk$/m);
   assert.equal(await readGait(page), 'stop');
 });
 

@@ -58,6 +58,19 @@ test('a newer page replaces all files of the older page, but only on request', a
   assert.equal((await readCacheNames()).length, 1);
 });
 
+test('an older page that stays open can load the newer page after another page has loaded it', async () => {
+  const { copyFolder, server } = await serveCopy();
+  const page = await openStored(server);
+  const [olderPage] = await Promise.all([page.waitForEvent('popup'), page.evaluate((address) => void window.open(address), address(server))]);
+  await waitUntilStarted(olderPage);
+  await makeNewer(copyFolder);
+  await reload(page);
+  for (const openPage of [page, olderPage]) {
+    await openPage.getByRole('button', { name: 'Load it now' }).click();
+    await openPage.locator('h1', { hasText: 'lizard, newer' }).waitFor();
+  }
+});
+
 test('an incomplete newer page is rejected, and the stored page stays in use', async () => {
   const { copyFolder, server, requestedPaths } = await serveCopy();
   const page = await openStored(server);

@@ -39,6 +39,38 @@ testPage('the page reports an unreadable first robot and accepts another robot',
   assert.equal(await findProblems(page).isVisible(), false);
 });
 
+testPage('a failure of the simulation is reported, and another robot then walks', openStanding, async (page) => {
+  await page.evaluate(() => {
+    window.lizard.link.board.run = () => {
+      throw new Error('unknown instruction');
+    };
+  });
+  await findProblems(page).getByText('The simulated UNO has stopped: unknown instruction').waitFor();
+  await chooseRobot(page, 'large');
+  await advance(page, 2500);
+  assert.equal(await findProblems(page).isVisible(), false);
+  await sendLine(page, 'walk', 'ok walk');
+  // The page also writes the error to the console, as expected.
+  browserErrors.splice(0, browserErrors.length, ...browserErrors.filter((browserError) => !/unknown instruction/.test(browserError)));
+});
+
+testPage('the page reports once that its predictions cannot be computed', openStanding, async (page) => {
+  await page.evaluate(() => {
+    const { Worker } = window;
+    window.Worker = function () {
+      return new Worker('missing.js', { type: 'module' });
+    };
+    window.lizard.setServos('ideal');
+  });
+  await findProblems(page).getByText('The page cannot compute predictions').waitFor();
+  await page.getByRole('button', { name: 'Dismiss' }).click();
+  await page.evaluate(() => window.lizard.setServos('copy'));
+  await advance(page, 500);
+  assert.equal(await findProblems(page).isVisible(), false);
+  // The browser also reports the missing worker, as expected.
+  browserErrors.splice(0, browserErrors.length, ...browserErrors.filter((browserError) => !/404|worker could not be loaded/.test(browserError)));
+});
+
 testPage('the message about a busy port stays until the user dismisses it', () => openPage({}, installFakeSerial), async (page) => {
   await page.evaluate(() => {
     window.onPortOpen = () => {

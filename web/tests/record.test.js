@@ -109,3 +109,13 @@ testPage('two robots walk side by side, each as far as alone', openRecordPanel, 
   await findButton(page, 'Remove the second robot').click();
   assert.equal(await message.innerText(), '');
 });
+
+testPage('a robot that is changed while two robots are started stays alone', openRecordPanel, async (page) => {
+  await page.evaluate(async () => {
+    document.querySelector('#both').click();
+    await window.lizard.change(window.lizard.toml.replace('amplitude = 15.0', 'amplitude = 14.0'));
+  });
+  await advance(page, 500);
+  assert.ok(await findButton(page, 'Remove the second robot').isDisabled());
+  assert.equal(await page.locator('#keep-message').innerText(), '');
+});

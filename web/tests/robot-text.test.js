@@ -234,6 +234,23 @@ testPage('a button restores the user\'s own robot after a link or another robot 
   assert.equal(await page.locator('#robot optgroup[label="your own"]').count(), 0, 'no stored robot is left');
 });
 
+testPage('a changed robot can be restored if another page has stored its own robot, and if nothing can be stored any more', openTextEditor, async (page) => {
+  const ownToml = (await readToml(page)).replace('amplitude = 15.0', 'amplitude = 14.0');
+  await applyText(page, ownToml);
+  await waitForRobot(page, ownToml);
+  await page.evaluate(() => {
+    const key = `lizard ${location.pathname}`;
+    const stored = JSON.parse(localStorage.getItem(key));
+    localStorage.setItem(key, JSON.stringify({ ...stored, toml: stored.toml.replace('amplitude = 14.0', 'amplitude = 13.0') }));
+    Storage.prototype.setItem = () => {
+      throw new DOMException('The storage is full.', 'QuotaExceededError');
+    };
+  });
+  await chooseRobot(page, 'large');
+  await page.locator('#problems').getByRole('button', { name: 'Back to my own robot' }).click();
+  await waitForRobot(page, ownToml);
+});
+
 testPage('the list has the names of the user\'s own robots, and restores each unchanged', openTextEditor, async (page) => {
   const firstToml = await readToml(page);
   const makeToml = (name) => firstToml.replace('name = "paper"', `name = "${name}"`);

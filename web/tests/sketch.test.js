@@ -80,6 +80,20 @@ testPage('a crank becomes longer only on its own side if the sides need not be e
   assert.equal(await readLength(page, 'links.l4'), 30);
 });
 
+testPage('lengths that are still being tried do not replace a robot that is loaded meanwhile', openSketch, async (page) => {
+  const newToml = await page.evaluate(async () => {
+    const slider = document.querySelector('#length-slide');
+    slider.valueAsNumber += 1;
+    slider.dispatchEvent(new Event('change'));
+    await window.lizard.change(window.lizard.toml.replace('amplitude = 15.0', 'amplitude = 14.0'));
+    slider.removeAttribute('max');
+    return window.lizard.toml;
+  });
+  // The last response has the slider's range.
+  await page.waitForFunction(() => document.querySelector('#length-slide').max !== '');
+  assert.equal(await readToml(page), newToml);
+});
+
 testPage('a pressed bar selects its number', openSketch, async (page) => {
   await page.locator('#sketch line[data-key="links.l2"]').click({ force: true });
   assert.equal(await page.evaluate(() => document.activeElement.name), 'links.l2');

@@ -165,6 +165,15 @@ testPage('the page reports an older Nano that is unplugged while its baud rate i
   assert.match(await readText(page, '#where'), /simulated UNO/);
 });
 
+testPage('a write to the simulated UNO ends if another robot replaces this UNO', () => openUnfolded('#flash'), async (page) => {
+  const findMessage = (pattern) => page.locator('#flash-message', { hasText: pattern });
+  await page.locator('#flash-write').click();
+  await findMessage(/^reading/).waitFor();
+  await page.evaluate(() => window.lizard.change(window.lizard.toml.replace('name = "paper"', 'name = "mine"')) && null);
+  await findMessage(/^not written: the board is no longer connected\./).waitFor();
+  assert.ok(await page.locator('#flash-write').isEnabled());
+});
+
 testPage('flash pages that already have the right bytes are not written', openWithBoard, async (page) => {
   const measureWrite = async () => {
     await pressAndWait(page, '#flash-write', /^reading/);

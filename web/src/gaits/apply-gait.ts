@@ -27,6 +27,8 @@ export async function driveGait(session: Session, gait: EditedGait): Promise<Ref
 export async function restartWithGait(session: Session, gait: EditedGait): Promise<Refusal | null> {
   if (session.isReal) return refuse('A real board has only the gaits that were written to it. Write this gait to the board, or return to the simulation to try it.');
   const refusal = await applyGait(session, gait);
-  if (!refusal) await session.link.wait(WAKE_MS);
-  return refusal;
+  if (refusal) return refusal;
+  const { dialogue } = session;
+  await session.link.wait(WAKE_MS);
+  return dialogue.isClosed ? refuse('The robot was changed before it stood.') : null;
 }

@@ -21,6 +21,8 @@ export class PortLink implements Link {
   private reader: ReadableStreamDefaultReader<Uint8Array> | null = null;
   private writer: WritableStreamDefaultWriter<Uint8Array> | null = null;
   private isClosing = false;
+  /** True once the page has left the board; the port then stays closed. */
+  private isLeft = false;
   private baud = BAUD_RATE;
   /** Settles when reading from the port ends. */
   private readLoop: Promise<void> = Promise.resolve();
@@ -74,12 +76,15 @@ export class PortLink implements Link {
     if (this.kind === 'radio') return;
     if (baud !== this.baud) {
       // The baud rate can be set only when the port is opened.
-      await this.close();
+      await this.closePort();
       this.baud = baud;
-      await this.openPort().catch((error: unknown) => {
-        this.onGone(getMessage(error));
-        throw new Error(GONE_MESSAGE);
-      });
+      if (!this.isLeft) {
+        await this.openPort().catch((error: unknown) => {
+          if (!this.isLeft) this.onGone(getMessage(error));
+          throw new Error(GONE_MESSAGE);
+        });
+      }
+      if (this.isLeft) await this.closePort();
     }
     for (const isLow of [false, true]) {
       await this.port.setSignals({ dataTerminalReady: isLow, requestToSend: isLow }).catch(() => Promise.reject(new Error(GONE_MESSAGE)));
@@ -87,7 +92,12 @@ export class PortLink implements Link {
     }
   }
 
-  async close(): Promise<void> {
+  close(): Promise<void> {
+    this.isLeft = true;
+    return this.closePort();
+  }
+
+  private async closePort(): Promise<void> {
     this.isClosing = true;
     await this.reader?.cancel().catch(() => {});
     await this.readLoop;

@@ -2,7 +2,7 @@
 import type { Four } from '../robot';
 import { SimulatedBoard, FREQUENCY_HZ } from '../uno/simulated-board';
 import { FrameCollector } from '../uno/frame-collector';
-import type { Link } from './link';
+import { GONE_MESSAGE, type Link } from './link';
 
 const CYCLES_PER_MS = FREQUENCY_HZ / 1000;
 /** Simulated time between two reads of the chip's output, ms. */
@@ -19,6 +19,7 @@ export class UnoLink implements Link {
   private bytesFromBoard: number[] = [];
   /** Remaining cycles to run; negative if the chip has overrun its time. */
   private cyclesToRun = 0;
+  private isClosed = false;
 
   /**
    * `pins` are the Arduino numbers of the pins of servos A1 to A4. `onFrame` receives the pulse width of each servo in
@@ -68,6 +69,7 @@ export class UnoLink implements Link {
   }
 
   async write(bytes: Uint8Array): Promise<void> {
+    if (this.isClosed) throw new Error(GONE_MESSAGE);
     this.board.send(bytes);
   }
 
@@ -77,10 +79,14 @@ export class UnoLink implements Link {
   }
 
   wait(ms: number): Promise<void> {
+    if (this.isClosed) return Promise.resolve();
     const endCycle = this.board.cycle + ms * CYCLES_PER_MS;
     return new Promise((resolve) => this.waits.push({ endCycle, resolve }));
   }
 
-  /** Does nothing, because no port is open. */
-  async close(): Promise<void> {}
+  /** Ends all calls of `wait`, because the board's time stops. */
+  async close(): Promise<void> {
+    this.isClosed = true;
+    this.endWaits(Infinity);
+  }
 }

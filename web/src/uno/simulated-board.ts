@@ -21,11 +21,11 @@ const MCUSR = 0x54;
 /** Data address at which the RAM starts, after the registers. */
 const RAM_START = 0x100;
 /** Byte address of a 512-byte boot loader in flash. */
-export const BOOT_START = 0x7e00;
+const BOOT_START = 0x7e00;
 
 /** The bit of MCUSR for each cause of a reset. */
 const RESET_CAUSE_BITS = { power: 0x01, external: 0x02, watchdog: 0x08 };
-export type ResetCause = keyof typeof RESET_CAUSE_BITS;
+type ResetCause = keyof typeof RESET_CAUSE_BITS;
 
 /** Thrown when the watchdog resets the chip, to end the chip's run. */
 class ChipReset extends Error {}

@@ -43,7 +43,7 @@ export function setUpCalibration(session: Session): void {
   const panel = element<HTMLDetailsElement>('calibrate');
   panel.addEventListener('toggle', () => isShown(panel) && void read());
   // The robot answers again.
-  session.state.status.subscribe(() => mayBeOutdated && void read());
+  session.state.status.subscribe((status) => status && mayBeOutdated && void read());
 }
 
 /** Adds the inputs of a servo, which send its settings; returns the function that shows settings in them. */

@@ -14,9 +14,12 @@ export function downloadRobot(toml: string, floor: Floor | null): Refusal | null
   return refusal;
 }
 
+/** Time in which a browser begins to read a file that it saves, ms. */
+const SAVE_MS = 60_000;
+
 /** Saves a file with this content and MIME type. */
 export function saveFile(name: string, pieces: BlobPart[], type: string): void {
   const link = make('a', { href: URL.createObjectURL(new Blob(pieces, { type })), download: name });
   link.click();
-  URL.revokeObjectURL(link.href);
+  setTimeout(() => URL.revokeObjectURL(link.href), SAVE_MS);
 }

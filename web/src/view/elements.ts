@@ -71,6 +71,8 @@ export function onFile(input: HTMLInputElement, action: (file: File) => void): v
   input.addEventListener('change', () => {
     const file = input.files?.[0];
     if (file) action(file);
+    // Without this reset, the same file could not be chosen again.
+    input.value = '';
   });
 }
 

@@ -24,7 +24,7 @@ export class FlashView {
   ) {
     this.writeAllButton.addEventListener('click', () => this.write('all'));
     this.writeRobotButton.addEventListener('click', () => this.write('robot'));
-    onFile(this.fileInput, (file) => void this.askToConfirm(file).finally(() => (this.fileInput.value = '')));
+    onFile(this.fileInput, (file) => void this.askToConfirm(file));
     element('flash-yes').addEventListener('click', () => {
       const { chosenImage } = this;
       this.dropChosenImage();

@@ -19,9 +19,9 @@ const BAR_WIDTH = 16;
 /** Fraction of the cycle that a bar covers in a gait whose legs hold still in between. */
 const HELD_STANCE_FRACTION = 0.25;
 
-/** The keys of a gait's numbers that have an input. In index.html, each input has the number's range in robot.toml. */
+/** The keys of a gait's numbers that have an input. In index.html, each input has a range that robot.toml allows. */
 const GAIT_NUMBERS = ['period', 'duty', 'amplitude'] as const;
-/** Ranges of a leg's numbers in robot.toml, and the steps of their inputs. */
+/** Ranges of a leg's numbers, which robot.toml allows, and the steps of their inputs. */
 const LEG_NUMBER_RANGES = { start: { min: '0', max: '1', step: '0.005' }, gain: { min: '-2', max: '2', step: '0.05' } };
 
 /** Rounds a value to a multiple of `step`. */

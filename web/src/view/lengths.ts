@@ -24,8 +24,9 @@ export function setUpLengths(session: Session, offerValidLengths: (edits: Edits)
     }
   };
   const changeLength = async (key: string, value: number) => {
-    if (!Number.isFinite(value)) return;
     const { lengths } = session.description;
+    // An emptied input returns to the robot's length.
+    if (!Number.isFinite(value)) return putLengths(lengths, { isInvalid: false });
     const edits = makeEditsWithTwin(key, value, lengths, symmetryBox.checked);
     const { text, refusal } = Robot.tryLengths(session.toml, edits, false);
     if (!refusal) return void (await session.change(text));

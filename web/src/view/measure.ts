@@ -81,7 +81,9 @@ export class MeasureView {
     element<HTMLInputElement>('measure-cycles').min = String(MIN_CYCLES);
     for (const [name, value] of Object.entries(DEFAULT_NUMBERS)) {
       const input = element<HTMLInputElement>(`measure-${name}`);
-      setUpNumberInput(input, (typed) => (this.values[name] = typed ?? value));
+      // The robot accepts only whole numbers of percent and of cycles.
+      const isWhole = name === 'speed' || name === 'cycles';
+      setUpNumberInput(input, (typed) => (this.values[name] = typed !== null && isWhole ? Math.round(typed) : (typed ?? value)));
       if (value !== null) putNumber(input, value);
     }
     this.cameraButton.addEventListener('click', () => void this.runAction(() => this.toggleCamera()));
@@ -157,10 +159,10 @@ export class MeasureView {
   }
 
   private async toggleCamera(): Promise<void> {
-    if (this.source.isCamera) {
-      this.switchCameraOff();
-      return this.setMessage('');
-    }
+    const { isCamera } = this.source;
+    // Also ends the reading of a video.
+    this.switchCameraOff();
+    if (isCamera) return this.setMessage('');
     this.setMessage('Opening the camera…');
     this.hasVideo = false;
     await this.getVideoWorker();

@@ -29,10 +29,10 @@ export class OwnRobots {
     const ownRobot = robotsAside[index];
     this.problems.setMessage('own', null);
     if (!ownRobot) return;
-    const previous = browserStorage.getChanges();
+    const { changes: previous } = this.session;
     await this.loadFile(ownRobot.file);
     // If the robot's file has changed meanwhile, only the stored text is loaded.
-    if (!(await this.session.restoreSaved(ownRobot)) && (await this.session.change(ownRobot.toml))) return;
+    if (!(await this.session.restoreSaved(ownRobot)) && (await this.session.change(ownRobot.toml))) return this.putAside(previous);
     this.storeAside(robotsAside.filter((_, n) => n !== index));
     this.putAside(previous);
   }

@@ -256,11 +256,16 @@ export class RecordView {
   /** Starts both robots in the same frame, each from its own start. */
   private async startBoth(pair: RobotPair): Promise<void> {
     const { session } = this;
+    const { description } = session;
     this.removeCompanion();
     this.setMessage('Switching on the second robot…', pair.output);
     try {
-      const companion = new Companion(pair.toml, session);
       await session.drive(WORDS.stop);
+      // The robot was changed meanwhile.
+      if (session.description !== description) return this.setMessage('', pair.output);
+      // The button may have been pressed twice.
+      this.removeCompanion();
+      const companion = new Companion(pair.toml, session);
       session.returnToStart();
       this.floor.clearTracks();
       companion.send(`${WORDS.speed} ${session.pace}`);

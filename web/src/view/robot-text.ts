@@ -42,12 +42,7 @@ export class RobotTextView {
     element('robot-link').addEventListener('click', () => void this.copyLink());
     element('robot-code').addEventListener('click', () => void this.toggleQrCode());
     session.followRobot(() => this.showRobot());
-    const fileInput = element<HTMLInputElement>('robot-open');
-    onFile(fileInput, (file) => {
-      void this.openFile(file);
-      // Without this reset, the same file could not be chosen again.
-      fileInput.value = '';
-    });
+    onFile(element('robot-open'), (file) => void this.openFile(file));
     document.addEventListener('dragover', (event) => {
       if (event.dataTransfer?.types.includes('Files')) event.preventDefault();
     });
@@ -100,8 +95,8 @@ export class RobotTextView {
 
   private async openFile(file: File): Promise<void> {
     reveal(this.textBox);
-    // The box must not show a binary file.
-    const toml = file.size > 1_000_000 ? '' : await file.text();
+    // The box must not show a binary file; a folder has no text.
+    const toml = file.size > 1_000_000 ? '' : await file.text().catch(() => '');
     if (toml === '' || toml.includes('\0')) return this.showRefusal(refuse(`${file.name} is not a robot.toml.`));
     await this.loadAndShow(toml);
   }

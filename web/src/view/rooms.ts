@@ -35,13 +35,15 @@ export function openRoom(hash: string): void {
 /** Returns true if a panel is unfolded and its room is open; other panels draw nothing. */
 export const isShown = (panel: HTMLDetailsElement) => panel.open && panel.closest<HTMLElement>('.room')?.hidden === false;
 
-/** Calls `show` once per robot.toml of the session, as soon as the panel is shown. */
+/** Calls `show` once per robot.toml of the session with its floor and servos, as soon as the panel is shown. */
 export function followShownRobot(panel: HTMLDetailsElement, session: Session, show: (description: Description) => void): void {
-  let shownToml = '';
+  let shownRobot = '';
   const update = () => {
-    const { toml, description } = session;
-    if (!isShown(panel) || toml === shownToml) return;
-    shownToml = toml;
+    const { toml, description, servos } = session;
+    if (!isShown(panel) || toml === '') return;
+    const robot = JSON.stringify([toml, session.floor, servos]);
+    if (robot === shownRobot) return;
+    shownRobot = robot;
     show(description);
   };
   panel.addEventListener('toggle', update);

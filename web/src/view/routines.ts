@@ -38,7 +38,7 @@ export class RoutinesView {
   private recordedSteps: string[] = [];
   /** The index of the dragged step, and its new index after a release now; null if no step is dragged. */
   private drag: { from: number; to: number } | null = null;
-  private readonly pathQueue = createRobotQueue((robot, request: OnFloor & { routine: string }) => robot.simulateRound(request), (path) => this.drawPath(path));
+  private readonly pathQueue = createRobotQueue((robot, request: OnFloor & { routine: string }) => robot.simulateRound(request), (path) => this.drawPath(this.chosenRoutine && path));
 
   constructor(
     private readonly session: Session,

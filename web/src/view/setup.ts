@@ -184,8 +184,8 @@ export class SetupDialog {
   /** Returns true if a step, or a part of a step, is done. */
   readonly isDone = (step: string): boolean => this.doneSteps.has(step);
 
-  /** Connects a board on USB, or disconnects a board. */
-  readonly connect = (): void => void this.connectBoard();
+  /** Connects a board on USB, or disconnects a board, unless the boot loader uses the line. */
+  readonly connect = (): void => void (this.writer.isBusy.value || this.connectBoard());
 
   /** Writes the page's robot, alone or with the firmware. */
   readonly write = (content: WriteContent): void => {

@@ -42,6 +42,7 @@ export class SketchView {
   /** Shows the session's robot in its neutral pose, and ends any drag. */
   private showRobot(lengths: Length[]): void {
     this.draggedJoint = null;
+    this.isDragEnding = false;
     this.slider.showRobot(lengths);
     this.requestDrawing();
   }
@@ -62,7 +63,9 @@ export class SketchView {
     this.lengthsQueue.submit({ toml: this.session.toml, edits, isLast: true, keys: [] });
   }
 
-  private handleResponse({ edits, text, refusal, scene, nearest, without, isLast, range }: LengthsResponse): void {
+  private handleResponse({ toml, edits, text, refusal, scene, nearest, without, isLast, range }: LengthsResponse): void {
+    // The robot has changed since the request.
+    if (toml !== this.session.toml) return;
     if (scene) this.draw(scene, edits.length === 0);
     if (range) this.applyRange(range);
     if (edits.length === 0) return;

@@ -20,11 +20,11 @@ const voltsInput = element<HTMLInputElement>('servo-volts');
 const supplyInput = element<HTMLInputElement>('supply');
 
 export function setUpWorld(session: Session): void {
-  driveList.addEventListener('change', () => applySettings(session));
+  driveList.addEventListener('change', () => changeFloor(session, { kind: driveList.value as LegDrive }));
   for (const name of SLIDER_NAMES) {
     const input = getSlider(name);
     input.addEventListener('input', () => showSliderText(input, input.valueAsNumber.toFixed(DECIMALS[name])));
-    input.addEventListener('change', () => applySettings(session));
+    input.addEventListener('change', () => changeFloor(session, { [name]: input.valueAsNumber }));
   }
   element('floor-reset').addEventListener('click', () => {
     session.setFloor(null);
@@ -101,14 +101,9 @@ function enableSliders(floor: Floor, servos: string): void {
   element('rigid-note').hidden = isElastic || canLag(floor) || floor.twist !== 0;
 }
 
-/** Applies the leg drive and the sliders' values to the session. */
-function applySettings(session: Session): void {
-  // A value whose displayed text is unchanged keeps its exact number.
-  const floor: Floor = { ...session.floor, kind: driveList.value as LegDrive };
-  for (const name of SLIDER_NAMES) {
-    const value = getSlider(name).valueAsNumber;
-    if (floor[name].toFixed(DECIMALS[name]) !== value.toFixed(DECIMALS[name])) floor[name] = value;
-  }
+/** Changes the leg drive or a slider's value. No other slider is read, because it may have rounded its value. */
+function changeFloor(session: Session, changes: Partial<Floor>): void {
+  const floor = { ...session.floor, ...changes };
   enableSliders(floor, session.servos);
   session.setFloor(floor);
 }

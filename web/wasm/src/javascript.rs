@@ -266,8 +266,8 @@ impl Robot {
     }
 
     /// Runs the core for a frame of 20 ms with a board supply of `volts`; the core first receives `line` from the
-    /// serial line. Returns null before `startCore`.
-    #[wasm_bindgen(js_name = runCoreFrame, unchecked_return_type = "CoreFrame | null")]
+    /// serial line. Returns the pulse widths in CPU cycles; null before `startCore`.
+    #[wasm_bindgen(js_name = runCoreFrame, unchecked_return_type = "Four<number> | null")]
     pub fn run_core_frame(&mut self, line: &str, volts: f64) -> JsValue {
         to_js(self.0.run_core_frame(line.as_bytes(), volts))
     }

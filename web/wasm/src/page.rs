@@ -15,7 +15,7 @@ use crate::floor::{Floor, LegDrive};
 use crate::place::Place;
 use crate::prediction::GaitPrediction;
 use crate::refusal::Refusal;
-use crate::running_core::{CoreFrame, RunningCore};
+use crate::running_core::RunningCore;
 use crate::scene::Scene;
 use crate::singularity_map::SingularityMap;
 use crate::workspace::Workspace;
@@ -36,8 +36,6 @@ pub struct Frame {
     slides: [f64; 4],
     /// Lag of each leg behind its servo, deg, foot forward positive, in servo order.
     lag: [f64; 4],
-    /// Commanded angle minus actual angle of each servo, deg.
-    errors: [f64; 4],
 }
 
 /// The text of a robot.toml after a change, and its refusal.
@@ -243,18 +241,15 @@ impl PageState {
         Some(SingularityMap::compute(self.robot()?, *End::ALL.get(end)?))
     }
 
-    /// Starts the core as at power-on with this robot; the EEPROM keeps the contents of the previous run, unless the
-    /// robot was read again since.
+    /// Starts the core as at power-on with this robot.
     pub fn start_core(&mut self) {
-        let memory = self.running_core.take().map(RunningCore::into_memory);
-        let memory = memory.unwrap_or_default();
         let robot = self.robot();
-        self.running_core = robot.map(|robot| RunningCore::power_on(*robot.firmware(), memory));
+        self.running_core = robot.map(|robot| RunningCore::power_on(*robot.firmware()));
     }
 
     /// Runs the core for a frame with a board supply of `volts`; the core first receives `bytes` from the serial line.
-    /// `None` before [`PageState::start_core`].
-    pub fn run_core_frame(&mut self, bytes: &[u8], volts: f64) -> Option<CoreFrame> {
+    /// Returns the pulse widths in CPU cycles; `None` before [`PageState::start_core`].
+    pub fn run_core_frame(&mut self, bytes: &[u8], volts: f64) -> Option<[u16; 4]> {
         Some(self.running_core.as_mut()?.run_frame(bytes, volts))
     }
 }
@@ -271,7 +266,6 @@ fn make_frame(twin: &Twin, state: &State, slides: [f64; 4]) -> Frame {
         place: state.body_pose.into(),
         slides,
         lag: state.lags,
-        errors: state.errors,
     }
 }
 

@@ -4,25 +4,13 @@
 //! UNO's to the bit. Only the timing of single CPU cycles is missing.
 
 use lizard_core::control::supply::Reading;
-use lizard_core::memory::restart::Restart;
-use lizard_core::virtual_board::{Eeprom, RunningRobot};
+use lizard_core::virtual_board::RunningRobot;
 use lizard_robot::{CoreRobot, healthy_rail_mv};
-use serde::Serialize;
-use tsify::Tsify;
 
 /// Number of codes of the analogue-to-digital converter.
 const ADC_FULL_SCALE: f64 = 1024.0;
 /// Voltage of the chip's bandgap reference, V.
 const REFERENCE_VOLTS: f64 = 1.1;
-
-/// The output of the core in one frame.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Tsify)]
-pub struct CoreFrame {
-    /// Pulse widths, CPU cycles of 62.5 ns, A1 to A4; 0 for no pulse.
-    pub widths: [u16; 4],
-    /// Text that was written to the serial line.
-    pub text: String,
-}
 
 /// A running core of a robot.
 pub struct RunningCore {
@@ -32,21 +20,17 @@ pub struct RunningCore {
 }
 
 impl RunningCore {
-    /// Starts a robot's core as at power-on, with these EEPROM contents.
-    pub fn power_on(robot: CoreRobot, memory: Eeprom) -> Self {
+    /// Starts a robot's core as at power-on, with an erased EEPROM.
+    pub fn power_on(robot: CoreRobot) -> Self {
         Self {
             rail_pin_mv: healthy_rail_mv(&robot.supplies()).unwrap_or(0.0),
-            running_robot: RunningRobot::with_memory(robot, memory, Restart::default()),
+            running_robot: RunningRobot::power_on(robot),
         }
     }
 
-    /// Ends the run and returns the EEPROM's contents.
-    pub fn into_memory(self) -> Eeprom {
-        self.running_robot.board.memory
-    }
-
     /// Runs a frame of 20 ms with a board supply of `volts`; the core first receives `bytes` from the serial line.
-    pub fn run_frame(&mut self, bytes: &[u8], volts: f64) -> CoreFrame {
+    /// Returns the pulse widths of A1 to A4, in CPU cycles of 62.5 ns; 0 for no pulse.
+    pub fn run_frame(&mut self, bytes: &[u8], volts: f64) -> [u16; 4] {
         let compute_adc_code = |pin_volts: f64, supply_volts: f64| {
             (ADC_FULL_SCALE * pin_volts / supply_volts).clamp(0.0, ADC_FULL_SCALE - 1.0)
         };
@@ -61,11 +45,8 @@ impl RunningCore {
             self.running_robot.settle();
         }
         self.running_robot.run_frame();
-        let board = &mut self.running_robot.board;
-        CoreFrame {
-            widths: board.submitted_pulses().0.map(|width| width.0),
-            text: std::mem::take(&mut board.transmitter.text),
-        }
+        let pulses = self.running_robot.board.submitted_pulses();
+        pulses.0.map(|width| width.0)
     }
 }
 
@@ -77,50 +58,44 @@ mod tests {
     use crate::paper::load_paper_robot;
 
     /// Sends a line in the first frame and runs `frame_count` frames; returns the last pulse widths in CPU cycles.
-    fn send_and_run(
-        output: &mut String,
-        core: &mut RunningCore,
-        line: &str,
-        frame_count: usize,
-    ) -> [u16; 4] {
-        let mut bytes = line.as_bytes();
-        let mut widths = [0; 4];
-        for _ in 0..frame_count {
-            let frame = core.run_frame(bytes, 5.0);
-            bytes = &[];
-            *output += &frame.text;
-            widths = frame.widths;
+    fn send_and_run(core: &mut RunningCore, line: &str, frame_count: usize) -> [u16; 4] {
+        let mut widths = core.run_frame(line.as_bytes(), 5.0);
+        for _ in 1..frame_count {
+            widths = core.run_frame(&[], 5.0);
         }
         widths
     }
 
+    /// Returns the text that the core has written to the serial line.
+    fn read_output(core: &RunningCore) -> &str {
+        &core.running_robot.board.transmitter.text
+    }
+
     #[test]
-    fn the_core_prints_its_banner_walks_and_keeps_saved_settings() {
+    fn the_core_prints_its_banner_accepts_a_trim_and_walks() {
         let robot =
             Robot::parse(include_str!("../../../robots/large.toml")).expect("large.toml is valid");
-        let mut core = RunningCore::power_on(*robot.firmware(), Eeprom::blank());
-        let mut output = String::new();
-        let standing_widths = send_and_run(&mut output, &mut core, "", 200);
+        let mut core = RunningCore::power_on(*robot.firmware());
+        let standing_widths = send_and_run(&mut core, "", 200);
+        let output = read_output(&core);
         assert!(output.starts_with("# lizard "), "{output}");
         assert_eq!(standing_widths, [24_000; 4]);
-        let trimmed_widths = send_and_run(&mut output, &mut core, "trim 1 3\nsave\n", 500);
+        let trimmed_widths = send_and_run(&mut core, "trim 1 3\n", 500);
+        let output = read_output(&core);
         assert!(output.contains("ok trim 1 3"), "{output}");
-        assert!(output.contains("ok save"), "{output}");
-        let mut restarted_core = RunningCore::power_on(*robot.firmware(), core.into_memory());
-        let widths = send_and_run(&mut output, &mut restarted_core, "", 200);
-        assert_eq!(widths, trimmed_widths);
-        let walking_widths = send_and_run(&mut output, &mut restarted_core, "walk\n", 60);
+        assert_ne!(trimmed_widths, standing_widths);
+        let walking_widths = send_and_run(&mut core, "walk\n", 60);
         assert_ne!(walking_widths, trimmed_widths);
     }
 
     #[test]
     fn a_low_supply_is_reported() {
-        let mut core = RunningCore::power_on(*load_paper_robot().firmware(), Eeprom::blank());
-        let mut output = String::new();
-        send_and_run(&mut output, &mut core, "", 200);
+        let mut core = RunningCore::power_on(*load_paper_robot().firmware());
+        send_and_run(&mut core, "", 200);
         for _ in 0..200 {
-            output += &core.run_frame(&[], 3.9).text;
+            core.run_frame(&[], 3.9);
         }
+        let output = read_output(&core);
         assert!(output.contains("# supply:"), "{output}");
     }
 }
