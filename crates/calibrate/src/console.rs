@@ -46,7 +46,7 @@ impl<C: Console> Console for &mut C {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReplyError {
     /// The robot refused a line.
-    #[error("the robot refuses `{line}`: {reason}")]
+    #[error("the robot refuses `{line}`: err {reason}")]
     Refused {
         /// The line that was sent.
         line: String,

@@ -121,7 +121,7 @@ fn replace_restores_the_old_settings_if_the_robot_refuses_the_new_settings() {
     let error = block_on(session.replace(&calibration)).expect_err("the travel is too narrow");
     assert!(matches!(error, SendError::Refused(_)), "{error:?}");
     let message = error.to_string();
-    let reason = "`limit 2 40.00 43.00`: 3 A2's travel must";
+    let reason = "`limit 2 40.00 43.00`: err 3 A2's travel must";
     assert!(message.contains(reason), "{message}");
     let mut expected = read_factory_settings();
     expected.servos[2].trim = 1.5;

@@ -1,5 +1,6 @@
 //! `lizard new`: writes a robot.toml as a starting point.
 
+use std::fs;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
@@ -25,8 +26,11 @@ pub struct Args {
 pub fn run(args: Args) -> Result<(), Failure> {
     let name = args.file.display();
     let mut file = files::create_new(&args.file, "choose another name")?;
-    file.write_all(robot_args::DEFAULT_ROBOT_TOML.as_bytes())
-        .map_err(|error| files::write_failure(&args.file, &error))?;
+    if let Err(error) = file.write_all(robot_args::DEFAULT_ROBOT_TOML.as_bytes()) {
+        // Other commands would read an incomplete robot.toml.
+        let _ = fs::remove_file(&args.file);
+        return Err(files::write_failure(&args.file, &error));
+    }
     writeln!(
         io::stdout(),
         "wrote the paper's robot to {name}; edit it, then check it: lizard gaits --robot {name}"

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::number::{format_or_dash, group_digits};
+use crate::shared::number::{format_or_dash, group_digits, whole_number_parser};
 use crate::shared::progress::create_progress_bar;
 use crate::shared::spread::{SpreadArgs, Spreadable};
 
@@ -28,10 +28,10 @@ use crate::shared::spread::{SpreadArgs, Spreadable};
   lizard prove --one-in 64 --offset 5")]
 pub struct Args {
     /// Check only one pair in N, evenly spread
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole_number_parser::<u32>(1, 1_000_000))]
     one_in: u32,
     /// Offset of the selected pairs, less than N; each offset selects different pairs
-    #[arg(long, value_name = "K", default_value_t = 0)]
+    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole_number_parser::<u32>(0, 1_000_000))]
     offset: u32,
     /// Print one JSON object
     #[arg(long)]
@@ -52,8 +52,15 @@ impl Spreadable for Args {
 /// Compares the guard with floating point and prints the result.
 ///
 /// # Errors
-/// Fails if robot.toml is invalid, if the output cannot be written, or if the guard decides a pose wrongly.
+/// Fails if the offset is too large, if robot.toml is invalid, if the output cannot be written, or if the guard decides
+/// a pose wrongly.
 pub fn run(args: Args) -> Result<(), Failure> {
+    if args.offset >= args.one_in {
+        return Err(Failure::Input(format!(
+            "--offset is {}, but must be less than --one-in, which is {}",
+            args.offset, args.one_in
+        )));
+    }
     let robot = args.spread.robot.load()?;
     let guard = robot.firmware();
     let sample = PairSample {

@@ -1,6 +1,6 @@
 //! `lizard merge`: joins the parts of a long computation.
 
-use std::io;
+use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 
 use crate::Failure;
@@ -44,9 +44,15 @@ pub fn merge(args: MergeArgs) -> Result<(), Failure> {
     }
 }
 
-/// Reads the parts from files, or from standard input.
+/// Reads the parts from files, or from standard input, which must not be a terminal.
 fn read_all_parts(paths: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
     let mut parts = Vec::new();
+    if paths.is_empty() && io::stdin().is_terminal() {
+        return Err(Failure::Input(
+            "parts are required: give files, or the output of all parts on standard input"
+                .to_owned(),
+        ));
+    }
     if paths.is_empty() {
         let text = io::read_to_string(io::stdin())?;
         parse_parts("standard input", &text, &mut parts)?;

@@ -2,7 +2,7 @@
 //!
 //! `lizard flash` writes to a board. A user with another programmer, or with a board on another machine, needs a file.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::path::PathBuf;
 
 use lizard_core::numbers::section::REGION_BYTES;
@@ -50,12 +50,7 @@ struct ImageFile {
 /// # Errors
 /// Fails if the robot is invalid, standard output is a terminal, or the file cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
-    if args.output.is_none() && io::stdout().is_terminal() {
-        return Err(Failure::Input(
-            "standard output is a terminal; write the image to a file with --output lizard.hex"
-                .to_owned(),
-        ));
-    }
+    files::check_no_terminal(args.output.as_deref(), "image", "lizard.hex")?;
     let robot = args.robot.load()?;
     let hex = image_source::build_image(&robot, args.only_robot)?.to_hex();
     let Some(path) = args.output else {

@@ -7,6 +7,7 @@ use lizard_measure::{Gaits, Report, compute_board_height};
 
 use super::picture;
 use super::recording::{RecordingArgs, height_parser};
+use crate::shared::number::whole_number_parser;
 use crate::shared::progress::create_spinner;
 use crate::shared::robot_args::find_moving_gait;
 use crate::shared::{files, json};
@@ -35,7 +36,7 @@ pub struct Args {
     #[arg(long, value_hint = clap::ValueHint::Other, value_name = "NAMES", value_delimiter = ',')]
     gait: Vec<String>,
     /// The robot's pace in the videos, percent
-    #[arg(long, value_name = "PERCENT", default_value_t = 100, value_parser = clap::value_parser!(u8).range(1..=100))]
+    #[arg(long, value_name = "PERCENT", default_value_t = 100, value_parser = whole_number_parser::<u8>(1, 100))]
     speed: u8,
     /// Height of the deck's tag above the floor, mm [default: the top of the board, computed from the robot's parts]
     #[arg(long, value_name = "MM", value_parser = height_parser())]
@@ -61,7 +62,13 @@ pub struct Args {
 /// Fails if the robot does not have a named gait, if a named gait moves no servo, if a video cannot be read or shows no
 /// measurable gait, if several videos are given with `--csv`, or if a file cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
+    if args.csv && args.videos.len() > 1 {
+        return Err(Failure::Input("--csv requires a single video".to_owned()));
+    }
     let robot = args.robot.load()?;
+    if let Some(path) = &args.picture {
+        files::check_replaceable(path)?;
+    }
     let named_gaits = args.gait.iter().map(|name| find_moving_gait(&robot, name));
     let named_gaits = named_gaits.collect::<Result<Vec<_>, _>>()?;
     let gaits = Gaits::predict(&robot, &named_gaits, args.speed);
@@ -73,10 +80,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let videos = videos.collect::<Result<Vec<_>, Failure>>()?;
     if args.csv {
         drop(spinner);
-        let [video] = &videos[..] else {
-            return Err(Failure::Input("--csv requires a single video".to_owned()));
-        };
-        let csv = video.format_path_csv();
+        let csv = videos[0].format_path_csv();
         return Ok(io::stdout().lock().write_all(csv.as_bytes())?);
     }
     let walks = gaits.measure_walks(&videos).map_err(Failure::Input)?;

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use serde::Deserialize;
 
 use super::keys_report::{KeysReport, format_report};
+use super::measured_key::is_earlier_output;
 use crate::shared::files;
 use crate::shared::json;
 use crate::shared::progress::create_spinner;
@@ -33,7 +34,7 @@ pub struct KeysArgs {
     /// Files with the output of `lizard measure --json`
     #[arg(value_name = "FILE", required = true)]
     paths: Vec<PathBuf>,
-    /// Output file for the new robot.toml
+    /// Output file for the new robot.toml; replaces only an earlier output that nobody has edited
     #[arg(long, short, value_name = "FILE", default_value = "out/measured.toml")]
     output: PathBuf,
     /// Print one JSON object
@@ -75,7 +76,7 @@ struct Component {
 ///
 /// # Errors
 /// Fails if a file is not from `lizard measure` or is from another robot, if the gaits determine no key, if the output
-/// would replace an input or a robot, or if it cannot be written.
+/// would replace an input or a user's robot, or if it cannot be written.
 pub fn identify_keys(args: KeysArgs) -> Result<(), Failure> {
     let old_text = args.robot.text()?;
     let robot = args.robot.load()?;
@@ -83,7 +84,7 @@ pub fn identify_keys(args: KeysArgs) -> Result<(), Failure> {
     for path in &args.paths {
         movements.append(&mut read_movements(path, &robot)?);
     }
-    files::check_replaceable(&args.output)?;
+    files::check_replaceable_robot(&args.output, |text| is_earlier_output(text, &old_text))?;
     let spinner = create_spinner("simulating the gaits");
     let to_failure = |error: IdentifyError| Failure::Input(error.to_string());
     let identified = identify(&robot, &movements, &|count, walk| {
@@ -95,7 +96,7 @@ pub fn identify_keys(args: KeysArgs) -> Result<(), Failure> {
     if has_changes {
         let new_text = identified.updated_robot_toml(&old_text);
         let new_text = new_text.map_err(to_failure)?;
-        files::write(&args.output, new_text.as_bytes())?;
+        files::write_checked(&args.output, new_text.as_bytes())?;
     }
     let output_path = has_changes.then_some(args.output.as_path());
     let report = KeysReport::new(&identified, output_path);

@@ -97,6 +97,17 @@ pub(super) fn format_toml_lines(keys: &[MeasuredKey]) -> String {
     text
 }
 
+/// True for the text of an earlier output with measured keys, which a new output may replace: each of its lines is a
+/// measured key, a table header, blank, or a line of `robot_toml`, so nothing that a user has written is lost.
+pub(super) fn is_earlier_output(text: &str, robot_toml: &str) -> bool {
+    let is_measured = |line: &str| line.contains(" # measured: ");
+    let is_known = |line: &str| {
+        let is_added = is_measured(line) || line.is_empty() || line.starts_with('[');
+        is_added || robot_toml.lines().any(|old_line| old_line == line)
+    };
+    text.lines().any(is_measured) && text.lines().all(is_known)
+}
+
 /// Returns robot.toml with the measured values of the keys that do not agree, each with a comment. All other bytes stay
 /// unchanged.
 ///

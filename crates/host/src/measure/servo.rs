@@ -115,7 +115,9 @@ pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
     let robot_toml = args.robot.text()?;
     let robot = args.robot.load()?;
     if let Some(output) = &args.output {
-        files::check_replaceable(output)?;
+        files::check_replaceable_robot(output, |text| {
+            measured_key::is_earlier_output(text, &robot_toml)
+        })?;
     }
     let jig = Jig {
         side: steps::find_free_direction(&robot, args.servo)?,
@@ -144,7 +146,7 @@ pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
     let report = Report::new(&robot, &args, &analysis, &free_servo, stall_torque);
     if let Some(output) = &args.output {
         let updated_toml = report.update_robot_toml(&robot_toml)?;
-        files::write(output, updated_toml.as_bytes())?;
+        files::write_checked(output, updated_toml.as_bytes())?;
     }
     json::print_json_or_text(args.json, &report, || report.format_text())
 }

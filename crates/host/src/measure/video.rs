@@ -49,9 +49,8 @@ pub(super) fn video_failure(name: &str, reason: &dyn Display) -> Failure {
 /// Reads a frame from a PNG or JPEG file.
 fn read_frame(path: &Path) -> Result<Frame, Failure> {
     let name = path.display();
-    let bytes =
-        fs::read(path).map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;
-    Frame::decode(&bytes).map_err(|reason| {
-        Failure::Input(format!("{name} is not a valid PNG or JPEG file: {reason}"))
-    })
+    let bytes = fs::read(record_input(path))
+        .map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;
+    Frame::decode(&bytes)
+        .map_err(|_| Failure::Input(format!("{name} is not a complete PNG or JPEG file")))
 }

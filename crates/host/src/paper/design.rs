@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::number::range_parser;
+use crate::shared::number::{range_parser, whole_number_parser};
 use crate::shared::progress::create_progress_bar;
 use crate::shared::quantity::Quantity;
 use crate::shared::spread::{SpreadArgs, Spreadable};
@@ -52,22 +52,23 @@ pub struct Args {
     #[arg(long, value_parser = Quantity::PROPORTION.parser())]
     r3: Option<f64>,
     /// Print the performance charts over the whole design space, as CSV
-    #[arg(long, conflicts_with = "search")]
+    #[arg(long, group = "grid", conflicts_with_all = ["sweep", "shortest", "top"])]
     chart: bool,
     /// Rank all designs that keep the servo travel and the margins
-    #[arg(long)]
+    #[arg(long, group = "grid")]
     search: bool,
     /// Grid step of --chart and --search
-    #[arg(long, default_value_t = 0.02, value_parser = range_parser(0.002, 0.2, ""))]
+    #[arg(long, requires = "grid", default_value_t = 0.02, value_parser = range_parser(0.002, 0.2, ""))]
     step: f64,
     /// Sweep of every servo that --search requires, degrees to either side
-    #[arg(long, default_value_t = 20.0, value_parser = range_parser(1.0, 60.0, " degrees"))]
+    #[arg(long, requires = "search", default_value_t = 20.0, value_parser = range_parser(1.0, 60.0, " degrees"))]
     sweep: f64,
     /// Shortest link that --search allows, mm; two M3 joints need about this length
-    #[arg(long, default_value_t = 20.0, value_name = "MM", value_parser = Quantity::LENGTH.parser())]
+    #[arg(long, requires = "search", default_value_t = 20.0, value_name = "MM",
+          value_parser = Quantity::LENGTH.parser())]
     shortest: f64,
     /// Number of designs that --search prints
-    #[arg(long, default_value_t = 12)]
+    #[arg(long, requires = "search", default_value_t = 12, value_parser = whole_number_parser(0, usize::MAX))]
     top: usize,
     /// Print JSON instead of text
     #[arg(long)]

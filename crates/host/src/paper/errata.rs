@@ -6,6 +6,7 @@ use lizard_paper::errata::{
 
 use crate::Failure;
 use crate::shared::json;
+use crate::shared::number::whole_number_parser;
 use crate::shared::progress::create_progress_bar;
 
 /// Check the paper's equations
@@ -19,7 +20,7 @@ use crate::shared::progress::create_progress_bar;
   lizard errata --markdown > docs/errata.md")]
 pub struct Args {
     /// Number of random poses
-    #[arg(long, default_value_t = SAMPLE_COUNT, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    #[arg(long, default_value_t = SAMPLE_COUNT, value_parser = whole_number_parser::<u32>(1, 10_000_000))]
     samples: u32,
     /// Print the table as Markdown
     #[arg(long, conflicts_with = "json")]

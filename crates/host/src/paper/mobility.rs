@@ -40,7 +40,7 @@ fn format_text(mobilities: &[Mobility]) -> String {
         mobility.freedoms as i64 != mobility.gruebler || mobility.locked_freedoms > 0
     };
     if !mobilities.iter().any(|mobility| is_singular(&mobility)) {
-        text += "Count and rank agree: four servos hold the body, one spring each leg.\n";
+        text += "Count and rank agree: four servos hold the body, one strut each leg.\n";
     }
     for mobility in mobilities.iter().filter(is_singular) {
         text += &format!(

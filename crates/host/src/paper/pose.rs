@@ -1,6 +1,6 @@
 //! `lizard pose`: computes the robot's state at one pose, or the joints of many poses.
 
-use lizard_kinematics::Vector;
+use lizard_kinematics::{ServoMotion, Vector};
 
 use crate::paper::{inverse, mobility, singularity, solve, velocity};
 use crate::shared::quantity::Quantity;
@@ -72,9 +72,14 @@ enum Subject {
 /// Computes the pose and prints it.
 ///
 /// # Errors
-/// Fails if robot.toml is invalid, if the pose is unreachable, if a line of the stream is invalid, or if the output
-/// cannot be written.
+/// Fails if robot.toml is invalid, if the pose is unreachable, if the servos' motion is given without `--show rates`,
+/// if a line of the stream is invalid, or if the output cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
+    let servo_motion = ServoMotion::from(args.servo_motion);
+    if servo_motion != ServoMotion::default() && !matches!(args.show, Subject::Rates) {
+        let message = "the servos' rates and accelerations require --show rates";
+        return Err(Failure::Input(message.to_owned()));
+    }
     let robot = args.robot.load()?;
     let end_points = [&args.head, &args.tail]
         .map(|end| end.as_ref().map(|point| Vector::new(point[0], point[1])));
@@ -88,8 +93,6 @@ pub fn run(args: Args) -> Result<(), Failure> {
         Subject::Joints => solve::print(&robot, pose.as_ref(), args.json),
         Subject::Singularities => singularity::print(&robot, &solve_pose()?, args.json),
         Subject::Freedoms => mobility::print(lizard, &solve_pose()?, args.json),
-        Subject::Rates => {
-            velocity::print(lizard, &solve_pose()?, &args.servo_motion.into(), args.json)
-        }
+        Subject::Rates => velocity::print(lizard, &solve_pose()?, &servo_motion, args.json),
     }
 }

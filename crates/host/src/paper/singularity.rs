@@ -125,7 +125,9 @@ fn compute_report(robot: &Robot, solution: &Solution) -> Report {
     let leg_determinants = solution.legs.map(|pose| leg_determinant * pose.direction.y);
     let mut nearest = vec![];
     for end in End::ALL {
-        let (five_bar, servos, sign) = (robot.lizard().end(end), end.servos(), end.sign());
+        let five_bar = robot.lizard().end(end);
+        let servos = end.servos();
+        let sign = end.sign();
         let angles = end.pick(solution.pose.into()).map(|angle| sign * angle);
         let describe_arm =
             |servo: usize| format!("{end} type 1, A{} arm straight or folded", servo + 1);

@@ -5,14 +5,18 @@
 //! file system does not support nameless files. The file gets its final name when it is complete.
 //!
 //! An output replaces only a regular file, because other programs need devices such as /dev/null. An output never
-//! replaces a robot file or an input of the same command: a mistyped name must not destroy a user's work.
+//! replaces an input of the same command or a robot file, except a robot file that this command has written and nobody
+//! has edited: a mistyped name must not destroy a user's work.
 
 use std::fs::{self, File, Permissions};
-use std::io::{self, ErrorKind, Read, Write};
+use std::io::{self, ErrorKind, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use crate::Failure;
+
+/// The advice for `-` as an output, which many programs take for standard output.
+const HYPHEN_ADVICE: &str = "- is not an output file; write ./- for a file of this name";
 
 /// The files that this command has read.
 static INPUT_FILES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -44,18 +48,29 @@ pub fn read_text(path: &Path) -> Result<String, Failure> {
 /// Checks that an output may be written to `path`.
 ///
 /// # Errors
-/// Fails if the output would replace an input or a robot file, and for `-`, which many programs take for standard
-/// output.
+/// Fails if the output would replace an input or a robot file, if a file has the path of its folder, and for `-`.
 pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
+    check_replaceable_robot(path, |_| false)
+}
+
+/// Checks as [`check_replaceable`] does, but also accepts a robot file that is an earlier output of the same command:
+/// its text satisfies `is_own_output`, and it is not called robot.toml.
+///
+/// # Errors
+/// Fails as [`check_replaceable`] does.
+pub fn check_replaceable_robot(
+    path: &Path,
+    is_own_output: impl Fn(&str) -> bool,
+) -> Result<(), Failure> {
     if path == Path::new("-") {
-        let message = "- is not an output file; write ./- for a file of this name, or /dev/stdout";
-        return Err(Failure::Input(message.to_owned()));
+        return Err(Failure::Input(format!("{HYPHEN_ADVICE}, or /dev/stdout")));
     }
+    check_folder(parent_folder(path))?;
     let inputs = INPUT_FILES.lock().unwrap_or_else(PoisonError::into_inner);
     let is_input = |input: &PathBuf| same_file::is_same_file(input, path).unwrap_or(false);
     let reason = if inputs.iter().any(is_input) {
         "this command reads it"
-    } else if is_robot_file(path) {
+    } else if is_robot_file(path, is_own_output) {
         "it describes a robot"
     } else {
         return Ok(());
@@ -66,20 +81,47 @@ pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
     )))
 }
 
+/// Checks that an output without a file does not go to a terminal. The message contains `noun`, what is written, and
+/// `example`, a file name.
+///
+/// # Errors
+/// Fails if there is no file and standard output is a terminal.
+pub fn check_no_terminal(output: Option<&Path>, noun: &str, example: &str) -> Result<(), Failure> {
+    if output.is_none() && io::stdout().is_terminal() {
+        return Err(Failure::Input(format!(
+            "standard output is a terminal; write the {noun} to a file with --output {example}"
+        )));
+    }
+    Ok(())
+}
+
+/// Checks that no file has the path of an output folder, or of a folder above it. A long command checks this first.
+///
+/// # Errors
+/// Fails if there is such a file.
+pub fn check_folder(folder: &Path) -> Result<(), Failure> {
+    if folder.ancestors().any(Path::is_file) {
+        let error = io::Error::from(ErrorKind::AlreadyExists);
+        return Err(write_failure(folder, &error));
+    }
+    Ok(())
+}
+
 /// True for a file that is called robot.toml or has a robot's table `[links]`, even if the rest of the file is
-/// invalid.
-fn is_robot_file(path: &Path) -> bool {
+/// invalid. False for another name and a text that satisfies `is_own_output`.
+fn is_robot_file(path: &Path, is_own_output: impl Fn(&str) -> bool) -> bool {
     if !path.is_file() {
         return false;
     }
     let Ok(resolved_path) = path.canonicalize() else {
         return false;
     };
-    let has_links_table = |bytes: Vec<u8>| {
+    let describes_robot = |bytes: Vec<u8>| {
         let text = String::from_utf8_lossy(&bytes);
-        text.lines().any(|line| line.trim().starts_with("[links]"))
+        let has_links_table = text.lines().any(|line| line.trim().starts_with("[links]"));
+        has_links_table && !is_own_output(&text)
     };
-    resolved_path.ends_with("robot.toml") || fs::read(resolved_path).is_ok_and(has_links_table)
+    resolved_path.ends_with("robot.toml") || fs::read(resolved_path).is_ok_and(describes_robot)
 }
 
 /// Writes a file completely or not at all, and creates missing folders. Replaces an existing file, also through a
@@ -90,6 +132,14 @@ fn is_robot_file(path: &Path) -> bool {
 /// example, a folder), or if the file is an input or a robot ([`check_replaceable`]).
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     check_replaceable(path)?;
+    write_checked(path, bytes)
+}
+
+/// Writes a file as [`write`] does, after [`check_replaceable_robot`].
+///
+/// # Errors
+/// Fails as [`write`] does, except that the file may be an input or a robot.
+pub fn write_checked(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let outcome = if is_stream(path) {
         // Opens the stream without creating or truncating a file.
         File::options()
@@ -105,8 +155,11 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 /// Creates a new file. `advice` completes the message about an existing file.
 ///
 /// # Errors
-/// Fails if the file already exists, or cannot be created.
+/// Fails if the file already exists, or cannot be created, and for `-`.
 pub fn create_new(path: &Path, advice: &str) -> Result<File, Failure> {
+    if path == Path::new("-") {
+        return Err(Failure::Input(HYPHEN_ADVICE.to_owned()));
+    }
     File::create_new(path).map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists => {
             Failure::Input(format!("{} already exists; {advice}", path.display()))
@@ -117,7 +170,10 @@ pub fn create_new(path: &Path, advice: &str) -> Result<File, Failure> {
 
 /// Returns the failure for a path that cannot be written.
 pub fn write_failure(path: &Path, error: &io::Error) -> Failure {
-    let reason = error.to_string();
+    let reason = match error.kind() {
+        ErrorKind::AlreadyExists => "a file exists where a folder is needed".to_owned(),
+        _ => error.to_string(),
+    };
     // tempfile appends the path of the temporary file, which means nothing to the user.
     let reason = reason
         .split_once(" at path ")
@@ -266,14 +322,23 @@ mod tests {
             assert_eq!(fs::read(path).expect("the file is readable"), old_bytes);
         }
         write(&folder.path().join("c"), b"x").expect("any other file is written");
+        for (path, is_replaceable) in [(&robot, false), (&renamed_robot, true), (&input, false)] {
+            let result = check_replaceable_robot(path, |text| text.starts_with("# mine"));
+            assert_eq!(result.is_ok(), is_replaceable, "{}", path.display());
+        }
+        let message = write_error_text(&renamed_robot.join("folder/d"));
+        assert!(message.ends_with("mine/folder: a file exists where a folder is needed"));
     }
 
     #[test]
     fn the_error_names_the_unwritable_file() {
-        assert_eq!(
-            write_error_text(Path::new("/dev/null/folder/a.toml")),
-            "cannot write /dev/null/folder/a.toml: Not a directory (os error 20)"
-        );
+        for (path, reason) in [
+            ("/dev/null/folder/a.toml", "Not a directory (os error 20)"),
+            ("/dev/null/a.toml", "a file exists where a folder is needed"),
+        ] {
+            let message = write_error_text(Path::new(path));
+            assert_eq!(message, format!("cannot write {path}: {reason}"));
+        }
     }
 
     #[test]

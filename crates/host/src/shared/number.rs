@@ -1,5 +1,8 @@
 //! Rounding and formatting of numbers for human readers, and numbers in a range on the command line.
 
+use std::fmt::Display;
+use std::str::FromStr;
+
 /// Rounds a value to `decimals` decimal places, for printing. The result is never -0.0.
 pub fn round_to_decimals(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
@@ -16,6 +19,17 @@ pub fn range_parser(
     move |text| match text.parse::<f64>() {
         Ok(value) if (min..=max).contains(&value) => Ok(value),
         _ => Err(format!("must be between {min} and {max}{unit}")),
+    }
+}
+
+/// Returns a parser for whole numbers between `min` and `max`.
+pub fn whole_number_parser<T: Copy + Display + FromStr + PartialOrd>(
+    min: T,
+    max: T,
+) -> impl Fn(&str) -> Result<T, String> + Clone {
+    move |text| match text.parse::<T>() {
+        Ok(value) if (min..=max).contains(&value) => Ok(value),
+        _ => Err(format!("must be a whole number from {min} to {max}")),
     }
 }
 

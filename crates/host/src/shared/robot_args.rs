@@ -109,16 +109,23 @@ impl RobotArgs {
             let built_in = BUILT_IN_ROBOTS
                 .iter()
                 .find(|(name, _)| path.as_os_str() == *name);
-            return Ok(match built_in {
-                Some((_, text)) if !path.exists() => RobotSource::Text(text),
-                _ => RobotSource::File(path.clone()),
-            });
+            let name = path.display().to_string();
+            let suggestion = format_suggestion(&name, built_in_names());
+            return match built_in {
+                _ if path.exists() => Ok(RobotSource::File(path.clone())),
+                Some((_, text)) => Ok(RobotSource::Text(text)),
+                None if suggestion.is_empty() => Ok(RobotSource::File(path.clone())),
+                None => Err(Failure::Input(format!(
+                    "{name} is neither a file nor a built-in robot{suggestion}"
+                ))),
+            };
         }
         let folder = std::env::current_dir().map_err(|error| {
             Failure::Operation(format!("cannot determine the current folder: {error}"))
         })?;
         let mut candidates = folder.ancestors().map(|folder| folder.join("robot.toml"));
-        let file = candidates.find(|path| path.is_file());
+        // A broken link is an error, and not a reason to take another robot.
+        let file = candidates.find(|path| path.is_file() || path.is_symlink());
         Ok(file.map_or(RobotSource::Text(DEFAULT_ROBOT_TOML), RobotSource::File))
     }
 }
@@ -151,20 +158,31 @@ pub(crate) fn find_moving_gait<'a>(
 }
 
 /// Returns the failure for an unknown gait: the problem, the allowed names, and the allowed name most similar to
-/// `name`.
+/// `name`. Without allowed gaits, the message says that no gait moves a servo.
 pub(crate) fn unknown_gait_failure<'a>(
     problem: &str,
     name: &str,
     allowed_gaits: impl Iterator<Item = &'a CheckedGait>,
 ) -> Failure {
     let names: Vec<&str> = allowed_gaits.map(CheckedGait::name).collect();
-    let (list, suggestion) = (names.join(", "), format_suggestion(name, names));
+    if names.is_empty() {
+        return Failure::Input(format!("{problem}; no gait of robot.toml moves a servo"));
+    }
+    let list = names.join(", ");
+    let suggestion = format_suggestion(name, names);
     Failure::Input(format!("{problem}; allowed values: {list}{suggestion}"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_robot_without_moving_gaits_has_no_list_of_allowed_gaits() {
+        let failure = unknown_gait_failure("unknown gait", "walk", std::iter::empty());
+        let message = "unknown gait; no gait of robot.toml moves a servo";
+        assert_eq!(failure.to_string(), message);
+    }
 
     #[test]
     fn every_file_in_robots_is_built_in_under_its_name() {
@@ -186,6 +204,7 @@ mod tests {
             );
         }
         let result = RobotArgs::from_path(Some("papre".into())).load();
-        assert!(result.is_err_and(|error| error.to_string().contains("papre")));
+        let message = "papre is neither a file nor a built-in robot; did you mean `paper`?";
+        assert!(result.is_err_and(|error| error.to_string() == message));
     }
 }

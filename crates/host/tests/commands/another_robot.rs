@@ -46,11 +46,15 @@ fn every_command_that_runs_an_image_refuses_an_elf_of_another_robot() {
         &["calibrate", "backup", "never.toml", "--sim"],
     ] {
         let options = ["--elf", &elf, "--robot", &selected_path];
+        let advice = match command {
+            ["sim", "bench"] => "",
+            _ => "; omit --elf to run the built-in firmware with any robot",
+        };
         assert_eq!(
             run(&[command, &options].concat()).expect_refusal(),
             format!(
-                "lizard: {elf} contains the robot {image_robot}, expected {selected_path}, which is {selected_robot}; \
-                 omit --elf to run the built-in firmware with any robot"
+                "lizard: {elf} contains the robot {image_robot}, expected {selected_path}, which is \
+                 {selected_robot}{advice}"
             ),
             "{command:?}"
         );

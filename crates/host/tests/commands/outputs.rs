@@ -3,7 +3,7 @@
 use std::fs;
 use std::process::Command;
 
-use crate::program::{assert_contains, read_cases, read_file, run_command, run_line_in};
+use crate::program::{Outcome, assert_contains, read_cases, read_file, run_command, run_line_in};
 
 #[test]
 fn no_command_overwrites_its_input_or_a_robot_file() {
@@ -82,7 +82,13 @@ fn new_writes_a_valid_robot_file_and_replaces_no_file() {
 #[test]
 fn a_hyphen_as_output_is_refused_and_leaves_no_file() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    for line in ["draw --output -", "flash image --output -", "model -"] {
+    for line in [
+        "draw --output -",
+        "flash image --output -",
+        "model -",
+        "new -",
+        "console --sim --record -",
+    ] {
         run_line_in(folder.path(), line).expect_refusal_with("- is not an output file");
     }
     assert!(!folder.path().join("-").exists());
@@ -97,15 +103,42 @@ fn flash_image_creates_missing_folders() {
 }
 
 #[test]
+#[cfg(unix)]
+fn a_broken_link_called_robot_toml_is_an_error() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    let link = folder.path().join("robot.toml");
+    std::os::unix::fs::symlink("nothing", link).expect("a link is created");
+    run_line_in(folder.path(), "gaits").expect_refusal_with("/robot.toml: cannot be read");
+}
+
+#[test]
 #[cfg(target_os = "linux")]
 fn a_command_killed_while_writing_leaves_no_file() {
-    let folder = tempfile::tempdir().expect("a temporary folder is created");
     // The system kills a program that writes more than 8 KiB into a file.
-    let script = "ulimit -c 0 -f 8; exec \"$0\" flash image --robot large --output x.hex";
-    let mut bash = Command::new("bash");
-    bash.args(["-c", script, env!("CARGO_BIN_EXE_lizard")]);
-    let outcome = run_command(bash.current_dir(folder.path()), "");
+    let limit = "ulimit -c 0 -f 8";
+    let outcome = run_with_limit(limit, "flash image --robot large --output x.hex");
     assert_eq!(outcome.code, None, "no signal: {outcome:?}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn new_leaves_no_file_if_it_cannot_write_all_bytes() {
+    // A program that ignores the signal gets an error instead.
+    let outcome = run_with_limit("trap '' XFSZ; ulimit -f 4", "new x.toml");
+    assert_eq!(outcome.code, Some(1), "{outcome:?}");
+    assert_contains(&outcome.stderr, "cannot write x.toml: ");
+}
+
+/// Runs a command line in an empty folder after a shell command that limits the size of files, and checks that no file
+/// remains.
+#[cfg(target_os = "linux")]
+fn run_with_limit(limit: &str, line: &str) -> Outcome {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    let script = format!("{limit}; exec \"$0\" {line}");
+    let mut bash = Command::new("bash");
+    bash.args(["-c", &script, env!("CARGO_BIN_EXE_lizard")]);
+    let outcome = run_command(bash.current_dir(folder.path()), "");
     let remaining_files = fs::read_dir(folder.path()).expect("the folder is readable");
-    assert_eq!(remaining_files.count(), 0);
+    assert_eq!(remaining_files.count(), 0, "{outcome:?}");
+    outcome
 }

@@ -6,8 +6,13 @@ use crate::program::{expect_refusals, read_file, robot_path, run, run_line_in, s
 fn sim_refuses_invalid_input() {
     let script = scratch_folder().join("wrong.txt");
     std::fs::write(script, "100 walk\nsoon stop\n").expect("the script is written");
+    let code = read_file("firmware/code.hex");
+    std::fs::write(scratch_folder().join("code.hex"), code).expect("the image is written");
     let cases = "
-        sim --elf no/such.elf => lizard: no/such.elf does not exist; omit --elf to run the built-in firmware
+        sim --elf no/such.elf => lizard: there is no file no/such.elf; omit --elf to run the built-in firmware
+        sim --pty --boot-loader no/such.elf => lizard: cannot read no/such.elf: No such file or directory (os error 2)
+        sim bench --elf no/such.elf => lizard: cannot read no/such.elf: ...; `make firmware` builds the firmware
+        sim bench --robot paper --elf code.hex => lizard: code.hex has no function names; give the ELF file...
         sim --script wrong.txt => lizard: wrong.txt: line 2: expected a time in whole milliseconds, got `soon`
         sim --script /dev/zero => lizard: cannot read /dev/zero: the file is longer than 256 MiB
         sim --robot paper --gait gallop => no gait `gallop`; allowed values: stand, walk, trot

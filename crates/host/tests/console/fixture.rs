@@ -36,8 +36,12 @@ pub fn lizard_command(folder: &TempDir, line: &str) -> Command {
 }
 
 /// Runs a command line of `lizard`; returns standard output, standard error and the exit code.
-pub fn run_unchecked(folder: &TempDir, line: &str, input: &str) -> (String, String, Option<i32>) {
-    let output = TIME_LIMIT.run_command(&mut lizard_command(folder, line), input.as_bytes());
+pub fn run_unchecked(
+    folder: &TempDir,
+    line: &str,
+    input: impl AsRef<[u8]>,
+) -> (String, String, Option<i32>) {
+    let output = TIME_LIMIT.run_command(&mut lizard_command(folder, line), input.as_ref());
     let output = output.expect("the program ends");
     let [stdout, stderr] =
         [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
@@ -46,7 +50,12 @@ pub fn run_unchecked(folder: &TempDir, line: &str, input: &str) -> (String, Stri
 
 /// Runs a command line of `lizard`, and checks its exit code; returns standard output and standard error.
 #[track_caller]
-pub fn run(folder: &TempDir, line: &str, input: &str, expected_code: i32) -> (String, String) {
+pub fn run(
+    folder: &TempDir,
+    line: &str,
+    input: impl AsRef<[u8]>,
+    expected_code: i32,
+) -> (String, String) {
     let (stdout, stderr, code) = run_unchecked(folder, line, input);
     assert_eq!(code, Some(expected_code), "{line}: {stderr}");
     (stdout, stderr)
@@ -203,7 +212,8 @@ impl TerminalSession {
     /// Waits until the program prints `expected` after the text of the previous wait. Panics if the program ends first
     /// or the time limit passes.
     pub fn wait_for(&mut self, expected: &str) {
-        let (mut position, mut has_ended) = (None, false);
+        let mut position = None;
+        let mut has_ended = false;
         TIME_LIMIT.poll(|| {
             has_ended = self.read_output();
             position = self.new_text.find(expected);

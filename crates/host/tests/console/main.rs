@@ -42,7 +42,11 @@ fn console_prints_the_banner_and_the_answers_to_a_script_in_order() {
     );
     assert!(stdout.contains("\n# A4 trim 0.00 limit "), "{stdout}");
     assert!(stderr.contains("(a simulated UNO)"), "no port: {stderr}");
-    run(&folder, "console --sim", "cal\nstop\n", 0);
+    run(&folder, "console --sim", "cal\nstop\nquit\nfly\n", 0);
+    // A line that is not UTF-8 does not end the script: `stop` must not be lost.
+    let (stdout, stderr) = run(&folder, "console --sim", b"fly\xff\nstop\n", 1);
+    assert!(stdout.ends_with("\nok stop\n"), "{stdout}");
+    assert!(stderr.contains("did not accept 1 of 2 lines"), "{stderr}");
 }
 
 #[test]
@@ -72,7 +76,7 @@ fn restore_writes_a_backup_to_the_board_and_a_refused_calibration_changes_nothin
         changed_text.replacen(scale_line.expect("A1 has a scale"), "scale = 99.0", 1);
     let (stdout, stderr) = restore("c.toml", &refused_text, 1);
     assert!(
-        stderr.contains("c.toml: the robot refuses `scale 1 99.00`: 3 scale must be 5..20"),
+        stderr.contains("c.toml: the robot refuses `scale 1 99.00`: err 3 scale must be 5..20"),
         "{stderr}"
     );
     assert_eq!(stdout, "");
@@ -297,13 +301,20 @@ fn the_link_to_a_simulated_board_replaces_no_other_file_and_ends_with_the_board(
 }
 
 #[test]
-fn draw_refuses_to_print_a_drawing_to_a_terminal() {
+fn draw_prints_no_drawing_to_a_terminal_and_merge_reads_no_parts_from_it() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let mut session = TerminalSession::start(&folder, "draw --wiring");
-    session
-        .wait_for("lizard: standard output is a terminal; write the SVG to a file with --output");
-    assert!(!session.new_text.contains("<svg"));
-    assert_eq!(session.wait_for_exit(), Some(2));
+    for (line, message) in [
+        (
+            "draw --wiring",
+            "lizard: standard output is a terminal; write the SVG to a file with --output",
+        ),
+        ("merge", "lizard: parts are required: give files, or "),
+    ] {
+        let mut session = TerminalSession::start(&folder, line);
+        session.wait_for(message);
+        assert!(!session.new_text.contains("<svg"), "{line}");
+        assert_eq!(session.wait_for_exit(), Some(2), "{line}");
+    }
 }
 
 fn send_signal(child: &Child, signal: Signal) {
@@ -360,7 +371,8 @@ fn a_program_ends_when_its_terminal_is_closed() {
         let line = format!("{command} {port}");
         let (mut test_side, mut child) = spawn_in_terminal(&folder, &line);
         let printed_text = TIME_LIMIT.run(first_text, move || {
-            let (mut text, mut bytes) = (String::new(), [0; 4096]);
+            let mut text = String::new();
+            let mut bytes = [0; 4096];
             while !text.contains(first_text) {
                 let count = test_side.read(&mut bytes).expect("output is readable");
                 text.push_str(&String::from_utf8_lossy(&bytes[..count]));
@@ -372,6 +384,22 @@ fn a_program_ends_when_its_terminal_is_closed() {
         assert!(printed_text.contains(first_text));
         let code = wait_for_exit(&mut child).code();
         assert_eq!(code, Some(0), "{command}");
+    }
+}
+
+#[test]
+fn sigterm_restores_the_terminal() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    let uno = Uno::start(&folder);
+    let port = uno.port();
+    for (command, first_text) in [("console", "no fault"), ("calibrate", "before you begin")] {
+        let mut session = TerminalSession::start(&folder, &format!("{command} {port}"));
+        session.wait_for(first_text);
+        assert!(!is_cooked(&session.keys), "{command}");
+        send_signal(&session.child, Signal::TERM);
+        let code = wait_for_exit(&mut session.child).code();
+        assert_eq!(code, Some(0), "{command}");
+        assert!(is_cooked(&session.keys), "{command}");
     }
 }
 

@@ -42,7 +42,7 @@ impl Proportions {
         ] {
             if !(value > 0.0 && value < max) {
                 return Err(format!(
-                    "{name} is {value}, but must be between 0 and {max}"
+                    "{name} is {value}, but must be greater than 0 and less than {max}"
                 ));
             }
             if value < MIN_PROPORTION {

@@ -9,7 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::shared::json;
+use crate::shared::number::whole_number_parser;
 use crate::shared::progress::create_progress_bar;
+use crate::shared::quantity::Quantity;
 use crate::shared::robot_args::unknown_gait_failure;
 use crate::shared::spread::{SpreadArgs, Spreadable};
 
@@ -35,23 +37,26 @@ pub struct Args {
     #[arg(long, value_hint = clap::ValueHint::Other, value_name = "NAME", default_value = "walk")]
     gait: String,
     /// Highest servo speed, deg/s [default: the given gait's]
-    #[arg(long, value_name = "DEG_PER_S", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG_PER_S", allow_negative_numbers = true, value_parser = Quantity::RATE.parser())]
     rate: Option<f64>,
     /// Name of the new gait
     #[arg(long, value_hint = clap::ValueHint::Other, value_name = "NAME", default_value = "tuned")]
     name: String,
     /// Number of search rounds, 40 trials each
-    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 25,
+          value_parser = whole_number_parser::<u32>(1, 10_000))]
     rounds: u32,
-    /// Number of random robots and floors for the comparison
-    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 200, value_parser = clap::value_parser!(u32).range(20..=100_000))]
+    /// Number of random robots and floors for the comparison, at least 20
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 200,
+          value_parser = whole_number_parser::<u32>(20, 100_000))]
     robots: u32,
     /// Seed of the random numbers
     #[arg(
         long,
         value_name = "N",
         allow_negative_numbers = true,
-        default_value_t = 1
+        default_value_t = 1,
+        value_parser = whole_number_parser(0, u64::MAX)
     )]
     seed: u64,
     /// Print one JSON object instead
@@ -228,7 +233,8 @@ mod tests {
                 "--rate 900: must be between 10 and 310 deg/s (limits.gait_slew",
             ),
             ("--rate -5", "--rate -5: must be between 10 and 310 deg/s"),
-            ("--rate nan", "--rate NaN: must be between 10"),
+            ("--rate nan", "it is not a finite number"),
+            ("--rate fast", "it is not a number"),
             (
                 "--name walk",
                 "--name walk: robot.toml already has a gait with this name",
@@ -240,8 +246,9 @@ mod tests {
             ("--name status", "--name status: "),
             ("--name a.b", "--name a.b: is not a gait name"),
             ("--seed -1", "invalid value '-1' for '--seed <N>'"),
-            ("--rounds 0", "0 is not in 1..=10000"),
-            ("--robots 3", "3 is not in 20..=100000"),
+            ("--rounds 0", "must be a whole number from 1 to 10000"),
+            ("--robots 3", "must be a whole number from 20 to 100000"),
+            ("--robots x", "must be a whole number from 20 to 100000"),
         ] {
             let message = run_tune(arguments).expect_err(arguments);
             assert!(message.contains(reason), "{arguments}: {message}");

@@ -122,8 +122,8 @@ mod tests {
             send_calibration(&calibration, &mut link).expect_err("the scale must be refused");
         assert_eq!(
             error.to_string(),
-            "the robot refuses `scale 3 99.00`: 3 scale must be 5..20; nothing was saved, and the \
-             robot keeps its old settings"
+            "the robot refuses `scale 3 99.00`: err 3 scale must be 5..20; nothing was saved, and \
+             the robot keeps its old settings"
         );
         assert!(read_calibration(&mut link).is_equivalent_to(&before));
         let load = link.ask("load").expect("the robot answers").answer;

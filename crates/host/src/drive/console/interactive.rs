@@ -13,7 +13,7 @@ use super::connect::{BoardFinder, Connection, ConnectionArgs};
 use super::dialogue_error::DialogueError;
 use super::history;
 use super::link::LinkError;
-use super::prompt::{Prompt, PromptEvent};
+use super::prompt::{self, Prompt, PromptEvent};
 use super::recorder::{self, Event, FORMAT, Recorder};
 use super::screen::Screen;
 use super::session::Session;
@@ -28,8 +28,8 @@ use crate::drive::clock::Clock;
 /// lines; Ctrl-C, Ctrl-D or `quit` end the program. The line at the bottom shows gait, pose, smallest margin, supply
 /// and faults. For this line, the program sends `status` twice a second, so `boot` has no effect. While you drive,
 /// `deadman` is set: a robot out of range stops by itself. If standard input is a file or a pipe, its lines are sent
-/// one after another, and the exit code is 1 if the robot refuses a line; over a radio, the robot stops after the last
-/// line.
+/// one after another up to `quit`, and the exit code is 1 if the robot refuses a line; over a radio, the robot stops
+/// after the last line.
 #[derive(clap::Args, Debug)]
 pub struct ConsoleArgs {
     /// Record the session in a new file: commands, answers, the pose in every frame, and faults, as one JSON object per
@@ -51,7 +51,8 @@ const RETRY_INTERVAL: Duration = Duration::from_millis(300);
 /// Fails if there is no board, if the connection or the terminal fails, if a script's line is not accepted, or if the
 /// session's file already exists or cannot be written.
 pub fn run(args: ConsoleArgs) -> Result<(), Failure> {
-    if let Some(file) = args.record.as_ref().filter(|file| file.exists()) {
+    let is_refused = |file: &&PathBuf| file.exists() || file.as_os_str() == "-";
+    if let Some(file) = args.record.as_ref().filter(is_refused) {
         recorder::create(file)?;
     }
     run_dialogue(&args.connection.into_finder("console")?, args.record)
@@ -153,6 +154,7 @@ impl Dialogue {
             while !has_input_ended {
                 match lines.try_recv() {
                     Ok(line) if line.trim().is_empty() => {}
+                    Ok(line) if prompt::is_quit(line.trim()) => has_input_ended = true,
                     Ok(line) => self.session.queue(line.trim()),
                     Err(TryRecvError::Empty) => break,
                     Err(TryRecvError::Disconnected) => has_input_ended = true,
@@ -282,10 +284,12 @@ impl Dialogue {
 }
 
 /// Starts a thread that reads lines from standard input as they arrive; the channel closes at the end of the input.
+/// A line that is not UTF-8 is sent, too: the robot refuses it, and the following lines are not lost.
 fn read_stdin_lines() -> Receiver<String> {
     let (sender, receiver) = mpsc::channel();
     std::thread::spawn(move || {
-        for line in io::stdin().lock().lines().map_while(Result::ok) {
+        for line in io::stdin().lock().split(b'\n').map_while(Result::ok) {
+            let line = String::from_utf8_lossy(&line).into_owned();
             if sender.send(line).is_err() {
                 break;
             }

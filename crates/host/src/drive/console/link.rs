@@ -371,7 +371,7 @@ mod tests {
         let answer = Some("err 3 trim must be -20..20\r\n");
         let result = ScriptedPort::connect_lizard(&[answer]).command("trim 1 50");
         let message = result.expect_err("the trim must be refused").to_string();
-        let expected = "the robot refuses `trim 1 50`: 3 trim must be -20..20";
+        let expected = "the robot refuses `trim 1 50`: err 3 trim must be -20..20";
         assert_eq!(message, expected);
     }
 

@@ -71,6 +71,9 @@ pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     if cfg!(unix) && !Path::new(name).exists() {
         return Err(missing_port_error(name));
     }
+    if is_memory_device(name) {
+        return Err(PortError::NotAPort(name.to_owned()));
+    }
     let busy_error = |holder: String| PortError::Busy {
         name: name.to_owned(),
         holder,
@@ -146,6 +149,21 @@ pub(in crate::drive) fn find_holder(name: &str) -> Option<String> {
     })
 }
 
+/// True for /dev/null and similar devices, which many programs have open.
+#[cfg(target_os = "linux")]
+fn is_memory_device(name: &str) -> bool {
+    use std::os::unix::fs::{FileTypeExt, MetadataExt};
+    const MEMORY_MAJOR: u32 = 1;
+    Path::new(name).metadata().is_ok_and(|metadata| {
+        metadata.file_type().is_char_device() && rustix::fs::major(metadata.rdev()) == MEMORY_MAJOR
+    })
+}
+
+#[cfg(not(target_os = "linux"))]
+fn is_memory_device(_: &str) -> bool {
+    false
+}
+
 fn is_not_terminal(name: &str) -> bool {
     use std::io::IsTerminal;
     std::fs::File::open(name).is_ok_and(|file| !file.is_terminal())
@@ -177,6 +195,21 @@ mod tests {
         let message = open_error(&name).to_string();
         assert_eq!(message, format!("{name} is not a serial port"));
         assert_eq!(crate::Failure::from(open_error(&name)).exit_code(), 2);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn dev_null_is_not_a_port_even_if_another_program_has_it_open() {
+        let process = std::process::Command::new("sleep")
+            .arg("60")
+            .stdin(std::process::Stdio::null())
+            .spawn();
+        let mut process = process.expect("`sleep` starts");
+        let message = open_error("/dev/null").to_string();
+        process.kill().expect("the process can be killed");
+        let exit = TIME_LIMIT.wait_for_exit(&mut process);
+        exit.expect("the process ends");
+        assert_eq!(message, "/dev/null is not a serial port");
     }
 
     /// Tries to open a file while another program has it open for some seconds; returns the file's name, that program

@@ -7,6 +7,11 @@ use tui_input::backend::crossterm::EventHandler;
 /// Largest number of lines kept in the history.
 const MAX_HISTORY_LINES: usize = 500;
 
+/// True for a line that ends the program, from a user or a script.
+pub fn is_quit(line: &str) -> bool {
+    matches!(line, "quit" | "exit")
+}
+
 /// The effect of a key.
 #[derive(Debug, PartialEq, Eq)]
 pub enum PromptEvent {
@@ -97,7 +102,7 @@ impl Prompt {
         self.draft.clear();
         match line.as_str() {
             "" => PromptEvent::Edited,
-            "quit" | "exit" => PromptEvent::Leave,
+            line if is_quit(line) => PromptEvent::Leave,
             _ => PromptEvent::Line(line),
         }
     }

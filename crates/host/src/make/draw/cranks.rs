@@ -108,7 +108,8 @@ fn draw_arrow(centre: (f64, f64), radius: f64, [start_deg, end_deg]: [f64; 2]) -
 
 /// Draws the plate, the servos, and an arrow that points to the head.
 fn draw_chassis(robot: &Robot) -> Group {
-    let (scale, crank_ends) = (compute_scale(robot), compute_crank_ends(robot));
+    let scale = compute_scale(robot);
+    let crank_ends = compute_crank_ends(robot);
     let shaft_xs = crank_ends.iter().map(|(shaft, _)| shaft.x.abs());
     let half_width = shaft_xs.fold(0.0, f64::max) + 9.0;
     let half_height = crank_ends[0].0.y + 9.0;
@@ -193,7 +194,8 @@ fn draw_example(robot: &Robot) -> Group {
     let fitted_crank = draw_example_crank(fitted_deg, GREY, 13.0).set("id", "fitted-crank");
     let exact_crank =
         draw_example_crank(exact_deg, SERVO_COLOURS[servo], 3.0).set("id", "exact-crank");
-    let (arrow_radius, arrow_ends) = (EXAMPLE_CRANK_LENGTH + 12.0, [fitted_deg - 7.0, exact_deg]);
+    let arrow_radius = EXAMPLE_CRANK_LENGTH + 12.0;
+    let arrow_ends = [fitted_deg - 7.0, exact_deg];
     let trim_point = point_at(exact_deg + 4.0, EXAMPLE_CRANK_LENGTH + 16.0);
     let mut group = Group::new()
         .add(draw_spline(fitted_deg))

@@ -22,7 +22,8 @@ impl TopView<'_> {
             let shaft = self.shafts()[servo];
             let side = if matches!(servo, 0 | 3) { -1.0 } else { 1.0 };
             let sign = shaft.y.signum();
-            let (anchor, colour) = (outward_anchor(side), SERVO_COLOURS[servo]);
+            let anchor = outward_anchor(side);
+            let colour = SERVO_COLOURS[servo];
             let x = PAGE_SIZE.0 / 2.0 + side * SERVO_NAME_DISTANCE;
             let y = PAGE_SIZE.1 / 2.0 - sign * SERVO_NAME_DISTANCE;
             let shaft_point = self.to_page_point(shaft + Vector::new(side * 3.5, sign * 2.0));

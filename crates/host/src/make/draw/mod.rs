@@ -8,7 +8,7 @@ mod top_view;
 mod uno;
 mod wiring;
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::path::PathBuf;
 
 use crate::shared::files;
@@ -47,12 +47,7 @@ pub struct Args {
 /// # Errors
 /// Fails if robot.toml is invalid, if the pose is impossible, or if the output cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
-    if args.output.is_none() && io::stdout().is_terminal() {
-        return Err(Failure::Input(
-            "standard output is a terminal; write the SVG to a file with --output lizard.svg"
-                .to_owned(),
-        ));
-    }
+    files::check_no_terminal(args.output.as_deref(), "SVG", "lizard.svg")?;
     let robot = args.robot.load()?;
     let picture = if args.wiring {
         draw_wiring(&robot)

@@ -73,6 +73,7 @@ impl From<BuildError> for Failure {
 /// Fails if robot.toml is invalid, if parts would collide, or if a file cannot be written. Writes nothing before all
 /// files are built.
 pub fn run(args: Args) -> Result<(), Failure> {
+    files::check_folder(&args.folder)?;
     let robot = args.robot.load()?;
     let kerf = robot.parts().kerf;
     let assembly = Assembly::new(&robot);

@@ -15,7 +15,9 @@ pub use lizard_upload::format_robot_label;
 pub use simulated::{Firmware, built_in_image, read_image, read_with_robot};
 
 #[cfg(feature = "simulator")]
-pub(crate) use simulated::{count_code_bytes, remove_contacts, select_firmware};
+pub(crate) use simulated::{
+    check_robot, count_code_bytes, describe_load_error, remove_contacts, select_firmware,
+};
 
 #[cfg(feature = "simulator")]
 mod simulated;

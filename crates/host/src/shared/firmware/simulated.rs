@@ -30,10 +30,17 @@ pub fn read_image(path: &Path) -> Result<Image, Failure> {
 
 /// Returns the failure for a file that cannot be read, or is not a program for an AVR.
 fn read_failure(path: &Path, error: &LoadError) -> Failure {
-    let name = path.display();
-    Failure::Input(format!(
-        "{name}: {error}; `make firmware` builds the firmware"
-    ))
+    let problem = describe_load_error(path, error);
+    Failure::Input(format!("{problem}; `make firmware` builds the firmware"))
+}
+
+/// Describes why a file cannot be loaded; the description names the file.
+pub(crate) fn describe_load_error(path: &Path, error: &LoadError) -> String {
+    match error {
+        // This message already names the file.
+        LoadError::Read { .. } => error.to_string(),
+        _ => format!("{}: {error}", path.display()),
+    }
 }
 
 /// Returns the firmware for a robot: the file `elf`, which must contain this robot, or the built-in code followed by
@@ -56,22 +63,37 @@ pub(crate) fn select_firmware(
     let name = elf.display().to_string();
     if !elf.is_file() {
         return Err(Failure::Input(format!(
-            "{name} does not exist; omit --elf to run the built-in firmware"
+            "there is no file {name}; omit --elf to run the built-in firmware"
         )));
     }
     let image = read_image(elf)?;
+    let advice = "; omit --elf to run the built-in firmware with any robot";
+    check_robot(&image, &name, robot_args, robot, advice)?;
+    Ok(Firmware { name, image })
+}
+
+/// Checks that the image of the file `name` contains this robot or no robot. `advice` is the end of the message.
+///
+/// # Errors
+/// Fails if the image contains another robot.
+pub(crate) fn check_robot(
+    image: &Image,
+    name: &str,
+    robot_args: &RobotArgs,
+    robot: &Robot,
+    advice: &str,
+) -> Result<(), Failure> {
     if let Some(robot_in_image) = find_robot(&image.flash())
         && robot_in_image.hash() != robot.firmware().hash()
     {
         return Err(Failure::Input(format!(
-            "{name} contains the robot {}, expected {}, which is {}; omit --elf to run the \
-             built-in firmware with any robot",
+            "{name} contains the robot {}, expected {}, which is {}{advice}",
             format_robot_label(&robot_in_image),
             robot_args.name()?,
             format_robot_label(robot.firmware())
         )));
     }
-    Ok(Firmware { name, image })
+    Ok(())
 }
 
 /// Returns the size of the code in an image with this robot, bytes, without the erased flash up to the section.

@@ -53,7 +53,8 @@ impl Exactness {
                 max_error = max_error.max(error);
             }
         }
-        let (mut max_period_error, mut width_step) = (0, 0);
+        let mut max_period_error = 0;
+        let mut width_step = 0;
         for pair in sent_frames.windows(2) {
             for servo in 0..4 {
                 if let (Some(current), Some(next)) = (pair[0].starts[servo], pair[1].starts[servo])

@@ -83,11 +83,12 @@ pub fn measure(
     report_progress: impl Fn(&'static str),
 ) -> Result<Vec<BudgetRow>, Failure> {
     use Bound::{AtLeast, AtMost};
-    let gaits = list_demonstration_commands(robot);
+    let first_gait = find_gait_command(robot);
+    let is_moving = first_gait.is_some();
     // A robot without a moving gait is measured while it stands.
-    let gait = gaits.first().map_or("stand", String::as_str);
-    let turn_gait = gaits.last().map_or("stand", String::as_str);
-    let is_moving = !gaits.is_empty();
+    let gait = first_gait.as_deref().unwrap_or("stand");
+    let demonstration_gaits = gait_choice::choose_demonstration_gaits(robot);
+    let turn_gait = &to_command(demonstration_gaits.last().unwrap_or(&"stand"));
     let boot_board = || run_first_second(elf, robot);
     report_progress("the stack's depth");
     let image = firmware::read_image(elf)?;
@@ -198,8 +199,8 @@ pub fn measure(
 /// # Errors
 /// See [`measure`].
 pub fn measure_longest_step(elf: &Path, robot: &Robot) -> Result<u64, BoardError> {
-    let gaits = list_demonstration_commands(robot);
-    let gait = gaits.first().map_or("stand", String::as_str);
+    let gait = find_gait_command(robot);
+    let gait = gait.as_deref().unwrap_or("stand");
     let lines = list_slow_lines(robot);
     let mut max_cycles = 0;
     for function in STEP_FUNCTIONS {
@@ -209,10 +210,10 @@ pub fn measure_longest_step(elf: &Path, robot: &Robot) -> Result<u64, BoardError
     Ok(max_cycles)
 }
 
-/// Lists the commands of the demonstration gaits.
-pub(super) fn list_demonstration_commands(robot: &Robot) -> Vec<String> {
-    let gaits = gait_choice::choose_demonstration_gaits(robot);
-    gaits.into_iter().map(to_command).collect()
+/// Returns the command of the first gait that moves a servo; `None` if the robot has no such gait.
+pub(super) fn find_gait_command(robot: &Robot) -> Option<String> {
+    let gaits = gait_choice::list_moving_gaits(robot);
+    gaits.first().map(|name| to_command(name))
 }
 
 /// Powers on a board and runs it for a second.
@@ -314,7 +315,7 @@ fn run_all_commands(
     board.say("watch 1")?;
     let mut commands = list_motion_commands(robot);
     commands.extend(["help", "?", "status", "speed 55"].map(str::to_owned));
-    let gait = list_demonstration_commands(robot).into_iter().next();
+    let gait = find_gait_command(robot);
     commands.extend(gait.clone());
     commands.push("rest".into());
     commands.extend(gait);

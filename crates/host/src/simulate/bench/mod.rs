@@ -52,7 +52,14 @@ pub fn run(args: Args) -> Result<(), Failure> {
         ));
     };
     let robot = args.robot.load()?;
-    firmware::select_firmware(Some(&elf), &args.robot, &robot)?;
+    let image = firmware::read_image(&elf)?;
+    let name = elf.display().to_string();
+    if image.symbols().is_empty() {
+        return Err(Failure::Input(format!(
+            "{name} has no function names; give the ELF file that `make firmware` builds"
+        )));
+    }
+    firmware::check_robot(&image, &name, &args.robot, &robot, "")?;
     let patrol_robot = add_patrol(&args.robot.text()?, &[]).ok();
     let spinner = create_spinner("");
     let show_measurement = |measurement: &'static str| spinner.set_message(measurement);
@@ -61,11 +68,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
     let mut out = io::stdout().lock();
     if args.json {
-        let elf = elf.display().to_string();
-        writeln!(out, "{}", serde_json::json!({ "elf": elf, "rows": rows }))?;
+        writeln!(out, "{}", serde_json::json!({ "elf": name, "rows": rows }))?;
     } else {
-        let gaits = measurements::list_demonstration_commands(&robot);
-        table::print(&rows, gaits.first().map(String::as_str), &mut out)?;
+        let gait = measurements::find_gait_command(&robot);
+        table::print(&rows, gait.as_deref(), &mut out)?;
     }
     let rows_over_budget = rows.iter().filter(|row| !row.is_within_budget);
     let names_over_budget: Vec<&str> = rows_over_budget.map(|row| row.name).collect();

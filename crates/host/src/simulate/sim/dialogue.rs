@@ -45,7 +45,8 @@ impl DialoguePrinter {
             Sender::User => ">",
             Sender::Robot => " ",
         };
-        let (seconds, text) = (line.ms / 1000.0, escape_controls(&line.text));
+        let seconds = line.ms / 1000.0;
+        let text = escape_controls(&line.text);
         writeln!(out, "{seconds:>9.3} s  {mark} {text}")?;
         out.flush()
     }
@@ -74,8 +75,11 @@ mod tests {
         let mut out = Vec::new();
         let mut printer = DialoguePrinter::new(shows_all);
         for (from, text) in lines {
-            let (ms, from, text) = (1500.0, *from, (*text).to_owned());
-            let line = DialogueLine { ms, from, text };
+            let line = DialogueLine {
+                ms: 1500.0,
+                from: *from,
+                text: (*text).to_owned(),
+            };
             let result = printer.print(&line, &mut out);
             result.expect("writing to a vector succeeds");
         }

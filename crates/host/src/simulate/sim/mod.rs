@@ -28,6 +28,8 @@ use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 use simulated_uno::{Radio, RadioLink};
 
 use crate::shared::firmware::{self, Firmware};
+#[cfg(target_os = "linux")]
+use crate::shared::number::whole_number_parser;
 use crate::shared::progress::{create_progress_bar, create_spinner};
 use crate::shared::robot_args::unknown_gait_failure;
 use crate::shared::{files, json};
@@ -89,11 +91,12 @@ pub struct Args {
     /// 20 bytes are delayed, lost, or cut; opening the port does not reset the board
     #[cfg(target_os = "linux")]
     #[arg(long, value_name = "BAUD", requires = "pty", conflicts_with = "boot_loader",
-          value_parser = clap::value_parser!(u32).range(300..=1_000_000))]
+          value_parser = whole_number_parser::<u32>(300, 1_000_000))]
     radio: Option<u32>,
     /// With --radio: the seed of the random numbers; the same seed gives the same transmission
     #[cfg(target_os = "linux")]
-    #[arg(long, value_name = "N", requires = "radio", default_value_t = 0)]
+    #[arg(long, value_name = "N", requires = "radio", default_value_t = 0,
+          value_parser = whole_number_parser(0, u64::MAX))]
     seed: u64,
     #[command(flatten)]
     robot: RobotArgs,
@@ -154,6 +157,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         return served::serve_until_interrupted(uno, link.as_deref(), radio, &contacts);
     }
     let mut script = choose_script(&args, &robot)?;
+    files::check_replaceable(&args.svg)?;
     script.contacts = contacts;
     let Firmware { name, image } =
         firmware::select_firmware(args.elf.as_deref(), &args.robot, &robot)?;
@@ -210,9 +214,9 @@ fn record(
     let mut out = io::stdout();
     let recording = play_with_progress(uno, robot, script, |line| {
         if !args.json {
-            return printer.print(line, &mut out);
+            return printer.print(&line, &mut out);
         }
-        dialogue_lines.push(line.clone());
+        dialogue_lines.push(line);
         Ok(())
     })?;
     if !args.json {
@@ -230,16 +234,23 @@ pub(crate) fn play_with_progress(
     uno: &mut Uno,
     robot: &Robot,
     script: &Script,
-    mut on_line: impl FnMut(&DialogueLine) -> io::Result<()>,
+    mut on_line: impl FnMut(DialogueLine) -> io::Result<()>,
 ) -> io::Result<Recording> {
     let template = "{bar:40} {pos}/{len} ms simulated, {elapsed}";
     let time_bar = create_progress_bar(script.end_ms as usize, template);
-    let recording = session::play(uno, robot, script, |event| match event {
-        Event::Line(line) => time_bar.suspend(|| on_line(line)),
-        Event::Time(ms) => {
-            time_bar.set_position(ms);
-            Ok(())
+    // The bar is hidden and drawn again only once for the lines of each time slice.
+    let mut new_lines = Vec::new();
+    let recording = session::play(uno, robot, script, |event| {
+        match event {
+            Event::Line(line) => new_lines.push(line.clone()),
+            Event::Time(ms) => {
+                time_bar.set_position(ms);
+                if !new_lines.is_empty() {
+                    time_bar.suspend(|| new_lines.drain(..).try_for_each(&mut on_line))?;
+                }
+            }
         }
+        Ok(())
     })?;
     time_bar.finish_and_clear();
     Ok(recording)

@@ -14,6 +14,7 @@ use simulated_uno::{Fidelity, Image, Port, Radio, State, Uno};
 use super::press::ContactChange;
 use crate::Failure;
 use crate::shared::files::{self, record_input};
+use crate::shared::firmware::describe_load_error;
 
 /// Creates a new board with only a boot loader in flash.
 ///
@@ -21,7 +22,7 @@ use crate::shared::files::{self, record_input};
 /// Fails if the file is missing or is not an AVR program.
 pub(super) fn new_board(boot_loader: &Path, fidelity: Fidelity) -> Result<Uno, Failure> {
     let image = Image::read(record_input(boot_loader))
-        .map_err(|error| Failure::Input(format!("{}: {error}", boot_loader.display())))?;
+        .map_err(|error| Failure::Input(describe_load_error(boot_loader, &error)))?;
     Ok(Uno::with_boot_loader(image, fidelity))
 }
 

@@ -136,7 +136,8 @@ impl Chart<'_> {
         let (start_x, end_x) = (LEFT_MARGIN, LEFT_MARGIN + STRIP_WIDTH);
         let name = format!("{} {}", SERVO_NAMES[servo], SERVO_POSITIONS[servo]);
         let pin = pin_name(self.run.robot.servos()[servo].pin);
-        let (middle_y, colour) = (top + STRIP_HEIGHT / 2.0, SERVO_COLOURS[servo]);
+        let middle_y = top + STRIP_HEIGHT / 2.0;
+        let colour = SERVO_COLOURS[servo];
         let size = (STRIP_WIDTH, STRIP_HEIGHT);
         let name_text = text(&name, (14.0, middle_y - 2.0), 17.0, colour, Anchor::Start);
         let pin_text = text(&pin, (14.0, middle_y + 18.0), 14.0, GREY, Anchor::Start);

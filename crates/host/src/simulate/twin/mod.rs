@@ -12,6 +12,7 @@ use lizard_robot::{OPEN_INPUTS_NOTE, Robot, Routine, RoutineRow, to_command};
 use lizard_twin::ServoModel;
 use simulated_uno::{Fidelity, Image, State, Uno};
 
+use crate::shared::number::whole_number_parser;
 use crate::shared::progress::create_spinner;
 use crate::shared::robot_args::find_moving_gait;
 use crate::shared::{firmware, json};
@@ -50,10 +51,10 @@ pub struct Args {
     /// Print one JSON object per line, one for each command
     #[arg(long)]
     json: bool,
-    /// Then simulate each gait N more times with random friction, loads, mounting, hips, feet,
-    /// springs and play, and print the spread of the displacements and the utilisation of the
-    /// servos' torque-speed line
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    /// Then simulate each gait N more times, at least 2, with random friction, loads, mounting,
+    /// hips, feet, springs and play, and print the spread of the displacements and the
+    /// utilisation of the servos' torque-speed line
+    #[arg(long, value_name = "N", value_parser = whole_number_parser::<u32>(2, 100_000))]
     robust: Option<u32>,
     #[command(flatten)]
     robot: RobotArgs,

@@ -106,6 +106,13 @@ fn the_written_robot_file_differs_only_in_measured_lines() {
         assert!(is_measured || is_blank_or_header, "{line}");
     }
     assert!(new_text.contains("friction_back_over_forward = ") && new_text != old_text);
+    // A second run may replace this file, until a user edits it. A robot that stands ends the run after that check.
+    let still_file = format_measurement(&[format_gait("stand", [0.0; 3])]);
+    let still_file = write_file("still.json", &still_file);
+    let run_again = || run_measure_keys(&still_file, &["--output", output_name]);
+    run_again().expect_refusal_with("moves no servo");
+    fs::write(&output, new_text + "# mine\n").expect("the file is written");
+    run_again().expect_refusal_with("describes a robot");
     let gaits = run(&["gaits", "--robot", output_name]).expect_success();
     assert!(gaits.contains("walk"));
 }

@@ -181,7 +181,8 @@ fn count_walks(object: &Value) -> Vec<(&str, usize)> {
 fn measure_identifies_gaits_by_given_names_or_by_their_paths() {
     let [walk, left] = ["walk", "left"].map(paper_gait);
     let order = [(&walk, 3), (&left, 4), (&walk, 3)];
-    let (start, mut rng) = ([-90.0, -20.0, 0.0], Rng::with_seed(4));
+    let start = [-90.0, -20.0, 0.0];
+    let mut rng = Rng::with_seed(4);
     let series = WalkSeries::new(start, &order, 2.2, variation(), &mut rng);
     let file_name = |i| format!("{i}.jpg");
     let folder = render_video("gaits", file_name, series.duration_s(), |time| {
@@ -225,6 +226,8 @@ fn measure_identifies_gaits_by_given_names_or_by_their_paths() {
     let refusal = measure_gaits("--gait left,walk,walk").expect_refusal();
     assert_contains(&refusal, " s, left: the path does not match this gait");
     assert!(refusal.ends_with("; it resembles walk"), "{refusal}");
+    let refusal = measure_gaits("--picture gaits/0.jpg").expect_refusal();
+    assert_contains(&refusal, "gaits/0.jpg: this command reads it");
 }
 
 #[test]
@@ -242,8 +245,10 @@ fn impossible_measurements_are_refused_with_a_message() {
         measure untimed --gait walk => lizard: the time of untimed/frame-001.png is unknown: give the frames per second...
         measure text --gait wlak --fps 30 => lizard: robot.toml has no gait `wlak`; allowed values:...
         measure text --gait stand --fps 30 => lizard: the gait `stand` moves no servo
-        measure text --gait walk --fps 30 => lizard: text/a.png is not a valid PNG or JPEG file: ...
+        measure text --gait walk --fps 30 => lizard: text/a.png is not a complete PNG or JPEG file
         measure text --gait walk --ruler 20 => error: invalid value '20' for '--ruler <MM>': must be between 85 and 115 mm...
+        measure text --fps 30 --picture - => lizard: - is not an output file...
+        measure text empty --csv => lizard: --csv requires a single video
         measure --gait walk => error: the following required arguments were not provided...
         measure text --csv --gait walk => error: the argument '--csv' cannot be used with '--gait <NAMES>'...
     ";

@@ -97,7 +97,8 @@ fn a_printed_sheet_shows_all_tags_at_actual_size() {
         for tag in &tags {
             let [left, right, ..] = tag.corners;
             let edge_mm = distance_mm(left, right);
-            let (id, error_mm) = (tag.id, edge_mm - sheet::tag_edge(tag.id));
+            let id = tag.id;
+            let error_mm = edge_mm - sheet::tag_edge(id);
             assert!(error_mm.abs() < 0.4, "{paper}, tag {id}: {edge_mm} mm");
             let is_upright = left[0] < right[0] && (left[1] - right[1]).abs() < 1.0;
             assert!(is_upright, "{paper}, tag {id}");

@@ -87,13 +87,20 @@ fn the_refusal_of_invalid_arguments_states_the_reason() {
         gaits --robot /dev/zero => /dev/zero: is longer than 1 MiB, so it is not a robot file
         gaits --robot / => cannot be read
         pose --show rates --omega1 fast => it is not a number
+        pose --omega1 5 => the servos' rates and accelerations require --show rates
+        pose --head 5 120 --alpha5 -5 => the servos' rates and accelerations require --show rates
+        prove --one-in 4 --offset 4 => --offset is 4, but must be less than --one-in, which is 4
         design --r1 0.3 => two or three of --r1, --r2, --r3 are required
         design --r1 0.3 --r2 0.3 --r3 0.1 => but must be 0.9; the same shape has r1 0.385714
-        design --r1 0.1 --r2 0.2 --r3 0.6 => r3 is 0.6, but must be between 0 and 0.45
+        design --r1 0.1 --r2 0.2 --r3 0.6 => r3 is 0.6, but must be greater than 0 and less than 0.45
         design --l0 -5 => must be at least 0.001 mm
         design --l0 0 => must be at least 0.001 mm
         design --chart --step 0 => must be between 0.002 and 0.2
-        errata --samples 0 => 0 is not in
+        design --step 0.1 => <--chart|--search>
+        design --top 3 => --search
+        design --chart --top 3 => cannot be used with
+        design --chart --search => cannot be used with
+        errata --samples 0 => must be a whole number from 1 to 10000000
         pose --robot no/such/robot.toml => no/such/robot.toml
         draw charts => <DIR>
         walk => walk
@@ -107,6 +114,8 @@ fn an_impossible_request_ends_with_code_1() {
         pose --head 0 200 => head: the point is 132.877 mm from the left shaft
         pose --show rates --theta1 70.528779365509308 --theta4 109.47122063449069 --theta5 221 --theta8 318 => singular
         draw charts /proc/no/such/folder => cannot write /proc/no/such/folder
+        parts README.md => cannot write README.md: a file exists where a folder is needed
+        sim --svg README.md/a.svg => cannot write README.md: a file exists where a folder is needed
     ";
     for (args, message) in read_cases(cases) {
         let outcome = run_line(&with_paper(args), "");

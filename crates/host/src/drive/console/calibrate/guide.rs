@@ -134,7 +134,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         };
         match result {
             Err(ConsoleError::Reply(ReplyError::Refused { line, reason })) => {
-                self.message = format!("The robot refuses `{line}`: {reason}.");
+                self.message = format!("The robot refuses `{line}`: err {reason}.");
             }
             result => result?,
         }

@@ -44,7 +44,7 @@ impl RecordedSession {
             let mut entry: TimedEvent = match serde_json::from_str(line) {
                 Ok(entry) => entry,
                 Err(_) if is_partial && index > 0 => break,
-                Err(error) => return Err(to_error(format!("not an event: {error}"))),
+                Err(_) => return Err(to_error("not a line of a recorded session".to_owned())),
             };
             let is_begin = matches!(&entry.event, Event::Begin { format, .. } if format == FORMAT);
             if is_begin != (index == 0) {
@@ -277,7 +277,10 @@ mod tests {
         }
         let third_line_error =
             |line: &str| parse_error(&format!("{BEGIN_LINE}{{\"ms\":9,\"gone\":null}}\n{line}\n"));
-        assert!(third_line_error("{\"ms\":10,\"flew\":1}").starts_with("line 3: not an event: "));
+        assert_eq!(
+            third_line_error("{\"ms\":10,\"flew\":1}"),
+            "line 3: not a line of a recorded session"
+        );
         assert_eq!(
             third_line_error("{\"ms\":8,\"gone\":null}"),
             "line 3: 8 ms is out of order"

@@ -111,7 +111,8 @@ fn servo_x(index: usize) -> f64 {
 fn route_servo_and_board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     let mut wires = Vec::new();
     for (index, servo) in order.into_iter().enumerate() {
-        let (x, name) = (servo_x(index), SERVO_NAMES[servo]);
+        let x = servo_x(index);
+        let name = SERVO_NAMES[servo];
         let ground_hole = strips::ground_hole(supply::FIRST_SERVO_WAY + index);
         // The first ways of the strip belong to the converter and the capacitor.
         let supply_hole = strips::supply_hole(strips::SUPPLY_WAY_COUNT - 1 - index);

@@ -196,7 +196,8 @@ fn draw_battery(group: Group) -> Group {
 }
 
 fn draw_alarm(group: Group) -> Group {
-    let (label_x, note_point) = (ALARM_RIGHT_X - 84.0, (ALARM_RIGHT_X + 26.0, 113.0));
+    let label_x = ALARM_RIGHT_X - 84.0;
+    let note_point = (ALARM_RIGHT_X + 26.0, 113.0);
     let mut group = draw_case(group, (ALARM_RIGHT_X - 92.0, 58.0), (92.0, 38.0), "#e6eef7")
         .add(text_start("low-voltage", (label_x, 74.0), 13.0))
         .add(text_start("alarm", (label_x, 90.0), 13.0))

@@ -148,7 +148,7 @@ fn a_refused_trim_is_shown_and_changes_nothing() {
     press_keys(&mut guide, &CONFIRM_SIGN_KEYS.repeat(4));
     press_keys(&mut guide, &[Key::LeftRight(19.9), Key::LeftRight(0.5)]);
     let view = guide.view();
-    let refusal = "The robot refuses `trim 1 20.40`: 3 trim must";
+    let refusal = "The robot refuses `trim 1 20.40`: err 3 trim must";
     assert!(view.message.starts_with(refusal), "{view:?}");
     let trim_line = "    trim +19.90 deg".to_owned();
     assert!(view.instructions.contains(&trim_line), "{view:?}");
