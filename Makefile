@@ -14,12 +14,15 @@ ifeq ($(wildcard $(ROBOT)),)
 $(error ROBOT=$(ROBOT) does not exist; give a file such as robots/paper.toml)
 endif
 export LIZARD_ROBOT := $(abspath $(ROBOT))
-FOR_ROBOT := --robot $(LIZARD_ROBOT)
+FOR_ROBOT := --robot '$(LIZARD_ROBOT)'
 endif
 
 # All packages except the Python module and the page's build tool. The module's dependencies would enable more features
 # in the other packages' dependencies, so all of them would be compiled twice. Only the page needs the build tool.
 ALL := --workspace --exclude lizard-python --exclude lizard-bindgen
+
+# The paths in this file are those of cargo's default folders, and .cargo/config.toml has the firmware's flags.
+unexport CARGO_TARGET_DIR CARGO_BUILD_TARGET_DIR CARGO_BUILD_TARGET RUSTFLAGS CARGO_ENCODED_RUSTFLAGS RUSTC_BOOTSTRAP
 
 # Cargo can use make's jobserver only in a rule that calls make; in other rules, cargo prints a warning.
 CARGO := MAKEFLAGS= cargo
@@ -135,7 +138,7 @@ clean: ## remove everything that was built
 	@scripts/setup-flash
 	@scripts/setup-flash-test
 	@cd crates && cargo build $(ALL) --bin lizard --quiet
-	@cd crates && LIZARD=$(CURDIR)/$(HOST)/debug/lizard cargo test $(ALL) --features lizard-host-tests/flash --test flash --test flash_errors --test lizard_flash --quiet -- --test-threads=1
+	@cd crates && LIZARD="$(CURDIR)/$(HOST)/debug/lizard" cargo test $(ALL) --features lizard-host-tests/flash --test flash --test flash_errors --test lizard_flash --quiet -- --test-threads=1
 
 .web:
 	@scripts/setup-web

@@ -15,8 +15,8 @@ pub struct JointFriction {
     pub slider_force: f64,
     /// Vectors from each servo's shaft to the tip of its slider arm at neutral: (forward, left), mm.
     pub slider_arms: [[f64; 2]; 4],
-    /// Distance between the front and the hind shafts, mm.
-    pub shaft_distance: f64,
+    /// Vectors from the hind to the front shaft of the left and of the right slider: (forward, left), mm.
+    pub shaft_spans: [[f64; 2]; 2],
 }
 
 /// The front and the hind servo of each slider: the left slider first, then the right one.
@@ -33,10 +33,10 @@ impl JointFriction {
             let [x, y] = self.slider_arms[servo];
             [x * cos - y * sin, x * sin + y * cos]
         });
-        for [front, hind] in SLIDER_SERVOS {
+        for ([front, hind], [forward, left]) in SLIDER_SERVOS.into_iter().zip(self.shaft_spans) {
             let span = [
-                self.shaft_distance + arms[front][0] - arms[hind][0],
-                arms[front][1] - arms[hind][1],
+                forward + arms[front][0] - arms[hind][0],
+                left + arms[front][1] - arms[hind][1],
             ];
             let length = span[0].hypot(span[1]);
             for (servo, sign) in [(front, 1.0), (hind, -1.0)] {

@@ -113,7 +113,7 @@ mod tests {
         pin_torque: 0.0,
         slider_force: 0.0,
         slider_arms: [[-22.5, 19.8], [-22.5, -19.8], [22.5, -19.8], [22.5, 19.8]],
-        shaft_distance: 135.0,
+        shaft_spans: [[135.0, 0.0]; 2],
     };
 
     /// A light robot, whose feet hardly load its servos.

@@ -365,11 +365,12 @@ impl fmt::Display for Bill {
         }
         let places = format_mounting_table(self.battery_space);
         let centre = self.describe_centre();
-        let (grams, height) = (self.grams, self.centre_of_mass[2]);
+        let (grams, [_, _, height]) = (self.grams, self.centre_of_mass);
+        let (height, side) = (height.abs(), if height < 0.0 { "below" } else { "above" });
         writeln!(
             f,
             "Places on the robot, and products that fit there:\n\n{places}\n\nThe robot weighs about {grams:.0} g; its \
-             centre of mass is {centre}, {height:.1} mm above the plate's top.\n"
+             centre of mass is {centre}, {height:.1} mm {side} the plate's top.\n"
         )?;
         let (drive_text, drive_toml) = match &self.spring_effect {
             Some(effect) => {

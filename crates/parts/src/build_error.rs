@@ -7,6 +7,7 @@ use crate::bodies::assembly::Assembly;
 use crate::bodies::pads;
 use crate::bodies::sliders::{SliderLengths, compute_slider_range};
 use crate::layers::body::{Body, Kind, Prism};
+use crate::layers::fitting::Fitting;
 use crate::layers::shape::Shape;
 use crate::order::reach::BlockedScrew;
 use crate::order::steps::build_steps;
@@ -21,10 +22,7 @@ pub enum BuildError {
     )]
     Clash(#[from] Clash),
     /// Two parts that overlap and move together.
-    #[error(
-        "{first} and {second}, which move together, overlap by {mm:.2} mm; other links, or other dimensions under \
-         [parts] in robot.toml, may keep them apart"
-    )]
+    #[error("{first} and {second}, which move together, overlap by {mm:.2} mm; {advice}")]
     OverlapOnMount {
         /// Name of one body.
         first: String,
@@ -32,6 +30,8 @@ pub enum BuildError {
         second: String,
         /// Overlap of the bodies, mm.
         mm: f64,
+        /// What may keep the bodies apart.
+        advice: &'static str,
     },
     /// A dimension in robot.toml with which the parts cannot be made, as a message.
     #[error("{0}")]
@@ -73,7 +73,9 @@ impl BuildError {
                 let (mm, angles) = (pair.lower_bound, pair.unproved_angles);
                 (&pair.first, &pair.second, mm, angles)
             }
-            Self::OverlapOnMount { first, second, mm } => (first, second, -mm, None),
+            Self::OverlapOnMount {
+                first, second, mm, ..
+            } => (first, second, -mm, None),
             Self::Dimension(_) | Self::Blocked(_) | Self::OpenSurface(_) => return None,
         };
         Some(CollidingPair {
@@ -207,6 +209,7 @@ impl Assembly {
                         first: a.name.clone(),
                         second: b.name.clone(),
                         mm: -gap_mm,
+                        advice: choose_overlap_advice(a, b),
                     });
                 }
             }
@@ -228,6 +231,23 @@ impl Assembly {
             (_, layers) => layers,
         }
     }
+}
+
+/// Chooses the advice for two overlapping bodies that move together.
+fn choose_overlap_advice(a: &Body, b: &Body) -> &'static str {
+    let kinds = [a.kind, b.kind];
+    let is_on_battery = |kind: Kind| {
+        matches!(
+            kind,
+            Kind::Battery | Kind::Fitting(Fitting::Strap | Fitting::BatteryPlug)
+        )
+    };
+    let is_under_deck =
+        |kind: Kind| matches!(kind, Kind::Fitting(Fitting::Alarm | Fitting::Converter));
+    if kinds.into_iter().any(is_on_battery) && kinds.into_iter().any(is_under_deck) {
+        return "decrease the height of parts.battery, or raise the deck with a larger parts.thickness";
+    }
+    "other links, or other dimensions under [parts] in robot.toml, may keep them apart"
 }
 
 /// Computes the smallest distance in plan view between layers of two bodies at a common height, mm; negative if they

@@ -134,6 +134,7 @@ class Robot:
         if cycles is not None:
             line += f" {cycles}"
         with self._exchange_lock:
+            was_going = self.is_going
             self._set_deadman()
             self._end_reason = None
             try:
@@ -141,9 +142,11 @@ class Robot:
             except NoAnswer:
                 self._end_reason = ""  # If the gait runs, `deadman` stops it.
                 raise
-            except RobotError:
-                self._end_reason = ""
-                self._restore_deadman()
+            except (RobotError, ValueError):
+                # A refused line changes nothing: an earlier gait continues.
+                if not was_going:
+                    self._end_reason = ""
+                    self._restore_deadman()
                 raise
         if cycles is not None:
             self.wait()
@@ -215,7 +218,8 @@ class Robot:
                 math.remainder(actual - target, 360)
                 for actual, target in zip(status.pose, angles)
             )
-            if all(abs(error) < POSE_TOLERANCE for error in errors):
+            is_complete = len(status.pose) == len(angles)
+            if is_complete and all(abs(error) < POSE_TOLERANCE for error in errors):
                 return
             now = time.monotonic()
             if status.pose != pose:
@@ -227,7 +231,11 @@ class Robot:
 
     def status(self) -> Status:
         """Requests the robot's state."""
-        return Status.parse(self._send_until_answered("status")[-1])
+        answer = self._send_until_answered("status")[-1]
+        try:
+            return Status.parse(answer)
+        except ValueError:  # a radio has lost a part of the line
+            raise RobotError(f"the answer to `status` is damaged: {answer}") from None
 
     def watch(self, every: int = 1) -> Iterator[Frame]:
         """Yields the pose in every n-th frame of 20 ms (n is `every`), until the iteration ends."""
@@ -326,9 +334,12 @@ class Robot:
             return
         if self._own_deadman is None:
             notes = self._send_until_answered("cal")
-            own_deadman = next(
-                int(note.split()[-1]) for note in notes if note.startswith("# deadman ")
-            )
+            values = [
+                note.split()[-1] for note in notes if note.startswith("# deadman ")
+            ]
+            if not (values and values[0].isdecimal()):
+                raise NoAnswer("the answer to `cal` has no `deadman`")
+            own_deadman = int(values[0])
             self._own_deadman = 0 if own_deadman == DRIVING_DEADMAN else own_deadman
         driving_deadman = min(self._own_deadman or DRIVING_DEADMAN, DRIVING_DEADMAN)
         self._send_until_answered(f"deadman {driving_deadman}")
@@ -358,7 +369,7 @@ class Robot:
                         continue
                     # A radio may have lost the line that reports the gait's end.
                     status = Status.parse(self._send("status", ANSWER_TIMEOUT / 4)[-1])
-                except RobotError:
+                except (RobotError, ValueError):
                     continue
                 except OSError:
                     return
@@ -394,9 +405,12 @@ class Robot:
         line = line[max(0, line.find(BANNER_PREFIX)) :]
         with self._condition:
             if line.startswith("# t="):
-                fields = dict(word.split("=", 1) for word in line[2:].split())
-                pose = parse_angles(fields["pose"])
-                frame = Frame(int(fields["t"]) * FRAME_PERIOD, pose)
+                try:
+                    fields = dict(word.split("=", 1) for word in line[2:].split())
+                    a1, a2, a3, a4 = parse_angles(fields["pose"])
+                    frame = Frame(int(fields["t"]) * FRAME_PERIOD, (a1, a2, a3, a4))
+                except (KeyError, ValueError):
+                    return  # a radio has lost a part of the line
                 for watcher in self._watchers:
                     watcher.put(frame)
             elif line.startswith(BANNER_PREFIX):

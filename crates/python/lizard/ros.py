@@ -97,10 +97,11 @@ class Driver:
             self._current = None
             self._robot.wait(0)  # raises the reason
         target, current = self.choose_gait(forward, turn), self._current
-        if target == current:
-            return
         if target is None:
-            self.stop()
+            if current or self._robot.is_going:
+                self.stop()
+            return
+        if target == current:
             return
         gait, pace = target
         self._robot.speed(pace)
@@ -111,7 +112,8 @@ class Driver:
 
     def stop_if_silent(self) -> None:
         """Stops the robot if no velocity has arrived for `TIMEOUT`."""
-        if self._current and time.monotonic() - self._last_velocity_time > TIMEOUT:
+        is_moving = self._current or self._robot.is_going
+        if is_moving and time.monotonic() - self._last_velocity_time > TIMEOUT:
             self.stop()
 
     def stop(self) -> None:

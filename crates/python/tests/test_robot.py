@@ -109,6 +109,10 @@ def test_a_refusal_has_the_robots_message_and_code(robot):
     with pytest.raises(lizard.RobotError, match="the robot refuses `wlak`: unknown"):
         robot.go("wlak")
     assert read_deadman(robot) == 0
+    robot.walk()
+    with pytest.raises(lizard.RobotError, match="unknown"):
+        robot.go("wlak")
+    assert (robot.is_going, read_deadman(robot)) == (True, 901)
     robot.rest()
     robot.stop()
     for line in ("walk\nstop", "", "st\u00e4nd"):
@@ -119,6 +123,12 @@ def test_a_refusal_has_the_robots_message_and_code(robot):
     assert error.value.code == 7
     robot.stand()
     assert robot.status().gait == "stand"
+
+
+def test_damaged_lines_do_not_end_the_listener(robot):
+    for line in ("# t=12pose=1,2,3,4", "# t=12 pose=1,2", "# t=12 pose", "err"):
+        robot._handle_line(line)
+    robot.walk(cycles=1)
 
 
 def test_after_a_reset_wait_raises_an_error_and_the_robot_can_walk_again(robot):

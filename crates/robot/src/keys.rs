@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use crate::config::RobotConfig;
-use crate::file::{self, Error, KEY_READS, KeyRead, Section, format_number};
+use crate::file::{self, Error, KEY_READS, KeyRead, Range, Section, format_number};
 use crate::gaits::{define, routine};
 use crate::robot::TOP_LEVEL_KEYS;
 
@@ -70,6 +70,11 @@ struct RecordedCells {
     default: Option<String>,
 }
 
+/// Formats the allowed values of a number.
+fn format_range((min, max): Range, unit: &str) -> String {
+    format!("{} to {}, {unit}", format_number(min), format_number(max))
+}
+
 /// Records all keys that the reader accepts, except keys whose values are tables.
 fn record_keys() -> BTreeMap<String, RecordedCells> {
     KEY_READS.with_borrow_mut(Vec::clear);
@@ -78,16 +83,23 @@ fn record_keys() -> BTreeMap<String, RecordedCells> {
     let mut keys = BTreeMap::<String, RecordedCells>::new();
     for (key, read) in &key_reads {
         let recorded_cells = keys.entry(to_generic_name(key)).or_default();
-        if let KeyRead::Number {
-            range: (min, max),
-            unit,
-            default,
-        } = read
-        {
-            let unit = unit.trim_start_matches('(').trim_end_matches(')');
-            let [min, max] = [*min, *max].map(format_number);
-            recorded_cells.values = Some(format!("{min} to {max}, {unit}"));
-            recorded_cells.default = default.map(format_number).or(recorded_cells.default.take());
+        match read {
+            KeyRead::Number {
+                range,
+                unit,
+                default,
+            } => {
+                let unit = unit.trim_start_matches('(').trim_end_matches(')');
+                recorded_cells.values = Some(format_range(*range, unit));
+                let default = default.map(format_number);
+                recorded_cells.default = default.or(recorded_cells.default.take());
+            }
+            KeyRead::Polar(distance_range, angle_range) => {
+                let distance_values = format_range(*distance_range, "mm");
+                let angle_values = format_range(*angle_range, "deg");
+                recorded_cells.values = Some(format!("{distance_values}; {angle_values}"));
+            }
+            KeyRead::Allowed | KeyRead::Table => {}
         }
     }
     let is_table = |read: &&(String, KeyRead)| matches!(read.1, KeyRead::Table);

@@ -273,7 +273,8 @@ impl Robot {
 
     /// A slotted strut of this robot's size with this coil spring.
     pub fn strut_with_coil(&self, coil: &Coil) -> Strut {
-        let (legs, neutral_angles) = (self.legs(), self.config.neutral_angles());
+        let legs = self.legs();
+        let neutral_angles = self.config.neutral_angles();
         config::strut_with_coil(legs, neutral_angles, self.parts(), coil)
     }
 

@@ -265,6 +265,8 @@ enum stop_reason uno_run(struct uno *uno, uint64_t until, bool stops_at_line)
 {
 	avr_t *avr = uno->avr;
 	avr_run_t normal_run = avr->run;
+	if (until < uno->now)
+		until = uno->now; /* time never goes back */
 	uno->transmitted.has_line_ended = false;
 	while (avr->cycle < until && !uno->is_powered_off) {
 		if (avr->state != cpu_Running && avr->state != cpu_Sleeping)
@@ -332,6 +334,7 @@ void uno_stall_main(struct uno *uno, uint64_t until)
 
 void uno_poke(struct uno *uno, uint16_t address, uint8_t value)
 {
+	restart_catch_up(uno);
 	chip_store(uno->avr, address, value);
 }
 

@@ -20,7 +20,7 @@
 
 use std::collections::VecDeque;
 
-use crate::ffi::usart_sample_byte;
+use crate::serial::sample_byte;
 use crate::{CYCLES_PER_MS, Uno};
 
 /// The largest number of bytes in a packet.
@@ -175,11 +175,8 @@ impl Radio {
     /// Returns the bytes that the module reads at its own baud rate if the chip sends `sent_bytes` at `chip_baud`.
     #[must_use]
     pub fn received_bytes(&self, sent_bytes: &[u8], chip_baud: f64) -> Vec<u8> {
-        let ratio = chip_baud / self.link.baud;
-        sent_bytes
-            .iter()
-            .map(|byte| usart_sample_byte(*byte, ratio))
-            .collect()
+        let read_byte = |byte: &u8| sample_byte(*byte, chip_baud, self.link.baud);
+        sent_bytes.iter().map(read_byte).collect()
     }
 
     /// Takes the bytes that the module has received from the chip, and returns the bytes that have arrived by now at

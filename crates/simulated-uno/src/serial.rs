@@ -110,9 +110,9 @@ impl Uno {
 
     /// Removes the bytes that the UNO has transmitted, and returns the bytes that a receiver with this baud rate reads.
     pub(crate) fn take_bytes_at(&mut self, baud: f64) -> Vec<u8> {
-        let ratio = self.chip_baud() / baud;
+        let chip_baud = self.chip_baud();
         let sent_bytes = self.take_transmitted().into_iter();
-        let read_bytes = sent_bytes.map(|sent| ffi::usart_sample_byte(sent.byte, ratio));
+        let read_bytes = sent_bytes.map(|sent| sample_byte(sent.byte, chip_baud, baud));
         read_bytes.collect()
     }
 
@@ -122,4 +122,9 @@ impl Uno {
     pub fn received_by_uno(&self) -> Vec<SerialByte> {
         self.copy_items(ffi::uno_received)
     }
+}
+
+/// Returns the byte that a receiver at `receiver_baud` reads if a sender at `sender_baud` sends `byte`.
+pub(crate) fn sample_byte(byte: u8, sender_baud: f64, receiver_baud: f64) -> u8 {
+    ffi::usart_sample_byte(byte, sender_baud / receiver_baud)
 }

@@ -158,8 +158,8 @@ impl Uno {
         // value that it returns is one of `StopReason`.
         let stop_reason = unsafe { ffi::uno_run(self.raw, end_cycle, stop_at_line) };
         match stop_reason {
-            ffi::StopReason::CycleReached => {}
-            ffi::StopReason::LineSent => return true,
+            // Also after a supply that was too low has restarted a halted or crashed chip.
+            ffi::StopReason::CycleReached | ffi::StopReason::LineSent => self.state = State::Alive,
             ffi::StopReason::Halted => self.state = State::Halted,
             ffi::StopReason::PowerCut => self.state = State::Off,
             ffi::StopReason::Crashed => {
@@ -172,7 +172,7 @@ impl Uno {
                 };
             }
         }
-        false
+        stop_reason == ffi::StopReason::LineSent
     }
 
     /// The edges of D2 to D13 and A0 to A5 since power-on or the last [`Uno::take_edges`].

@@ -111,9 +111,6 @@ impl WalkBatch {
             .spawn()
             .map_err(MujocoError::PythonStart)?;
         let output = judge.wait_with_output()?;
-        if !output.status.success() {
-            return Err(MujocoError::JudgeExit(output.status));
-        }
         let mut displacements = BTreeMap::new();
         for line in String::from_utf8_lossy(&output.stdout).lines() {
             let result: JudgeResult = serde_json::from_str(line)
@@ -126,7 +123,11 @@ impl WalkBatch {
             };
             displacements.insert(result.file, displacement.into());
         }
-        Ok(displacements)
+        // After the lines, since one of them may have the reason.
+        match output.status.success() {
+            true => Ok(displacements),
+            false => Err(MujocoError::JudgeExit(output.status)),
+        }
     }
 }
 

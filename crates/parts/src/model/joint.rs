@@ -10,6 +10,9 @@ use crate::model::scene::StrutSpring;
 use crate::model::text::{MILLI, round};
 use crate::model::writer::Writer;
 
+/// Smallest spring rate in a model, N/mm: at a rate of 0, the relaxed position would be infinitely far away.
+const MIN_SPRING_RATE: f64 = 1e-3;
+
 impl Node {
     /// Name of the node without spaces, as ROS requires.
     pub(super) fn identifier(self) -> String {
@@ -64,6 +67,7 @@ impl Writer<'_> {
         match (node, self.scene.strut_spring) {
             (Node::Pad(_), _) => Some([0.0, self.leaf_stiffness()]),
             (Node::SlotPin(_), Some(StrutSpring { preload, rate })) => {
+                let rate = rate.max(MIN_SPRING_RATE);
                 Some([-preload / rate * MILLI, rate / MILLI].map(round))
             }
             _ => None,

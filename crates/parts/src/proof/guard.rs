@@ -88,6 +88,13 @@ fn cranks_at<'a, const N: usize, T: Real>(
     }
 }
 
+/// An end of the range of a servo's angle.
+#[derive(Clone, Copy)]
+enum RangeEnd {
+    Low,
+    High,
+}
+
 /// The guard of a robot.
 pub struct Guard<'a> {
     robot: &'a Robot,
@@ -121,8 +128,8 @@ impl<'a> Guard<'a> {
             let end_pairs = End::ALL.map(|end| end.servos()).into_iter();
             for pair in end_pairs.chain(Side::ALL.map(|side| side.servos())) {
                 for index in 0..2 {
-                    let [low, high] =
-                        [1.0, -1.0].map(|sign| guard.find_range_end(pair, index, sign));
+                    let [low, high] = [RangeEnd::Low, RangeEnd::High]
+                        .map(|end| guard.find_range_end(pair, index, end));
                     guard.ranges[pair[index]] = Interval::new(low, high);
                 }
             }
@@ -130,9 +137,13 @@ impl<'a> Guard<'a> {
         guard
     }
 
-    /// Finds the lower (if `sign` is 1) or upper (if `sign` is -1) bound of the angle of one servo of a pair. Beyond
-    /// this bound, no pose is accepted at any angle of the other servo.
-    fn find_range_end(&self, pair: [usize; 2], index: usize, sign: f64) -> f64 {
+    /// Finds the lower or upper bound of the angle of one servo of a pair. Beyond this bound, no pose is accepted at any
+    /// angle of the other servo.
+    fn find_range_end(&self, pair: [usize; 2], index: usize, end: RangeEnd) -> f64 {
+        let sign = match end {
+            RangeEnd::Low => 1.0,
+            RangeEnd::High => -1.0,
+        };
         let region_end =
             |region: &Region<2>| region.middle[index] - sign * region.half_widths[index];
         let whole_region = Region::from_bounds(pair.map(|servo| self.ranges[servo]));

@@ -92,7 +92,7 @@ fn a_robot_that_does_not_fit_is_refused_with_its_reason() {
     let height_message = "parts.height must be at least 21.3 mm";
     let spring_message = "leg strut LF is 30.2 mm from screw to screw, but must be long enough to stretch its spring, which is 40.0 mm";
     // As drawn in the paper, the pivot lies under the servo's link.
-    let drawn_pivot = "[parts]\npivot = [6.25, -4.0]\n[parts.spring]\nlength = 8.0";
+    let drawn_pivot = "[parts]\npivot = [6.25, -4.0]\n[parts.spring]\nlength = 10.0";
     let near_pivot = "[parts]\npivot = [22.0, 6.0]\n[parts.spring]\nlength = 20.0";
     for (toml, phrases) in [
         (drawn_pivot, [" and ", "overlap by"]),
@@ -101,6 +101,10 @@ fn a_robot_that_does_not_fit_is_refused_with_its_reason() {
         ("[parts]\nheight = 15.0", [height_message, ""]),
         ("[parts.spring]\nlength = 40.0", [spring_message, ""]),
         ("[parts]\nthickness = 15.0", ["do not form one body", ""]),
+        (
+            "[parts]\nthickness = 3.0",
+            ["alarm and battery strap", "parts.battery"],
+        ),
     ] {
         let fit = build_slotted_assembly("paper", toml).check_fit();
         let message = fit.expect_err(toml).to_string();

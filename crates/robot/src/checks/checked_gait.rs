@@ -196,8 +196,8 @@ impl CheckedGait {
         }
     }
 
-    /// Simulates two cycles on this ground with these motors, in the firmware's frames. Returns the displacement of the
-    /// second cycle. `pace` is relative to the gait's nominal pace.
+    /// Simulates two cycles on this ground with these motors, in frames as in the firmware. Returns the displacement of
+    /// the second cycle. `pace` is relative to the gait's nominal pace.
     pub fn simulate_driven_cycle(
         &self,
         ground: &GroundContact,
@@ -216,9 +216,9 @@ impl CheckedGait {
         pace: f64,
         angle_scale: f64,
     ) -> Travel {
-        let frame_count = (self.period() / pace * FRAMES_PER_SECOND).round().max(1.0) as usize;
+        let (frame_count, frame_seconds) = self.simulated_frames(pace);
         let sweeps_at = |frame: usize| -> [f64; 4] {
-            let seconds = frame as f64 / FRAMES_PER_SECOND * pace;
+            let seconds = frame as f64 * frame_seconds * pace;
             let phase = (self.phase_at(seconds) * 65536.0).round() as i64;
             let table_sweeps = self.table_sweeps(phase.rem_euclid(65536) as u16);
             std::array::from_fn(|i| {
@@ -229,12 +229,20 @@ impl CheckedGait {
         let mut walk_cycle = || {
             let start_pose = walker.body_pose();
             for frame in 1..=frame_count {
-                walker.drive(sweeps_at(frame).map(Some), 1.0 / FRAMES_PER_SECOND, motors);
+                walker.drive(sweeps_at(frame).map(Some), frame_seconds, motors);
             }
             walker.body_pose().travel_from(start_pose)
         };
         walk_cycle();
         walk_cycle()
+    }
+
+    /// The number of frames in a simulated cycle, and the duration of one, s. The duration differs slightly from 20 ms
+    /// if the cycle is not a whole number of the firmware's frames.
+    fn simulated_frames(&self, pace: f64) -> (usize, f64) {
+        let cycle_seconds = self.period() / pace;
+        let count = (cycle_seconds * FRAMES_PER_SECOND).round().max(1.0);
+        (count as usize, cycle_seconds / count)
     }
 
     /// The legs' sweeps, deg, at the start of one cycle and after each of `step_count` equal steps of time.
@@ -277,6 +285,20 @@ mod tests {
                 // After a complete cycle, the phase is 0 again.
                 let error = (f64::from(phase) / 65536.0 - gait.phase_at(seconds)).rem_euclid(1.0);
                 assert!(error.min(1.0 - error) < 1e-4, "{label} at {seconds} s");
+            }
+        });
+    }
+
+    #[test]
+    fn the_frames_of_a_simulated_cycle_last_as_long_as_the_cycle() {
+        for_each_gait(|label, _, gait| {
+            for pace in [1.0, 0.37] {
+                let (count, seconds) = gait.simulated_frames(pace);
+                let cycle_seconds = gait.period() / pace;
+                let error = count as f64 * seconds - cycle_seconds;
+                assert!(error.abs() < 1e-9, "{label} at pace {pace}");
+                let frame_error = seconds - 0.02;
+                assert!(frame_error.abs() <= 0.0101 / count as f64, "{label}");
             }
         });
     }

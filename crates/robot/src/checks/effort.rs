@@ -61,7 +61,8 @@ impl Effort {
         let mut walker = Walker::new(*ground, sweeps_at(0.0));
         let step_count = step_count as usize;
         for step in 1..=2 * step_count {
-            let (previous_sweeps, target) = (walker.servo_sweeps(), sweeps_at(step as f64));
+            let previous_sweeps = walker.servo_sweeps();
+            let target = sweeps_at(step as f64);
             walker.drive(target.map(Some), step_seconds, &strong_motors);
             if step <= step_count {
                 continue;

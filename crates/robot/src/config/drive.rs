@@ -44,9 +44,18 @@ pub(crate) fn read(
         "strut" => {
             let coil_strut = strut::strut_with_coil(legs, neutral_angles, parts, &parts.spring);
             let (force, rate) = (coil_strut.preload, coil_strut.spring_rate);
+            let read_or_derive = |name, derived: f64, (min, max): (f64, f64), unit| {
+                if section.has_key(name) || (min..=max).contains(&derived) {
+                    return section.number_or(name, derived, (min, max), unit);
+                }
+                let message = format!(
+                    "is left out; parts.spring makes it {derived:.2} {unit}, but it must be between {min} and {max} {unit}"
+                );
+                Err(section.error(name, message))
+            };
             DriveKind::Strut(Strut {
-                preload: section.number_or("force", force, (0.01, 100.0), "N")?,
-                spring_rate: section.number_or("rate", rate, (0.0, 100.0), "N/mm")?,
+                preload: read_or_derive("force", force, (0.01, 100.0), "N")?,
+                spring_rate: read_or_derive("rate", rate, (0.0, 100.0), "N/mm")?,
                 ..coil_strut
             })
         }

@@ -113,6 +113,8 @@ impl RobotConfig {
         };
         config.check_lengths()?;
         config.check_neutral()?;
+        let servo_volts = config.servo_type.supply_volts;
+        config.supplies.check_rail(servo_volts)?;
         Ok(config)
     }
 

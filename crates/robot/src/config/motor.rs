@@ -5,7 +5,7 @@
 //! inertia or the error at which the full torque is applied; both are assumed.
 
 use lizard_contact::{GRAVITY, JointFriction, Motor};
-use lizard_kinematics::Lizard;
+use lizard_kinematics::{Lizard, Side};
 
 use crate::config::servo::{ARM_TURN_SIGN, Servo};
 use crate::file::{ReadResult, Section, suggest};
@@ -167,13 +167,17 @@ pub(crate) fn read_joints(
             // Forward is y of the chassis frame; left is -x.
             [arm_lengths[i] * sin, -arm_lengths[i] * cos]
         }),
-        shaft_distance: links.l10,
+        shaft_spans: Side::ALL.map(|side| {
+            let slider = lizard.side(side);
+            [slider.base, -slider.front_offset]
+        }),
     })
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::{assert_near, paper_with_tables, robot};
+    use super::Side;
+    use crate::testing::{all_robots, assert_near, paper_with_tables, robot};
 
     /// Returns half the dead band, the full-torque error and the rotor time constant.
     fn dead_band_torque_error_and_time(motor: super::Motor) -> [f64; 3] {
@@ -212,25 +216,26 @@ mod tests {
     }
 
     #[test]
-    fn slider_arms_end_at_the_arm_tips_of_the_kinematics() {
-        let robot = robot("paper");
-        let solution = robot.lizard().solve(&robot.neutral_pose());
-        let solution = solution.expect("the neutral pose closes");
-        let arms = robot.motors().joint_friction.slider_arms;
-        for side in lizard_kinematics::Side::ALL {
-            let [front, rear] = side.servos();
-            let slider = solution.side(side);
-            // The tips are given relative to the rear shaft.
-            for (servo, tip, shaft_y) in [
-                (front, slider.front_tip, 135.0),
-                (rear, slider.rear_tip, 0.0),
-            ] {
-                let arm @ [forward, left] = arms[servo];
-                let error = (tip.y - shaft_y - forward).hypot(tip.x + left);
-                assert!(
-                    error < 1e-6,
-                    "servo {servo}: the tip is {tip:?}, the arm {arm:?}"
-                );
+    fn slider_arms_and_shaft_spans_give_the_sliders_of_the_kinematics() {
+        for (name, robot) in all_robots() {
+            let solution = robot.lizard().solve(&robot.neutral_pose());
+            let solution = solution.expect("the neutral pose closes");
+            let friction = robot.motors().joint_friction;
+            for (side, span) in Side::ALL.into_iter().zip(friction.shaft_spans) {
+                let [front, rear] = side.servos();
+                let slider = solution.side(side);
+                // The tips are given relative to the rear shaft.
+                for (servo, tip, [shaft_forward, shaft_left]) in [
+                    (front, slider.front_tip, span),
+                    (rear, slider.rear_tip, [0.0; 2]),
+                ] {
+                    let arm @ [forward, left] = friction.slider_arms[servo];
+                    let error = (tip.y - shaft_forward - forward).hypot(tip.x + shaft_left + left);
+                    assert!(
+                        error < 1e-6,
+                        "{name}, servo {servo}: the tip is {tip:?}, the arm {arm:?}"
+                    );
+                }
             }
         }
     }

@@ -68,9 +68,10 @@ const ANCHOR_ANGLE_RANGE: (f64, f64) = (-180.0, 180.0);
 const LENGTH_RANGE: (f64, f64) = (0.1, 200.0);
 
 /// Defines the dimensions of a part: a struct of lengths with their defaults, and the reader of its table. Each length
-/// must be in [`LENGTH_RANGE`]; every key is optional.
+/// must be in [`LENGTH_RANGE`], and the first of a pair after `where` must be less than the second; every key is
+/// optional.
 macro_rules! dimensions {
-    ($($(#[$type_doc:meta])* $type:ident in $table:literal {
+    ($($(#[$type_doc:meta])* $type:ident in $table:literal $(where [$($less:ident < $limit:ident),+])? {
         $($(#[$key_doc:meta])* $key:ident: $default:literal,)*
     })*) => {$(
         $(#[$type_doc])*
@@ -85,9 +86,13 @@ macro_rules! dimensions {
             fn read(parts: &Section) -> ReadResult<Self> {
                 let default = Self::DEFAULT;
                 let section = parts.optional_section($table, &[$(stringify!($key)),*])?;
-                Ok(Self {
+                let dimensions = Self {
                     $($key: section.number_or(stringify!($key), default.$key, LENGTH_RANGE, "mm")?,)*
-                })
+                };
+                $($(section.require_less(
+                    stringify!($less), dimensions.$less, stringify!($limit), dimensions.$limit
+                )?;)+)?
+                Ok(dimensions)
             }
         }
     )*};
@@ -95,7 +100,7 @@ macro_rules! dimensions {
 
 dimensions! {
     /// A servo without its horn, mm. Heights are from the bottom of its case.
-    ServoBody in "servo" {
+    ServoBody in "servo" where [shaft < length, length < holes, holes < flange] {
         /// Length of the case, along its flange.
         length: 22.8,
         /// Width of the case.
@@ -131,7 +136,7 @@ dimensions! {
     }
 
     /// A screw and its nut, mm.
-    Screw in "screw" {
+    Screw in "screw" where [diameter < head, diameter < nut] {
         /// Diameter of the thread.
         diameter: 3.0,
         /// Diameter of the head.
@@ -242,6 +247,12 @@ impl Parts {
             true => Some(section.numbers("foot", OFFSET_RANGE, "mm")?),
             false => None,
         };
+        let pivot = section.numbers_or("pivot", defaults.pivot, OFFSET_RANGE, "mm")?;
+        if pivot == [0.0; 2] {
+            // The strut joins two parallel arms, one at the shaft and one at the pivot.
+            let message = "is on the servo's shaft, so the strut would have no length";
+            return Err(section.error("pivot", message));
+        }
         let battery = section.numbers_or("battery", defaults.battery, (1.0, 500.0), "mm")?;
         Ok(Self {
             fit: read_mm("fit", defaults.fit, 0.0, 1.0)?,
@@ -251,7 +262,7 @@ impl Parts {
             plate: read_mm("plate", defaults.plate, 2.0, 20.0)?,
             gap: read_mm("gap", defaults.gap, 0.1, 5.0)?,
             kerf: read_mm("kerf", defaults.kerf, 0.0, 2.0)?,
-            pivot: section.numbers_or("pivot", defaults.pivot, OFFSET_RANGE, "mm")?,
+            pivot,
             foot,
             anchor: section.polar_or(
                 "anchor",

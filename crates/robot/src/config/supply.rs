@@ -4,7 +4,7 @@
 use lizard_core::numbers::supplies::{Supplies as CoreSupplies, Thresholds};
 
 use crate::config::servo::{UsedPins, claim_pin, parse_pin};
-use crate::file::{ReadResult, Section};
+use crate::file::{Error, ReadResult, Section};
 
 /// The nominal voltage reference of an ATmega328P, V: data sheet, section 29.8.
 const NOMINAL_REFERENCE: f64 = 1.1;
@@ -13,6 +13,9 @@ const REFERENCE_RANGE: (f64, f64) = (1.0, 1.2);
 
 /// Range of the board's thresholds, V: the brown-out detector resets the chip at 2.7 V, and the chip tolerates 5.5 V.
 const BOARD_THRESHOLD_RANGE: (f64, f64) = (2.7, 5.5);
+
+/// The highest voltage that an analogue pin measures: the board's supply, V.
+const MAX_PIN_VOLTS: f64 = 5.0;
 
 /// Default thresholds `slow`, `stop` and `rest`, V: gaits slow down below `slow`, the robot stops below `stop`, and the
 /// pulses end below `rest`. If its reference differs from the nominal value, a healthy board may read only 4.3 V.
@@ -104,6 +107,20 @@ impl Supplies {
         })
     }
 
+    /// Rejects a divider at which the supply of the servos, `servo_volts`, would exceed what its pin measures.
+    pub(crate) fn check_rail(&self, servo_volts: f64) -> ReadResult<()> {
+        let ratio = self.rail.map_or(f64::INFINITY, |rail| rail.divider_ratio);
+        if servo_volts <= MAX_PIN_VOLTS * ratio {
+            return Ok(());
+        }
+        // Rounded up, so that the ratio in the message is sufficient.
+        let min_ratio = (100.0 * servo_volts / MAX_PIN_VOLTS).ceil() / 100.0;
+        let message = format!(
+            "is {ratio}; for servo.volts = {servo_volts} it must be at least {min_ratio}, because the pin measures at most {MAX_PIN_VOLTS} V"
+        );
+        Err(Error::new("supply.rail.ratio", message))
+    }
+
     /// Converts the supplies to the core's form, in mV.
     pub(crate) fn to_core(self) -> CoreSupplies {
         CoreSupplies {
@@ -155,7 +172,7 @@ fn read_rail(supply: &Section, used_pins: &mut UsedPins) -> ReadResult<Option<Ra
     Ok(Some(Rail {
         pin,
         divider_ratio,
-        thresholds: read_thresholds(&section, (1.0, 5.0 * divider_ratio), defaults)?,
+        thresholds: read_thresholds(&section, (1.0, MAX_PIN_VOLTS * divider_ratio), defaults)?,
         has_derived_slow_threshold,
     }))
 }

@@ -171,7 +171,9 @@ pub fn without_gait(text: &str, name: &str) -> String {
 /// Replaces the tables of a gait with `table`. Returns the new text, and true if the gait existed.
 fn replace_gait(text: &str, name: &str, table: &str) -> (String, bool) {
     let (header, subtable_start) = (format!("[gait.{name}]"), format!("[gait.{name}."));
-    let (mut lines, mut is_in_gait, mut is_replaced) = (Vec::new(), false, false);
+    let mut lines = Vec::new();
+    let mut is_in_gait = false;
+    let mut is_replaced = false;
     for line in text.lines() {
         let trimmed_line = line.trim_start();
         if trimmed_line.starts_with('[') {

@@ -44,7 +44,8 @@ pub(crate) fn read_for_each<T>(
 /// Finds the byte offset of a key. If the key is missing, finds that of the innermost existing table in its name;
 /// `None` if not even the outermost table exists.
 fn find_key(mut table: &DeTable, key: &str) -> Option<usize> {
-    let (mut rest, mut innermost_start) = (key, None);
+    let mut rest = key;
+    let mut innermost_start = None;
     loop {
         // A quoted key may contain a dot, so the longest matching key counts.
         let suffix_after = |known: &str| {
@@ -82,6 +83,8 @@ pub(crate) enum KeyRead {
         unit: String,
         default: Option<f64>,
     },
+    /// The key is a position in polar coordinates, with the ranges of the distance (mm) and of the angle (deg).
+    Polar(Range, Range),
 }
 
 #[cfg(test)]
@@ -282,6 +285,8 @@ impl<'a> Section<'a> {
         distance_range: Range,
         angle_range: Range,
     ) -> ReadResult<[f64; 2]> {
+        #[cfg(test)]
+        self.record_read(name, KeyRead::Polar(distance_range, angle_range));
         if !self.has_key(name) {
             return Ok(default);
         }

@@ -56,10 +56,11 @@ pub(crate) fn read_gaits(root: &Section, config: &RobotConfig) -> ReadResult<Vec
             "the first gait must be stand, the neutral pose that the robot takes at power-on";
         return Err(Error::with_own_subject("gait", message));
     }
-    let reader = GaitReader {
+    let mut reader = GaitReader {
         section,
         names: &names,
         config,
+        gaits: HashMap::new(),
     };
     let gaits = names.iter().map(|name| reader.read(name, &[]));
     let gaits = gaits.collect::<ReadResult<Vec<_>>>()?;
@@ -122,11 +123,24 @@ struct GaitReader<'a> {
     /// The names of all gaits, in the order of the file.
     names: &'a [&'a str],
     config: &'a RobotConfig,
+    /// The gaits that have been read, by name.
+    gaits: HashMap<String, Gait>,
 }
 
 impl GaitReader<'_> {
-    /// Reads the gait with this name; `referrers` are the gaits that are being read, each of which refers to the next.
-    fn read(&self, name: &str, referrers: &[&str]) -> ReadResult<Gait> {
+    /// Reads the gait with this name, or returns it if it has been read before; `referrers` are the gaits that are
+    /// being read, each of which refers to the next.
+    fn read(&mut self, name: &str, referrers: &[&str]) -> ReadResult<Gait> {
+        if let Some(gait) = self.gaits.get(name) {
+            return Ok(gait.clone());
+        }
+        let gait = self.read_definition(name, referrers)?;
+        self.gaits.insert(name.to_string(), gait.clone());
+        Ok(gait)
+    }
+
+    /// Reads the definition of a gait that has not been read before.
+    fn read_definition(&mut self, name: &str, referrers: &[&str]) -> ReadResult<Gait> {
         let table = self.section.section(name, &GAIT_KEYS)?;
         let strides = match definition_key(&table)? {
             "waveform" => read_waveform(&table)?,
@@ -145,7 +159,7 @@ impl GaitReader<'_> {
 
     /// Reads a gait that is derived from another gait.
     fn read_derived(
-        &self,
+        &mut self,
         name: &str,
         table: &Section,
         reference: &'static str,

@@ -58,14 +58,30 @@ impl PathLeg {
 
     /// The servo's sweep from neutral at a phase of 0 to 1, deg, positive if the foot is forward.
     pub fn sweep(&self, phase: f64) -> f64 {
-        // `for_both_servos` has checked only some points of the path, but the points between them are within reach,
-        // too: type-1 margins are zero at the edge of the reach, and the check of every sample keeps the path's margins
-        // far from zero.
-        let angles = self
-            .lizard
-            .point_angles(self.end, self.path.point_at(phase))
-            .expect("the path is within reach");
-        let angle = angles[self.servo % 2];
+        let angles_at = |phase: f64| {
+            let point = self.path.point_at(phase);
+            self.lizard.point_angles(self.end, point)
+        };
+        // Between two points that `for_both_servos` has checked, the path may leave the reach by a fraction of a
+        // millimetre. The nearest checked point then replaces the point beyond the reach.
+        let count = CHECKED_POINTS_PER_CYCLE as f64;
+        let checked_phase = (phase * count).round() % count / count;
+        let angles = angles_at(phase).or_else(|_| angles_at(checked_phase));
+        let angle = angles.expect("the checked point is within reach")[self.servo % 2];
         FORWARD_TURN_SIGN[self.servo] * wrap(angle - self.neutral)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{assert_contains, paper_with_tables};
+
+    #[test]
+    fn a_path_that_leaves_the_reach_between_two_checked_points_is_rejected() {
+        // In the middle, the head reaches y = 79.3725 mm. The peaks at 79.3728 mm are halfway between checked points.
+        let gait = "[gait.reach]\nperiod = 32.768\n[gait.reach.head]\ncentre = [0.0, 69.3728]\n\
+                    y = [{ k = 16, amplitude = 10.0, shift = 0.001953125 }]";
+        let error = paper_with_tables(gait).expect_err("the arms are straight at the peaks");
+        assert_contains(&error.to_string(), "margin type1_a1");
     }
 }

@@ -325,6 +325,9 @@ impl Row {
 
 impl fmt::Display for Assumptions {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        if self.gaits.is_empty() {
+            return f.write_str("no gait moves the robot in a determined way\n");
+        }
         writeln!(
             f,
             "Change in displacement per cycle, in percent, at the lowest and the highest value of each assumption.\n"
@@ -370,5 +373,19 @@ impl fmt::Display for Assumptions {
             )?;
         }
         writeln!(f, "\n{UNMODELLED_NOTE}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{assert_starts_with, text_before_gaits};
+
+    #[test]
+    fn a_robot_without_a_moving_gait_has_no_table() {
+        let stand = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
+        let text = text_before_gaits("paper") + stand;
+        let robot = Robot::parse(&text).expect("the robot is valid");
+        assert_starts_with(&Assumptions::compute(&robot).to_string(), "no gait moves");
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use lizard_contact::Prediction;
+use lizard_contact::{GroundContact, Prediction, Stance};
 use lizard_core::numbers::section::REGION_BYTES;
 
 use crate::checks::{Audit, CheckedGait, Effort, HIGH_UTILISATION, TableError};
@@ -30,6 +30,21 @@ pub struct GaitRow {
     pub utilisation: f64,
     /// Displacement over one cycle with the servos' limited torque and speed.
     pub movement_with_servos: Prediction,
+    /// True if the robot would tip over at a phase of the gait.
+    pub tips_over: bool,
+}
+
+/// True if a robot on this ground would tip over at a phase of a gait: its centre of mass is not between its feet.
+fn tips_over(gait: &CheckedGait, ground: &GroundContact) -> bool {
+    /// Number of phases that are checked.
+    const PHASE_COUNT: u16 = 256;
+    (0..PHASE_COUNT).any(|i| {
+        let sweeps = gait.sweeps(f64::from(i) / f64::from(PHASE_COUNT));
+        let feet = ground.feet.positions(sweeps);
+        // Four feet on which the body balances carry four mean loads together; otherwise a foot would have to pull.
+        let loads = Stance::LEVEL.relative_loads(&ground.body, feet);
+        loads.iter().sum::<f64>() > 4.0 + 1e-6
+    })
 }
 
 impl GaitRow {
@@ -99,6 +114,7 @@ impl Report {
                 utilisation: Effort::simulate(gait, ground, &motors).utilisation(1.0, 1.0),
                 movement_with_servos: movement
                     .keep_determined(gait.simulate_driven_cycle(ground, &motors, 1.0)),
+                tips_over: tips_over(gait, ground),
             }
         };
         let core = robot.core();
@@ -131,12 +147,12 @@ impl Report {
             "routine"
         )?;
         for row in &self.routine_rows {
-            let (name, step_count, seconds) = (&row.name, row.step_count, row.seconds);
             let round_count = row.round_count.map(|count| count.to_string());
             let repeat = round_count.unwrap_or("for ever".to_string());
             write!(
                 f,
-                "{name:<width$} {step_count:>5} {repeat:>8} {seconds:>6.1}"
+                "{:<width$} {:>5} {repeat:>8} {:>6.1}",
+                row.name, row.step_count, row.seconds
             )?;
             for prediction in [row.movement, row.movement_with_servos] {
                 let [forward, left, turn] = [prediction.forward, prediction.left, prediction.turn]
@@ -149,13 +165,18 @@ impl Report {
     }
 }
 
+/// Formats a number of things, in the plural unless there is one.
+fn format_count(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         writeln!(
             f,
-            "{} gaits in {} waveforms, {} of {} bytes of flash, robot {} {:08x}\n",
-            self.gait_rows.len(),
-            self.waveform_count,
+            "{} in {}, {} of {} bytes of flash, robot {} {:08x}\n",
+            format_count(self.gait_rows.len(), "gait"),
+            format_count(self.waveform_count, "waveform"),
             self.section_bytes,
             REGION_BYTES,
             self.name,
@@ -223,14 +244,25 @@ impl fmt::Display for Report {
         if movements.any(|movement| !movement.is_determined()) {
             write!(f, "\n{UNDETERMINED_NOTE}")?;
         }
-        let slow_names = self.gait_rows.iter().filter(|row| row.is_slow());
-        let slow_names: Vec<_> = slow_names.map(|row| row.name.as_str()).collect();
+        let list_names = |is_listed: fn(&&GaitRow) -> bool| {
+            let rows = self.gait_rows.iter().filter(is_listed);
+            let names: Vec<_> = rows.map(|row| row.name.as_str()).collect();
+            names.join(", ")
+        };
+        let tipping_names = list_names(|row| row.tips_over);
+        if !tipping_names.is_empty() {
+            writeln!(
+                f,
+                "\ntipping gaits: {tipping_names}\nAt a phase of these gaits the centre of mass is not between the feet, and the predictions do not \
+                 hold; move body.centre towards the middle."
+            )?;
+        }
+        let slow_names = list_names(|row| row.is_slow());
         if !slow_names.is_empty() {
             writeln!(
                 f,
-                "\nslow gaits: {}\nGaits below {SLOW_SPEED_DEG_S:.0} deg/s lose up to a third of their distance and half of their turn at an \
-                 edge of 2 mm (docs/judges.md).",
-                slow_names.join(", ")
+                "\nslow gaits: {slow_names}\nGaits below {SLOW_SPEED_DEG_S:.0} deg/s lose up to a third of their distance and half of their turn at an \
+                 edge of 2 mm (docs/judges.md)."
             )?;
         }
         let loads_servos = |row: &&GaitRow| row.utilisation >= HIGH_UTILISATION;
@@ -335,6 +367,27 @@ mod tests {
         for fast_or_still in ["stride", "nod", "wag"] {
             assert!(!is_slow(fast_or_still), "{fast_or_still}");
         }
+    }
+
+    #[test]
+    fn gaits_with_which_the_robot_tips_over_are_reported() {
+        let find_tipping_gaits = |centre: &str| {
+            let body = format!("mass = 435.0\ncentre = {centre}");
+            let report = Report::compute(&valid_robot_with("paper", &[("mass = 435.0", &body)]));
+            let text = report.to_string();
+            let mut lines = text.lines();
+            let note = lines.find_map(|line| line.strip_prefix("tipping gaits: "));
+            let names = note.unwrap_or_default().split(", ");
+            names.map(str::to_owned).collect::<Vec<_>>()
+        };
+        assert_eq!(find_tipping_gaits("[0.0, 0.0]"), [""]);
+        // All legs of crawl swing back by 20 deg together, which moves the front feet from 55 to 39.6 mm.
+        let names = find_tipping_gaits("[45.0, 0.0]");
+        let tips = |gait: &str| names.iter().any(|name| name == gait);
+        assert!(
+            tips("crawl") && !tips("stand") && !tips("walk"),
+            "{names:?}"
+        );
     }
 
     #[test]

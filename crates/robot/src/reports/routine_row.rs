@@ -77,7 +77,8 @@ impl RoutineRow {
 
 /// Simulates the robot's servos as they follow one set of sweeps (deg) per frame, until they are at rest.
 fn drive_servos(robot: &Robot, sweeps: &[[f64; 4]]) -> Travel {
-    let (motors, start_sweeps) = (robot.motors(), sweeps[0]);
+    let motors = robot.motors();
+    let start_sweeps = sweeps[0];
     let end_sweeps = sweeps.last().copied().unwrap_or(start_sweeps);
     let mut walker = Walker::new(*robot.ground(), start_sweeps);
     for sweeps in sweeps[1..].iter().chain(&[end_sweeps; SETTLING_FRAMES]) {

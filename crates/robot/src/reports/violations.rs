@@ -20,7 +20,8 @@ pub fn find_pose_violations(robot: &Robot, solution: &Solution) -> Vec<String> {
 pub fn find_travel_violation(robot: &Robot, index: usize, angle: f64) -> Option<String> {
     let servo = &robot.servos()[index];
     (!servo.reaches(angle)).then(|| {
-        let (neutral, (min, max)) = (servo.neutral, servo.travel());
+        let neutral = servo.neutral;
+        let (min, max) = servo.travel();
         let sweep = wrap(angle - neutral);
         format!(
             "servo {} would turn {sweep:+.1} deg from neutral to {:.1} deg; its travel is {:.1} to {:.1} deg",

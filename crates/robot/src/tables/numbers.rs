@@ -87,7 +87,8 @@ fn compute_servo_hash(pins: &[u8; 4], neutral: &[Angle; 4], calibration: &[Calib
         .map(|angle| format!("Angle({})", angle.0))
         .join(", ");
     let servos = calibration.each_ref().map(|servo| {
-        let (neutral, [min, max]) = (servo.neutral_width.0, [servo.travel_min.0, servo.travel_max.0]);
+        let neutral = servo.neutral_width.0;
+        let [min, max] = [servo.travel_min.0, servo.travel_max.0];
         let gain = servo.gain;
         format!("Calibration {{ neutral: Width({neutral}), gain: {gain}, min: Sweep({min}), max: Sweep({max}) }}")
     });

@@ -91,7 +91,8 @@ fn format_strut_cells(name: &str, value_of: fn(SimulatedCycle) -> f64) -> String
 #[ignore = "make docs-check: it takes most of a minute"]
 fn the_page_on_the_twin_shows_the_effect_of_springs() {
     let ground = paper().ground();
-    let (pad_friction, leg) = (ground.mean_pad_friction(), ground.feet.reach);
+    let pad_friction = ground.mean_pad_friction();
+    let leg = ground.feet.reach;
     let text = format!(
         "The parts weigh {} g. With a friction of {} that gives {pad_friction:.2} N for each pad, and {:.1} N mm at a leg of {leg} mm. The servos are ideal.\n\n\
          | pull in a slotted strut, N | 0.5 | 1 | 2 | 3 | 5 | rigid |\n|---|---|---|---|---|---|---|\n\

@@ -70,7 +70,8 @@ fn struts_with_at_least_two_newtons_act_like_rigid_links() {
 fn gaits_with_play_match_a_separate_solver() {
     for (play_deg, expected) in [(1.0, [33.4, 24.4, 14.1]), (2.0, [31.5, 21.2, 12.8])] {
         for (name, expected) in ["walk", "trot", "left"].into_iter().zip(expected) {
-            let (gait, ground) = (gait(paper(), name), ground_with_play(play_deg));
+            let gait = gait(paper(), name);
+            let ground = ground_with_play(play_deg);
             let label = format!("{name} with {play_deg} deg of play");
             assert_near(&label, simulate_movement(gait, &ground), expected, 0.25);
             assert_near(&label, gait.simulate_cycle(&ground).max_lag, play_deg, 1e-3);
@@ -183,7 +184,8 @@ fn a_lag_stays_constant_while_no_servo_turns_and_falls_with_friction() {
     for i in 1..=90 {
         walker.move_to(walk.sweeps(f64::from(i) / 100.0));
     }
-    let (lags, sweeps) = (walker.lags(), walk.sweeps(0.9));
+    let lags = walker.lags();
+    let sweeps = walk.sweeps(0.9);
     assert!(lags.iter().any(|lag| lag.abs() > 2.0), "{lags:?}");
     walker.move_to(sweeps);
     for (new_lag, old_lag) in walker.lags().into_iter().zip(lags) {

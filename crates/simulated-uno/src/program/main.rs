@@ -100,7 +100,7 @@ fn run(arguments: &Arguments, image: Image, out: &mut impl Write) -> io::Result<
     let mut lines = lines.into_iter().peekable();
     let end_cycle = arguments.ms * CYCLES_PER_MS;
     while *uno.state() == State::Alive && uno.cycle() < end_cycle {
-        if let Some(line) = lines.next_if(|line| line.ms * CYCLES_PER_MS <= uno.cycle()) {
+        while let Some(line) = lines.next_if(|line| line.ms * CYCLES_PER_MS <= uno.cycle()) {
             let (ms, text) = (uno.ms(), report::escape(&line.text));
             writeln!(out, "{ms:>10.2} ms  > {text}")?;
             uno.send(line.text.as_bytes());

@@ -180,7 +180,8 @@ fn the_guard_accepts_the_corners_the_centre_and_random_poses_of_every_cell() {
 #[test]
 fn the_guard_accepts_every_cell_of_random_robots() {
     let mut runner = TestRunner::deterministic();
-    let (strategy, mut cell_count) = (random_configs(), 0);
+    let strategy = random_configs();
+    let mut cell_count = 0;
     for number in 0..100 {
         let config = sample(&strategy, &mut runner);
         let result = RobotWithMaps::from_config(&config).check(&mut runner);
