@@ -33,7 +33,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit measure-test parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs docs-check install release release-test parallel-test plain-test arduino-test python-test addresses-test desks clean trouble .fit .measure-test .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .workspace .walks .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .docs-check .install .release .release-test .parallel-test .plain-test .arduino-test .python-test .addresses-test .desks .trouble
+.PHONY: help fit measure-test parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs docs-check install release release-test parallel-test arduino-test python-test addresses-test desks clean trouble .fit .measure-test .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .workspace .walks .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .docs-check .install .release .release-test .parallel-test .arduino-test .python-test .addresses-test .desks .trouble
 
 help: ## print this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
@@ -97,8 +97,6 @@ release-test: ## build a release twice, in different folders; compare the bytes,
 	$(call prepared,.release-test)
 parallel-test: ## split long computations with GNU parallel, merge the parts, and compare the output with that of one process
 	$(call prepared,.parallel-test)
-plain-test: ## run the image's tests and the recorded pulses, linked by avr-gcc alone
-	$(call prepared,.plain-test)
 arduino-test: ## compare the C++ library in arduino/, compiled like in the Arduino IDE, with the Rust engine; SERVO=folder of the Servo library
 	$(call prepared,.arduino-test)
 python-test: ## build the Python package's wheel, install it in target/python, test it there
@@ -313,16 +311,6 @@ PREFIX ?= $(HOME)/.local
 	@scripts/setup-desks
 	@cd crates && cargo build $(ALL) --bin lizard --quiet
 	@scripts/desks $(HOST)/debug/lizard
-
-# Without the project's linker, the robot's section is at another address. The tests depend on this address, so they are
-# built separately. Robots that do not fit are omitted.
-PLAIN := $(CURDIR)/target/plain
-.plain-test: export LIZARD_PLAIN_LINK := 1
-.plain-test: export CARGO_TARGET_DIR := $(PLAIN)
-.plain-test: export LIZARD_ELF := $(PLAIN)/avr-atmega328p/release/lizard.elf
-.plain-test:
-	@RUSTC_BOOTSTRAP=1 $(CARGO) build --release --bins --example sweep
-	@cd crates && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} $(CARGO) test -p lizard-host-tests --quiet --test firmware --test trouble --test servo_pulses -- --skip the_largest_section --skip other_robots
 
 .lint:
 	@cargo fmt --check

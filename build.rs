@@ -15,7 +15,6 @@ fn main() {
     println!("cargo::rerun-if-env-changed=LIZARD_ROBOT");
     // This script does not use the linker, but the image must be built again whenever the linker changes.
     println!("cargo::rerun-if-changed=tools/linker/src");
-    println!("cargo::rerun-if-env-changed=LIZARD_PLAIN_LINK");
     let configured_path = env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
     let robot_path = configured_path.map_or_else(|| PathBuf::from("robot.toml"), PathBuf::from);
     println!("cargo::rerun-if-changed={}", robot_path.display());

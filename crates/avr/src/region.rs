@@ -6,19 +6,11 @@
 
 use crate::{Flash, Pod};
 
-/// True if avr-gcc links the program without tools/linker. The code is then longer, so the region begins later. Such a
-/// build is for simulators only, so the region may take the place of a UNO's boot loader.
-const USES_STOCK_LINKER: bool = match option_env!("LIZARD_PLAIN_LINK") {
-    Some(value) => matches!(value.as_bytes(), b"1"),
-    None => false,
-};
+/// The region's first address. The code before it may occupy 27.5 KiB.
+pub const START_ADDRESS: u16 = 0x6e00;
 
-/// The region's first address. The code before it may occupy 27.5 KiB, or 29.9 KiB if avr-gcc links
-/// it without tools/linker.
-pub const START_ADDRESS: u16 = if USES_STOCK_LINKER { 0x7780 } else { 0x6e00 };
-
-/// The address after the region: the start of an Arduino UNO's boot loader, or the end of the flash.
-const END_ADDRESS: u16 = if USES_STOCK_LINKER { 0x8000 } else { 0x7e00 };
+/// The address after the region: the start of an Arduino UNO's boot loader.
+const END_ADDRESS: u16 = 0x7e00;
 
 /// The size of the region in bytes.
 pub const REGION_BYTES: u16 = END_ADDRESS - START_ADDRESS;
