@@ -21,7 +21,8 @@ endif
 # in the other packages' dependencies, so all of them would be compiled twice. Only the page needs the build tool.
 ALL := --workspace --exclude lizard-python --exclude lizard-bindgen
 
-# The paths in this file are those of cargo's default folders, and .cargo/config.toml has the firmware's flags.
+# The caller's settings must not reach cargo: this file names cargo's default folders, and .cargo/config.toml has the
+# firmware's flags.
 unexport CARGO_TARGET_DIR CARGO_BUILD_TARGET_DIR CARGO_BUILD_TARGET RUSTFLAGS CARGO_ENCODED_RUSTFLAGS RUSTC_BOOTSTRAP
 
 # Cargo can use make's jobserver only in a rule that calls make; in other rules, cargo prints a warning.

@@ -64,7 +64,7 @@ declare global {
 }
 
 const problems = new ProblemList();
-workerFailure.subscribe((message) => problems.setMessage('page', message || null));
+workerFailure.subscribe((message) => problems.setMessage('page', message));
 
 async function start(): Promise<void> {
   const [module, choice] = await Promise.all([files.robotModule(), files.robots().then((robots) => new RobotChoice(robots))]);

@@ -15,7 +15,7 @@ export async function installServiceWorker(onUpdate: (load: () => void) => void)
       const { waiting } = registration;
       if (!waiting || isFirstVisit) return;
       onUpdate(() => {
-        // Another tab has loaded it.
+        // Another tab has loaded the newer version.
         if (waiting.state !== 'installed') return location.reload();
         serviceWorker.addEventListener('controllerchange', () => location.reload(), { once: true });
         waiting.postMessage('take over');

@@ -8,12 +8,12 @@ import { LatestRequestQueue } from './latest-request-queue';
 import { getMessage } from './problem';
 import type { RobotWorkerApi } from './robot-worker';
 
-/** The message about the first failure of a worker; empty while none has failed. */
-export const workerFailure = signal('');
+/** The message about the first failure of a worker; null while none has failed. */
+export const workerFailure = signal<string | null>(null);
 
 export function reportWorkerFailure(error: unknown): void {
   console.error(error);
-  workerFailure.value ||= `The page cannot compute predictions or check changes (${getMessage(error)}). Reload it to try again.`;
+  workerFailure.value ??= `The page cannot compute predictions or check changes (${getMessage(error)}). Reload it to try again.`;
 }
 
 export async function startRobotWorker(): Promise<CallableWorker<RobotWorkerApi>> {

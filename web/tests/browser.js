@@ -94,6 +94,11 @@ export async function closePages() {
   assert.deepEqual(browserErrors.splice(0), []);
 }
 
+/** Drops the errors and warnings that a test expects. */
+export function dropBrowserErrors(pattern) {
+  browserErrors.splice(0, browserErrors.length, ...browserErrors.filter((browserError) => !pattern.test(browserError)));
+}
+
 /**
  * Starts a web server for a folder's files at BASE_PATH, with additional headers. Appends the paths of the requests to
  * `requestedPaths`.

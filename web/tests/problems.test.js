@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { address, advance, browserErrors, openBlankPage, openForbidden, openStanding, openPage, readText, sendLine, unfold, useBrowser, chooseRobot, testPage, clickAndAdvance } from './browser.js';
+import { address, advance, dropBrowserErrors, openBlankPage, openForbidden, openStanding, openPage, readText, sendLine, unfold, useBrowser, chooseRobot, testPage, clickAndAdvance } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 
 useBrowser();
@@ -25,7 +25,7 @@ testPage('the message about an unreadable robot file stays while the previous ro
   await chooseRobot(page, 'large');
   assert.equal(await findProblems(page).isVisible(), false, 'a readable robot file removes the message');
   // The browser also reports the missing file, as expected.
-  browserErrors.splice(0, browserErrors.length, ...browserErrors.filter((browserError) => !/404/.test(browserError)));
+  dropBrowserErrors(/404/);
 });
 
 testPage('the page reports an unreadable first robot and accepts another robot', openBlankPage, async (page) => {
@@ -51,7 +51,7 @@ testPage('a failure of the simulation is reported, and another robot then walks'
   assert.equal(await findProblems(page).isVisible(), false);
   await sendLine(page, 'walk', 'ok walk');
   // The page also writes the error to the console, as expected.
-  browserErrors.splice(0, browserErrors.length, ...browserErrors.filter((browserError) => !/unknown instruction/.test(browserError)));
+  dropBrowserErrors(/unknown instruction/);
 });
 
 testPage('the page reports once that its predictions cannot be computed', openStanding, async (page) => {
@@ -68,7 +68,7 @@ testPage('the page reports once that its predictions cannot be computed', openSt
   await advance(page, 500);
   assert.equal(await findProblems(page).isVisible(), false);
   // The browser also reports the missing worker, as expected.
-  browserErrors.splice(0, browserErrors.length, ...browserErrors.filter((browserError) => !/404|worker could not be loaded/.test(browserError)));
+  dropBrowserErrors(/404|worker could not be loaded/);
 });
 
 testPage('the message about a busy port stays until the user dismisses it', () => openPage({}, installFakeSerial), async (page) => {

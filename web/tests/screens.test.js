@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 
-import { address, advance, openBlankPage, browserErrors, openPage, measureOverflow, openStanding, readBox, unfold, withTimeout, useBrowser, chooseRobot, testPage, clickAndAdvance, LANDSCAPE, PHONE, findGaitButton, readGait } from './browser.js';
+import { address, advance, openBlankPage, dropBrowserErrors, openPage, measureOverflow, openStanding, readBox, unfold, withTimeout, useBrowser, chooseRobot, testPage, clickAndAdvance, LANDSCAPE, PHONE, findGaitButton, readGait } from './browser.js';
 
 useBrowser();
 
@@ -202,5 +202,5 @@ testPage('a script that is not the page\'s own does not run', openPage, async (p
   });
   await blockedMessage;
   assert.equal(await page.evaluate(() => window.foreignScriptRan), undefined);
-  browserErrors.splice(0, browserErrors.length, ...browserErrors.filter((browserError) => !/Content Security Policy/.test(browserError)));
+  dropBrowserErrors(/Content Security Policy/);
 });

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -285,7 +286,9 @@ class Robot:
         if not (line.isascii() and line.isprintable() and line):
             raise ValueError(f"a console line must be printable ASCII, got {line!r}")
         word = line.split(" ")[0]
-        starts = ("ok gait=" if word == "status" else f"ok {word}", "err ")
+        start = "ok gait=" if word == "status" else f"ok {word}"
+        # A refusal of which a radio has lost a part is no answer.
+        pattern = re.compile(rf"{re.escape(start)}|err \d+ ")
         with self._exchange_lock:
             self._check_open()
             with self._condition:
@@ -293,7 +296,7 @@ class Robot:
             self._write(line)
 
             def find_answers() -> list[str]:
-                return [text for text in self._answers if text.startswith(starts)]
+                return [text for text in self._answers if pattern.match(text)]
 
             if not self._wait(lambda: find_answers() != [], timeout):
                 raise NoAnswer(f"the robot does not answer to `{line}`")

@@ -126,9 +126,15 @@ def test_a_refusal_has_the_robots_message_and_code(robot):
 
 
 def test_damaged_lines_do_not_end_the_listener(robot):
-    for line in ("# t=12pose=1,2,3,4", "# t=12 pose=1,2", "# t=12 pose", "err"):
+    for line in ("# t=12pose=1,2,3,4", "# t=12 pose=1,2", "# t=12 pose"):
         robot._handle_line(line)
     robot.walk(cycles=1)
+
+
+def test_a_damaged_refusal_is_no_answer(robot, monkeypatch):
+    monkeypatch.setattr(robot, "_write", lambda line: robot._handle_line("err 3"))
+    with pytest.raises(lizard.RobotError, match="does not answer"):
+        robot._send("walk", 0.1)
 
 
 def test_after_a_reset_wait_raises_an_error_and_the_robot_can_walk_again(robot):

@@ -158,7 +158,7 @@ impl Uno {
         // value that it returns is one of `StopReason`.
         let stop_reason = unsafe { ffi::uno_run(self.raw, end_cycle, stop_at_line) };
         match stop_reason {
-            // Also after a supply that was too low has restarted a halted or crashed chip.
+            // A supply that was too low may have restarted a halted or crashed chip.
             ffi::StopReason::CycleReached | ffi::StopReason::LineSent => self.state = State::Alive,
             ffi::StopReason::Halted => self.state = State::Halted,
             ffi::StopReason::PowerCut => self.state = State::Off,

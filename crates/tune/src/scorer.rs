@@ -12,7 +12,7 @@ use crate::variation::{Variation, compute_quantiles};
 const AMPLITUDE_BOUNDS: (f64, f64) = (5.0, 80.0);
 /// The servos of the random robots. Their dead band reduces small strides by a larger fraction than large strides.
 const SERVO_MODEL: ServoModel = ServoModel::SG90;
-/// First period that is tried, s; so long that no servo exceeds the speed limit of most robots.
+/// First period that is tried, s; so long that on most robots no servo exceeds its speed limit.
 const SLOW_PERIOD_S: f64 = 3.0;
 /// Number of iterations that fit the period to the servo speed.
 const PERIOD_ITERATIONS: usize = 3;

@@ -6,7 +6,7 @@ use lizard_core::memory::record::Memory;
 use lizard_core::memory::restart::{Cause, Restart};
 use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::{Eeprom, RunningRobot};
-use lizard_robot::Robot;
+use lizard_robot::{FRAMES_PER_SECOND, Robot, STEPS_PER_DEGREE};
 use lizard_rules::{Event, Limits, MS, Observer, Rule, Time};
 
 /// A virtual board that runs the core. Time passes only in calls of [`ObservedBoard::run_frame`].
@@ -163,7 +163,7 @@ impl ObservedBoard {
         const ROUNDING_CYCLES: u32 = 8;
         let speed_limits = self.robot.speed_limits();
         let max_speed = speed_limits.slew.max(speed_limits.gait_slew);
-        let steps_per_frame = (max_speed / 50.0 * 65536.0 / 360.0) as u16;
+        let steps_per_frame = (max_speed * STEPS_PER_DEGREE / FRAMES_PER_SECOND) as u16;
         let calibrations = self.running_robot.motion().calibration().each_ref();
         self.observer.limits.max_change_cycles = calibrations.map(|calibration| {
             u32::from(calibration.max_width_change(steps_per_frame)) + ROUNDING_CYCLES

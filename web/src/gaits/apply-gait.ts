@@ -30,5 +30,5 @@ export async function restartWithGait(session: Session, gait: EditedGait): Promi
   if (refusal) return refusal;
   const { dialogue } = session;
   await session.link.wait(WAKE_MS);
-  return dialogue.isClosed ? refuse('The robot was changed before it stood.') : null;
+  return dialogue.isClosed ? refuse('The gait was not started, because the robot was changed meanwhile.') : null;
 }

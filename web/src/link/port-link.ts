@@ -78,12 +78,12 @@ export class PortLink implements Link {
       // The baud rate can be set only when the port is opened.
       await this.closePort();
       this.baud = baud;
-      if (!this.isLeft) {
-        await this.openPort().catch((error: unknown) => {
-          if (!this.isLeft) this.onGone(getMessage(error));
-          throw new Error(GONE_MESSAGE);
-        });
-      }
+      // The page may leave the board during each wait.
+      if (this.isLeft) throw new Error(GONE_MESSAGE);
+      await this.openPort().catch((error: unknown) => {
+        if (!this.isLeft) this.onGone(getMessage(error));
+        throw new Error(GONE_MESSAGE);
+      });
       if (this.isLeft) await this.closePort();
     }
     for (const isLow of [false, true]) {

@@ -2,6 +2,9 @@
 import { type Floor, isRefused, type Refusal, Robot } from '../robot';
 import { make } from './elements';
 
+/** Time in which a browser begins to read a file that it saves, ms. */
+const SAVE_MS = 60_000;
+
 /**
  * Saves a robot.toml with this floor, mass, feet and leg drive; null keeps the values of the text. If the values cannot
  * be written, saves the text unchanged and returns the reason.
@@ -13,9 +16,6 @@ export function downloadRobot(toml: string, floor: Floor | null): Refusal | null
   saveFile('robot.toml', [text], 'application/toml');
   return refusal;
 }
-
-/** Time in which a browser begins to read a file that it saves, ms. */
-const SAVE_MS = 60_000;
 
 /** Saves a file with this content and MIME type. */
 export function saveFile(name: string, pieces: BlobPart[], type: string): void {

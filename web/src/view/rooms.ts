@@ -39,9 +39,9 @@ export const isShown = (panel: HTMLDetailsElement) => panel.open && panel.closes
 export function followShownRobot(panel: HTMLDetailsElement, session: Session, show: (description: Description) => void): void {
   let shownRobot = '';
   const update = () => {
-    const { toml, description, servos } = session;
-    if (!isShown(panel) || toml === '') return;
-    const robot = JSON.stringify([toml, session.floor, servos]);
+    if (!isShown(panel) || session.toml === '') return;
+    const { toml, description, floor, servos } = session;
+    const robot = JSON.stringify([toml, floor, servos]);
     if (robot === shownRobot) return;
     shownRobot = robot;
     show(description);

@@ -400,7 +400,7 @@ impl Controller {
     /// Freezes the pose and ends the routine.
     #[inline(never)]
     fn stop(&mut self) {
-        // A robot that rests in a routine now stays at rest, and its pose must survive a loss of power.
+        // If the routine rests, the robot stays at rest, and its pose must survive a loss of power.
         if self.routine.is_under_way() && self.motion.is_resting() {
             return self.rest();
         }
@@ -413,8 +413,6 @@ impl Controller {
     fn prepare_for_motion(&mut self) {
         self.routine = Routine::NONE;
         self.safety.clear_fault();
-        // A routine may begin with a wait or a rest, or before the pulses have settled, so its motion clears the hazard
-        // too late.
         self.motion.clear_hazard();
         self.suspected_brown_outs = 0;
         self.rest_pose_write = Some(REST_POSE_ADDRESS.start_invalidation());

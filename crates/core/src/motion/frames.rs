@@ -81,7 +81,7 @@ pub struct Motion {
     is_settling: bool,
     /// The state of the servos; `is_resting` is true only in [`State::Resting`].
     servo_state: ServoState,
-    /// The hazard because of which the guard stopped the robot; `None` once another motion has begun.
+    /// The hazard because of which the guard stopped the robot; `None` once another motion has been ordered.
     hazard: Option<Hazard>,
     /// Frames since power-on.
     frame_count: u32,
@@ -247,7 +247,7 @@ impl Motion {
         self.freeze(State::Resting);
     }
 
-    /// Forgets the hazard because of which the guard stopped the robot.
+    /// Clears the guard's hazard; called when an order moves the robot.
     pub fn clear_hazard(&mut self) {
         self.hazard = None;
     }
@@ -449,7 +449,6 @@ impl Motion {
             pace: pace::FULL_PACE,
             gait,
         };
-        self.hazard = None;
     }
 }
 

@@ -44,16 +44,10 @@ pub fn merge(args: MergeArgs) -> Result<(), Failure> {
     }
 }
 
-/// Reads the parts from files, or from standard input, which must not be a terminal.
+/// Reads the parts from files, or from standard input unless it is a terminal.
 fn read_all_parts(paths: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
     let mut parts = Vec::new();
-    if paths.is_empty() && io::stdin().is_terminal() {
-        return Err(Failure::Input(
-            "parts are required: give files, or the output of all parts on standard input"
-                .to_owned(),
-        ));
-    }
-    if paths.is_empty() {
+    if paths.is_empty() && !io::stdin().is_terminal() {
         let text = io::read_to_string(io::stdin())?;
         parse_parts("standard input", &text, &mut parts)?;
     }

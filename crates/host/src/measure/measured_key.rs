@@ -98,7 +98,7 @@ pub(super) fn format_toml_lines(keys: &[MeasuredKey]) -> String {
 }
 
 /// True for the text of an earlier output with measured keys, which a new output may replace: each of its lines is a
-/// measured key, a table header, blank, or a line of `robot_toml`, so nothing that a user has written is lost.
+/// measured key, a table header, blank, or a line of `robot_toml`, so it has no key or comment that a user has added.
 pub(super) fn is_earlier_output(text: &str, robot_toml: &str) -> bool {
     let is_measured = |line: &str| line.contains(" # measured: ");
     let is_known = |line: &str| {

@@ -89,7 +89,7 @@ impl RobotArgs {
     /// Returns the name of the robot's source, for messages; not for a text from `from_text`.
     ///
     /// # Errors
-    /// Fails if the current folder cannot be determined.
+    /// Fails if `--robot` is a mistyped name, or if the current folder cannot be determined.
     pub fn name(&self) -> Result<String, Failure> {
         Ok(match (self.find_source()?, &self.path) {
             (RobotSource::File(path), _) => path.display().to_string(),

@@ -65,7 +65,7 @@ fn robots_with_grained_pads_walk_and_turn_as_fast_as_docs_state() {
             value.and_then(Value::as_f64).expect(gait)
         };
         let run_speed = find_value("run", "/cycle/speed");
-        let back_mm = find_value("back", "/cycle/way/forward");
+        let [run_mm, back_mm] = ["run", "back"].map(|gait| find_value(gait, "/cycle/way/forward"));
         let [left_deg, arc_deg] =
             ["left", "arc left"].map(|gait| find_value(gait, "/cycle/way/turn"));
         let row = format!(
@@ -73,6 +73,9 @@ fn robots_with_grained_pads_walk_and_turn_as_fast_as_docs_state() {
         );
         assert!(page.contains(&row), "docs/gaits.md has no {row}");
         assert_eq!(run_speed >= 90.0, is_fast, "{name}: {run_speed} mm/s");
+        // A cycle of `run` takes 0.27 s, which is 13.5 frames.
+        let difference_mm = run_mm - 0.27 * run_speed;
+        assert!(difference_mm.abs() < 0.5, "{name}: {run_mm} mm");
         assert!(
             left_deg > 9.0 && arc_deg > 6.0,
             "{name}: `left` turns by {left_deg} deg, `arc left` by {arc_deg} deg"

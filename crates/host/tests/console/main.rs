@@ -308,7 +308,7 @@ fn draw_prints_no_drawing_to_a_terminal_and_merge_reads_no_parts_from_it() {
             "draw --wiring",
             "lizard: standard output is a terminal; write the SVG to a file with --output",
         ),
-        ("merge", "lizard: parts are required: give files, or "),
+        ("merge", "lizard: no parts given; "),
     ] {
         let mut session = TerminalSession::start(&folder, line);
         session.wait_for(message);

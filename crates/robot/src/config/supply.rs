@@ -110,11 +110,13 @@ impl Supplies {
     /// Rejects a divider at which the supply of the servos, `servo_volts`, would exceed what its pin measures.
     pub(crate) fn check_rail(&self, servo_volts: f64) -> ReadResult<()> {
         let ratio = self.rail.map_or(f64::INFINITY, |rail| rail.divider_ratio);
-        if servo_volts <= MAX_PIN_VOLTS * ratio {
+        // The subtraction keeps a rounding error from rejecting a ratio that is just sufficient.
+        let min_ratio = servo_volts / MAX_PIN_VOLTS - 1e-9;
+        if ratio >= min_ratio {
             return Ok(());
         }
         // Rounded up, so that the ratio in the message is sufficient.
-        let min_ratio = (100.0 * servo_volts / MAX_PIN_VOLTS).ceil() / 100.0;
+        let min_ratio = (100.0 * min_ratio).ceil() / 100.0;
         let message = format!(
             "is {ratio}; for servo.volts = {servo_volts} it must be at least {min_ratio}, because the pin measures at most {MAX_PIN_VOLTS} V"
         );

@@ -326,7 +326,7 @@ impl Row {
 impl fmt::Display for Assumptions {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         if self.gaits.is_empty() {
-            return f.write_str("no gait moves the robot in a determined way\n");
+            return f.write_str("no gait moves the robot noticeably and predictably\n");
         }
         writeln!(
             f,

@@ -40,7 +40,7 @@ impl Motion {
     }
 
     /// The hazard because of which the guard stopped the robot; `None` if the guard has not stopped the robot, or once
-    /// another motion has begun.
+    /// another motion has been ordered.
     pub const fn hazard(&self) -> Option<Hazard> {
         self.hazard
     }

@@ -242,7 +242,7 @@ pub(crate) fn play_with_progress(
     let mut new_lines = Vec::new();
     let recording = session::play(uno, robot, script, |event| {
         match event {
-            Event::Line(line) => new_lines.push(line.clone()),
+            Event::Line(line) => new_lines.push(line),
             Event::Time(ms) => {
                 time_bar.set_position(ms);
                 if !new_lines.is_empty() {

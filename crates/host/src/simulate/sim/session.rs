@@ -35,9 +35,9 @@ pub struct DialogueLine {
 
 /// An event during [`play`].
 #[derive(Debug)]
-pub enum Event<'a> {
+pub enum Event {
     /// The next line of the dialogue.
-    Line(&'a DialogueLine),
+    Line(DialogueLine),
     /// The simulated time in ms since power-on, reported every 20 ms and at the end.
     Time(u64),
 }
@@ -70,7 +70,7 @@ pub fn play(
     uno: &mut Uno,
     robot: &Robot,
     script: &Script,
-    on_event: impl FnMut(Event<'_>) -> io::Result<()>,
+    on_event: impl FnMut(Event) -> io::Result<()>,
 ) -> io::Result<Recording> {
     supplies::connect(uno, robot);
     let start = Instant::now();
@@ -128,12 +128,12 @@ struct Dialogue<F> {
     on_event: F,
 }
 
-impl<F: FnMut(Event<'_>) -> io::Result<()>> Dialogue<F> {
+impl<F: FnMut(Event) -> io::Result<()>> Dialogue<F> {
     /// Sends a command to the UNO and reports it.
     fn send(&mut self, uno: &mut Uno, command: &str) -> io::Result<()> {
         uno.send(command.as_bytes());
         uno.send(b"\n");
-        (self.on_event)(Event::Line(&DialogueLine {
+        (self.on_event)(Event::Line(DialogueLine {
             ms: uno.ms(),
             from: Sender::User,
             text: command.to_owned(),
@@ -147,7 +147,7 @@ impl<F: FnMut(Event<'_>) -> io::Result<()>> Dialogue<F> {
                 self.answers.push(Some(line.text.clone()));
             }
             self.banner.get_or_insert_with(|| line.text.clone());
-            (self.on_event)(Event::Line(&DialogueLine {
+            (self.on_event)(Event::Line(DialogueLine {
                 ms: line.cycle as f64 * 1000.0 / FREQUENCY as f64,
                 from: Sender::Robot,
                 text: line.text,

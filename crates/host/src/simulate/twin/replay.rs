@@ -54,8 +54,8 @@ impl Replay {
         totals
     }
 
-    /// Returns a command's gait and the frame indices of the gait's last complete cycle. `None` unless the command is a
-    /// moving gait that ran for at least two cycles.
+    /// Returns a command's gait and the frame indices of the gait's last complete cycle, whose length is rounded to
+    /// whole frames. `None` unless the command is a moving gait that ran for at least two cycles.
     pub fn find_last_cycle(&self, span: &Span) -> Option<(&CheckedGait, Range<usize>)> {
         let gait = self.robot.gait(&span.command);
         let gait = gait.filter(|gait| gait.has_movement())?;

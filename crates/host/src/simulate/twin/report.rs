@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use lizard_robot::{DriveEffect, Prediction, Robot, RoutineRow, UNDETERMINED_NOTE};
+use lizard_robot::{DriveEffect, Prediction, Robot, RoutineRow, Travel, UNDETERMINED_NOTE};
 use lizard_twin::{FRAME_PERIOD_S, ServoModel};
 use serde::Serialize;
 
@@ -99,19 +99,28 @@ pub fn compute_rows(
         let start_s = replay.log.seconds_at(0);
         let seconds_at = |frame: usize| start_s + frame as f64 * FRAME_PERIOD_S;
         let reported_totals = cycle_totals.as_ref().unwrap_or(&span_totals);
+        // The frames of a cycle may be up to half a frame longer or shorter than the cycle.
+        let scale = cycle.as_ref().map_or(1.0, |(gait, _)| {
+            gait.period() / reported_totals.duration_s()
+        });
         CommandReport {
             command: span.command.clone(),
             seconds: [frames.start, frames.end].map(seconds_at),
             displacement: Displacement::from_travel(span_totals.travel(), are_determined),
             cycle: cycle.map(|(gait, _)| {
                 let travel = reported_totals.travel();
+                let travel = Travel {
+                    forward: scale * travel.forward,
+                    left: scale * travel.left,
+                    turn: scale * travel.turn,
+                };
                 let displacement = Displacement::from_travel(travel, are_determined);
                 Cycle {
                     displacement,
                     ideal_displacement: prediction.unwrap_or(displacement),
                     speed: prediction
                         .and_then(|prediction| prediction.forward)
-                        .map(|_| travel.forward.hypot(travel.left) / reported_totals.duration_s()),
+                        .map(|_| travel.forward.hypot(travel.left) / gait.period()),
                     fraction_of_rigid: DriveEffect::compute(gait, robot.ground())
                         .and_then(|effect| effect.fraction_of_rigid),
                 }
@@ -120,7 +129,7 @@ pub fn compute_rows(
             round: round
                 .filter(|(round, _)| !round.has_inputs)
                 .map(|(_, prediction)| prediction.into()),
-            foot_slip: reported_totals.slips,
+            foot_slip: reported_totals.slips.map(|slip| scale * slip),
             lag: reported_totals.max_lag,
             margin: reported_totals
                 .min_margin

@@ -136,8 +136,8 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
         assert_eq!(low_supply_dialogue.status_value("fault"), "supply");
         set_supply(&mut low_supply_dialogue, 5_000);
         let (gaits, _) = run_and_record_activities(&mut low_supply_dialogue, 300);
-        let is_continued = gaits != ["Stop"] && gaits != ["Rest"];
-        assert!(!is_continued, "the routine continues by itself: {gaits:?}");
+        let has_ended = gaits == ["Stop"] || gaits == ["Rest"];
+        assert!(has_ended, "the routine continues by itself: {gaits:?}");
         assert_rest_pose_is_saved(low_supply_dialogue, "a low supply");
         let mut failing_supply_dialogue = snapshot.clone();
         failing_supply_dialogue.run_at_supply(3_900, 60);

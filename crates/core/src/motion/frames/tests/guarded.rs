@@ -48,22 +48,21 @@ fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held() {
 }
 
 #[test]
-fn the_hazard_is_cleared_only_when_the_next_motion_begins() {
+fn the_hazard_is_kept_after_stop_and_a_refused_pose_until_it_is_cleared() {
     let mut stopped_motion = run_until_guard_stops();
     stopped_motion.stop();
     stopped_motion.run(20);
-    assert!(stopped_motion.hazard().is_some(), "stop begins no motion");
+    assert!(stopped_motion.hazard().is_some(), "stop clears no hazard");
     let mut refused_motion = run_until_guard_stops();
     assert!(refused_motion.go_to(&Pose([Sweep(13_000); 4])).is_err());
     refused_motion.run(20);
     let is_held = refused_motion.hazard().is_some();
-    assert!(is_held, "a refused pose begins no motion");
+    assert!(is_held, "a refused pose clears no hazard");
     let mut motion = run_until_guard_stops();
+    motion.clear_hazard();
     motion.start("sway");
-    assert!(motion.hazard().is_some());
-    motion.advance_frame();
-    assert_eq!(motion.hazard(), None);
     motion.run(TRANSITION_FRAMES);
+    assert_eq!(motion.hazard(), None);
     assert_eq!(motion.gait_name(), Some("sway"));
 }
 
