@@ -1,4 +1,4 @@
-//! The note in the ELF file with the chip, the clock and the voltages for stock simavr. It is not part of the flash.
+//! The note in the ELF file that tells an unmodified simavr the chip, the clock and the voltages. It is not in flash.
 //! Without the note, simavr assumes a supply of 3.3 V, at which the firmware moves no servo.
 
 /// Makes a record as in simavr's `avr_mcu_section.h`: tag, length and 32-bit number.

@@ -53,7 +53,7 @@ fn main() {
     println!("cargo:rustc-link-lib=m");
 }
 
-/// Returns the folder in which the C compiler finds a library; `None` if it does not find the library. rustc itself
+/// Returns the folder in which the C compiler finds a library; `None` if it cannot find the library. rustc itself
 /// searches only the folders that are passed to it.
 fn find_folder(library: &str) -> Option<PathBuf> {
     let compiler = cc::Build::new().try_get_compiler().ok()?;
@@ -64,7 +64,7 @@ fn find_folder(library: &str) -> Option<PathBuf> {
     Some(path.parent()?.to_owned()).filter(|folder| folder.is_absolute())
 }
 
-/// Ends the build if pkg-config reports a version of libsimavr other than [`TESTED_VERSION`], or no version.
+/// Fails the build if pkg-config reports a version of libsimavr other than [`TESTED_VERSION`], or no version.
 fn check_version() {
     let mut pkg_config = Command::new("pkg-config");
     let output = pkg_config.args(["--modversion", "simavr"]).output();

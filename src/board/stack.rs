@@ -1,8 +1,8 @@
 //! The guard word at the end of the data, which the stack must not reach.
 //!
 //! The stack grows from the end of RAM down towards the data, and the chip does not detect an overflow. `make bench`
-//! computes the largest depth of the stack. The guard word between stack and data is for unforeseen cases; main checks
-//! it in every frame.
+//! computes the largest depth of the stack. The guard word between stack and data reveals an overflow that this
+//! computation did not foresee; main checks the word in every frame.
 
 use core::arch::global_asm;
 

@@ -42,15 +42,15 @@ export const TIMEOUT_MS = Number(process.env.PATIENCE ?? 300_000);
 export function withTimeout(waitName, promise) {
   let timer;
   const timeout = new Promise((_, reject) => {
-    const message = `timeout after ${TIMEOUT_MS / 1000} s: ${waitName}`;
+    const message = `timed out after ${TIMEOUT_MS / 1000} s while waiting for this: ${waitName}`;
     timer = setTimeout(() => reject(new Error(message)), TIMEOUT_MS);
   });
   return Promise.race([promise, timeout]).finally(() => clearTimeout(timer));
 }
 
 /**
- * Repeats `step` until `condition` returns true. Only real time is limited, because the page may also wait for the
- * machine.
+ * Repeats `step` until `condition` returns true. The limit applies to real time and not to the number of steps, because
+ * a step may be slow on a busy machine.
  */
 export async function repeatUntil(waitName, condition, step) {
   let isWaiting = true;

@@ -1,4 +1,4 @@
-// The CPU time of a frame. Real time depends on the machine, so this measures the CPU time of the page's thread,
+// The CPU time of a frame. Real time depends on what else the machine does, so this measures the CPU time of the page's thread,
 // while the test's clock makes the page draw sixty frames a second.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

@@ -47,7 +47,7 @@ async function simulate(toml) {
     });
     return JSON.parse(output).frames.flatMap(({ angles }) => (angles ? [angles] : []));
   } catch (error) {
-    if (error.code === 'ETIMEDOUT') throw new Error(`timeout after ${TIMEOUT_MS / 1000} s: the end of lizard sim`);
+    if (error.code === 'ETIMEDOUT') throw new Error(`timed out after ${TIMEOUT_MS / 1000} s while waiting for this: the end of lizard sim`);
     throw error;
   }
 }

@@ -1,5 +1,6 @@
-//! The program `lizard`. Its modules are grouped by the user's tasks: to change a robot.toml, make the parts, drive a
-//! board, measure videos, compute the paper's results, simulate. `commands` contains the table of commands.
+//! The program `lizard`. Its modules follow the user's tasks: editing robot.toml (`change`), making parts (`make`),
+//! controlling a board (`drive`), measuring videos (`measure`), reproducing the paper's results (`paper`) and
+//! simulating (`simulate`). `commands` contains the table of commands.
 
 mod change;
 pub mod commands;

@@ -15,13 +15,14 @@ pub struct Proof {
     pub findings: Vec<Finding>,
     /// Hash that identifies the robot's numbers in the firmware.
     pub hash: u32,
-    /// Distance from a margin's limit within which the decisions may differ, a sine.
+    /// The widest band around a margin's limit in which guard and geometry may decide differently, as a sine.
     pub margin_band: f64,
 }
 
 impl Proof {
-    /// Compares a sample of a robot's pairs with a guard, normally the robot's own. Calls `report_progress` with the
-    /// number of rows completed since the last call; [`Proof::row_count`] is the total.
+    /// Compares the decisions of a guard, normally the robot's own, with the geometry, for a sample of the pairs of
+    /// servo positions. Calls `report_progress` with the number of rows completed since the last call;
+    /// [`Proof::row_count`] is the total.
     pub fn compute(
         robot: &Robot,
         guard: &CoreRobot,
@@ -57,14 +58,14 @@ impl Proof {
         first_servos.map(count_positions).sum()
     }
 
-    /// The number of pairs in cells of the robot's maps; the firmware accepts their poses without computing them.
+    /// The number of pairs in certified cells of the robot's maps. The firmware accepts them without computing margins.
     pub fn certified_count(&self) -> u64 {
         let tallies = self.findings.iter().map(|finding| &finding.tally);
         tallies.map(|tally| tally.certified_count).sum()
     }
 
-    /// The number of wrong decisions outside the bands, plus the number of poses in a cell that the guard rejects. A
-    /// count of 0 over all pairs proves that the guard and the cells are correct.
+    /// The number of wrong decisions outside the margin band, plus the number of pairs in certified cells that the
+    /// guard rejects. A count of 0 over all pairs proves that the guard and the cells are correct.
     pub fn wrong_count(&self) -> u64 {
         let tallies = self.findings.iter().map(|finding| &finding.tally);
         tallies.map(|tally| tally.wrong_count).sum()

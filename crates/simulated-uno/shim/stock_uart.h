@@ -1,4 +1,4 @@
-/* simavr's own USART0, as the stock fidelity uses it.
+/* simavr's own USART0, used without corrections if the fidelity is `Stock`.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -12,12 +12,12 @@
 
 struct stock_uart {
 	avr_uart_t *uart;                       /* simavr's USART0 */
-	const struct instruction *instruction;
+	const struct instruction *instruction;  /* the current one, for the cycle of a transmitted byte */
 	struct serial_bytes *transmitted;       /* record of the transmitted bytes */
 };
 
 /* Switches off simavr's pauses and its echo to stdout, and records the transmitted bytes. */
 void stock_uart_attach(struct stock_uart *stock, const struct instruction *instruction,
                        struct serial_bytes *transmitted);
-/* Returns the UART as the receiver at the end of the sender's cable. */
+/* Returns a receiver that passes the sender's bytes to this UART. */
 struct receiver stock_uart_receiver(struct stock_uart *stock);

@@ -67,7 +67,7 @@ impl Uno {
     /// Sets the seed of the noise that the next [`Uno::power_cycle`] leaves in SRAM and in r0 to r31. Each further
     /// power-on continues the sequence.
     pub fn set_noise_seed(&mut self, seed: u64) {
-        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim keeps a number.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim stores a number.
         unsafe { ffi::uno_set_noise_seed(self.raw, seed) }
     }
 

@@ -49,7 +49,7 @@ pub enum Step {
 pub enum Event<'a> {
     /// The board's flash has been read; reported once.
     Found(FlashContents),
-    /// The step in progress, and its numbers of finished pages and of all pages.
+    /// The step in progress, the number of finished pages, and that of all pages.
     Progress(Step, usize, usize),
     /// The board is reset for another attempt.
     Retry {

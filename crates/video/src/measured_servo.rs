@@ -135,9 +135,9 @@ impl MeasuredServo {
         })
     }
 
-    /// Computes the stall torque, in the unit of `torque`, from this measurement without a load and a measurement with
-    /// a load of `torque`. The rate falls linearly with the torque. The load acts only in the direction in which it
-    /// slows the servo down more.
+    /// Computes the stall torque from two measurements: this one without a load, and `loaded` with a load of `torque`.
+    /// The result has the unit of `torque`. The rate falls linearly with the torque. The load acts only in the direction
+    /// in which it slows the servo down more.
     ///
     /// # Errors
     /// Fails if there are too few frames, if the load does not slow the servo down, or if `loaded` seems to be the
@@ -166,7 +166,7 @@ impl MeasuredServo {
                 error: 100.0 * loss.standard_error,
             });
         }
-        // Only a load makes one direction slower than the other.
+        // A load slows one direction: if the directions differ more without it, the videos were swapped.
         let asymmetry = |servo: &Self| (servo.rates[0].value - servo.rates[1].value).abs();
         if asymmetry(self) > asymmetry(loaded) {
             return Err(ServoError::VideosSwapped);
@@ -188,7 +188,7 @@ fn add_relative_error(estimate: Estimate, relative_sigma: f64) -> Estimate {
 }
 
 /// Fits gain and hysteresis to the angles at which the horn rests in the visited poses; `None` if too few of these
-/// angles are visible. Moves of the same length lead to all these poses, so the horn stops in the same way.
+/// angles are visible. Every move to one of these poses has the same length, so the horn stops in the same way.
 fn fit_gain_and_hysteresis(commands: &[ServoCommand], rests: &[Rest]) -> Option<[Estimate; 2]> {
     let visits: Vec<(f64, f64, f64)> = servo_commands::visited_pose_indices()
         .filter_map(|i| {
@@ -381,8 +381,8 @@ impl HornPath {
         steps
     }
 
-    /// Finds the dead band from the small steps: in each step, the servo moves less than commanded by the dead band's
-    /// width.
+    /// Finds the dead band from the small steps: in each step, the servo's movement falls short of the commanded
+    /// movement by the width of the dead band.
     fn find_dead_band(&self, commands: &[ServoCommand], rests: &[Rest], gain: f64) -> DeadBand {
         // Sums up the squared deviations of the frames from the mean angle of their rest.
         let (mut squares, mut degrees_of_freedom, mut frame_count) = (0.0, 0usize, 0usize);

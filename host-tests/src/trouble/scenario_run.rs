@@ -1,4 +1,4 @@
-//! Run of a scenario on a simulated UNO, with a record of all outputs that are visible from outside.
+//! Runs a scenario on a simulated UNO, with a record of all outputs that are visible from outside.
 
 use fastrand::Rng;
 use lizard_core::console::command::{effect, parse};
@@ -37,7 +37,7 @@ const RECEIVED_BYTE_CYCLES: u64 = 1_389;
 /// Cycles for which a servo counts as having pulses after the start of its last pulse.
 const RECENT_PULSE_CYCLES: u64 = 25 * CYCLES_PER_MS;
 
-/// The state of a running scenario: the board, the drive by radio if there is one, and the record so far.
+/// The state of a running scenario: the board, the person who drives by radio, if any, and the record so far.
 struct ScenarioRun<'a> {
     robot: &'a Robot,
     uno: Uno,

@@ -11,13 +11,13 @@ use crate::{
     Status, boot_and_command, boot_to_stand, for_each_in_parallel, start_in_both_simulations,
 };
 
-/// Upper bound of the cycles that the main loop takes to hand over a computed frame and to set the LED. A sweep takes
-/// three frames for each of these cycles. This is an odd multiple of the 32 frames between two changes of the LED, so
-/// the LED's state in the second sweep is the opposite of its state in the first.
+/// Upper bound of the cycles that the main loop takes to hand over a computed frame and to set the LED. The test tries
+/// each delay up to this number, with three frames per delay: an odd multiple of the 32 frames between two changes of
+/// the LED, so the LED's state in the second pass is the opposite of its state in the first.
 const MAX_HAND_OVER_CYCLES: u64 = 608;
 
-/// Stops the main loop from `delay_cycles` after `Controller::compute_frame` has returned to it with the frame of A1's
-/// pulse at `rise_cycle` until this pulse has begun.
+/// Waits until `Controller::compute_frame` has returned the frame whose A1 pulse begins at `rise_cycle`, waits another
+/// `delay_cycles`, and then stalls the main loop until this pulse has begun.
 fn stall_in_hand_over(run: &mut ReferenceRun, rise_cycle: u64, delay_cycles: u64) {
     run.run_to(rise_cycle - SLOT_CYCLES - 400);
     let uno = &mut run.bench.uno;
@@ -153,7 +153,7 @@ fn missed_ticks_are_skipped_and_make_no_servo_jump() {
         let start_cycle = run.bench.uno.cycle();
         run.bench.uno.take_edges();
         // Each stall is shorter than the watchdog's timeout. The main loop computes one frame for all ticks of a stall,
-        // and none at the next tick, when this late frame still waits.
+        // and skips the next tick, because that late frame still waits.
         for stalled_frames in [2, 3, 4, 5].into_iter().cycle().take(20) {
             run.bench.uno.stall_main(stalled_frames * FRAME_CYCLES);
             run.bench.run_ms(300);

@@ -43,8 +43,8 @@ pub struct DisplacementPair {
     pub mujoco: Displacement,
 }
 
-/// The allowed difference between MuJoCo and the model with level feet: mm or, if larger, a fraction of the distance;
-/// and deg.
+/// The allowed difference between MuJoCo and the model with level feet: that of the distance in mm, or as a fraction
+/// of the distance if this is larger, and that of the turn in deg.
 const LEVEL_FEET_TOLERANCE: (f64, f64, f64) = (1.5, 0.08, 1.0);
 /// The allowed difference with one foot too long on soft leaves.
 const SOFT_FOOT_TOLERANCE: (f64, f64, f64) = (2.5, 0.08, 1.5);
@@ -72,8 +72,8 @@ impl DisplacementPair {
         }
     }
 
-    /// Returns a message if MuJoCo and the model differ by more than allowed; `None` otherwise, and if the model has no
-    /// displacement.
+    /// Returns a message if MuJoCo and the model differ by more than allowed; `None` if they agree, or if the model has
+    /// no displacement.
     pub fn describe_disagreement(&self, case: Case) -> Option<String> {
         let (distance_error, turn_error) = self.mujoco.compute_difference(self.model?);
         let (mm, deg) = self.allowed_difference(case);
@@ -86,7 +86,8 @@ impl DisplacementPair {
     }
 }
 
-/// MuJoCo's displacements by group and name: by assumption and gait, by pad shape and surface, or by gait and surface.
+/// MuJoCo's displacements by group and name. These are, depending on the table: assumption and gait, pad shape and
+/// surface, or gait and surface.
 pub type GroupedDisplacements = BTreeMap<String, BTreeMap<String, Displacement>>;
 
 /// The results by robot, gait and case.

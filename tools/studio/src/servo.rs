@@ -13,7 +13,7 @@ const PULSE_INTERVAL_S: f64 = 0.02;
 const STEP_S: f64 = 0.0005;
 /// Number of pulses during a move to a pose.
 const MOVE_PULSES: usize = 8;
-/// Error beyond the dead band from which the servo uses its full torque, deg.
+/// The smallest error, measured from the edge of the dead band, at which the servo uses its full torque, deg.
 pub const FULL_TORQUE_DEG: f64 = 3.0;
 /// Dry friction of the gears, as a fraction of the stall torque.
 pub const FRICTION_FRACTION: f64 = 0.02;
@@ -21,7 +21,7 @@ pub const FRICTION_FRACTION: f64 = 0.02;
 /// A servo in the jig.
 #[derive(Clone)]
 pub struct Servo {
-    /// Angle by which the servo turns per commanded deg.
+    /// Degrees that the servo turns per commanded degree.
     pub gain: f64,
     /// Angular speed without load and friction, deg/s.
     pub no_load_rate: f64,
@@ -33,7 +33,7 @@ pub struct Servo {
     pub play: f64,
     /// Torque of the load, clockwise, as a fraction of the stall torque.
     pub load: f64,
-    /// Rate at which the pulse changes in a large step, deg/s.
+    /// Rate of the commanded angle in a large step, deg/s.
     pub slew_rate: f64,
     /// Time of the first command, s.
     pub first_command_s: f64,

@@ -49,7 +49,7 @@ impl Adjustment {
         let mut servo = Calibration {
             neutral_width: factory.neutral_width,
             gain: self.gain,
-            // An empty travel, which remains if the trim moves even the neutral pulse outside the limits.
+            // The travel is empty, and stays so if the trim moves even the neutral pulse outside the limits.
             travel_min: Sweep(1),
             travel_max: Sweep(-1),
         };

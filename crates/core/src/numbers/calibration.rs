@@ -1,7 +1,7 @@
 //! A servo's calibration: the relation between its pulses and its angles.
 //!
 //! Servos of one type differ, and a horn fits on its spline only every 14 degrees. Therefore the calibration is not a
-//! constant of the robot but part of the motion's state, which is computed from robot.toml and the user's adjustment
+//! constant of the robot but part of the motion's state. It is computed from robot.toml and the user's adjustment
 //! ([`crate::memory::adjustment`]).
 
 use lizard_avr::{mul, mul_unsigned};
@@ -102,7 +102,7 @@ mod tests {
                     let turn_deg = f64::from(sweep) / STEPS_PER_DEGREE;
                     let us = exact_servo.neutral_us + exact_servo.us_per_degree * turn_deg;
                     let width = f64::from(servo.width(Sweep(sweep)).0);
-                    // Half a cycle each for the rounding of the neutral width and of this width; the rest for the
+                    // The rounding of the neutral width and that of this width take half a cycle each. The rest is the
                     // effect of the gain's rounding over half a turn.
                     prop_assert!((width - 16.0 * us).abs() <= 2.0, "{exact_servo:?} at {sweep}: {width}");
                 }

@@ -4,15 +4,15 @@
 use crate::numbers::couplers::CouplerLengths;
 use crate::numbers::units::Scale;
 
-/// The upper limit, in steps, of the sum of base and cranks (l0 + l1 + l4 in the paper) and of each coupler.
+/// The upper limit, in steps, of two lengths: base plus both cranks (l0 + l1 + l4 in the paper), and each coupler.
 pub const MAX_LENGTH_STEPS: f64 = 127.0 * 256.0;
 
 /// The smallest allowed length of a coupler, in steps, so that 2^27 divided by it fits into an i16.
 pub const MIN_COUPLER_STEPS: i16 = 4097;
 
 lizard_avr::pod! {
-    /// The link lengths of a five-bar, in steps of `scale`, and the factors derived from them. A margin is a
-    /// sine, so it does not depend on the scale.
+    /// The link lengths of a five-bar, in steps of `scale`, and the factors derived from them. The guard's
+    /// margins are sines of angles, so they do not depend on the scale.
     #[derive(Debug, PartialEq, Eq)]
     pub struct LinkLengths {
         pub(crate) couplers: CouplerLengths,

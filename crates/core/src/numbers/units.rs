@@ -38,7 +38,7 @@ pub const ONE_Q15: i32 = 1 << 15;
 /// 1.0 in Q14, the format of gains.
 pub const ONE_Q14: i32 = 1 << 14;
 
-/// A gait cycle, as a phase.
+/// One gait cycle in steps of a phase.
 pub const CYCLE: u32 = 1 << 24;
 
 /// A gait cycle, as the argument of a waveform, see [`phase16`].
@@ -177,7 +177,7 @@ mod tests {
         for centideg in -36_000..=36_000 {
             let angle = Angle::from_centideg(centideg);
             let error = angle_between(to_degrees(angle), f64::from(centideg) / 100.0);
-            // Half a step is 0.0027 deg; the factor has the remaining error.
+            // Half a step is 0.0027 deg; the rest comes from the rounding of the factor.
             assert!(error <= 0.004, "{centideg}: {error} deg");
         }
     }

@@ -112,7 +112,10 @@ fn a_frame_that_waits_to_be_played_is_replaced_only_at_rest() {
         robot.settle();
         assert_eq!(robot.motion().frame_count(), 101 + u32::from(is_resting));
         let ms_since_fed = robot.board.ms_since_fed();
-        assert!(ms_since_fed >= 15, "the watchdog is not fed either");
+        assert!(
+            ms_since_fed >= 15,
+            "the watchdog was fed although the frame still waits"
+        );
         robot.board.pass_time(19);
         let expected_pulses = match is_resting {
             true => Pulses::default(),

@@ -1,6 +1,6 @@
 //! An entry in the list of commands.
 
-/// The heading of the commands for scripts and program development, of which the help shows only the names.
+/// The heading of the commands for scripts and development, which the help lists by name only.
 pub(super) const DEVELOPMENT: &str = "For scripts and development";
 
 /// A command of the program, which may be missing from this build.

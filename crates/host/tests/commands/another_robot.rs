@@ -1,4 +1,4 @@
-//! Tests that commands refuse an image that was built for another robot than the selected robot.
+//! Tests that commands refuse an image that was built for a robot other than the selected one.
 
 use std::path::PathBuf;
 

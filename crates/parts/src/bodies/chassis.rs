@@ -15,7 +15,7 @@ use crate::layers::shape::{Shape, vector};
 /// Radius of a servo's spline, mm.
 pub const SPLINE_RADIUS: f64 = 2.4;
 /// Radius of the hole in which a servo's own screw cuts its thread, mm. One of a servo's two holes is only 0.35 mm from
-/// the lead's notch, so its screw holds on the three other sides.
+/// the lead's notch, so there the thread grips only on the other three sides.
 const PILOT_RADIUS: f64 = 0.75;
 
 /// Distance of a servo's engraved number from the seat, and outward from the servo's middle, mm.
@@ -97,7 +97,7 @@ fn add_plate(builder: &mut AssemblyBuilder) {
     let (stack, layout) = (builder.stack, builder.layout);
     let plate = layout.plate;
     let seats = [0, 1, 2, 3].map(|servo| seat_outline(builder, servo, 0.0));
-    // First all openings, then all holes: the files list the shapes in this order, and must not change.
+    // First all openings, then all holes: the exported files list the shapes in this order and must stay the same.
     let servo_cutouts = [0, 1, 2, 3].map(|servo| make_servo_cutouts(builder, servo));
     let openings = servo_cutouts.iter().flat_map(|[openings, _]| openings);
     let screw_holes = servo_cutouts.iter().flat_map(|[_, holes]| holes);
@@ -132,7 +132,7 @@ fn add_plate(builder: &mut AssemblyBuilder) {
     builder.add_body("plate", Kind::Printed, Mount::Chassis, prisms);
 }
 
-/// Makes the layers of the plate's piece around one servo and its leg's pivots, which is printed first, as a trial.
+/// Makes the layers of a trial print: the corner of the plate with one servo and the pivots of its leg.
 pub fn make_corner_prisms(builder: &AssemblyBuilder, servo: usize) -> Vec<Prism> {
     /// Margin of the plate around the seat, mm.
     const SEAT_MARGIN: f64 = 2.0;

@@ -37,7 +37,7 @@ pub struct Edge {
     pub bulge: f64,
 }
 
-/// A face: loops of edges, each edge with true if the loop runs along it forward.
+/// A face: loops of edges. Each edge has a flag: true if the loop runs in the edge's direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Face {
     /// The surface on which the face lies.
@@ -122,7 +122,7 @@ type OutlineAndPieces<'a> = (&'a Outline, &'a [Vec<Piece>]);
 #[derive(Default)]
 struct SolidBuilder {
     solid: Solid,
-    /// Index of the edge at a height, by level, two points and the middle of the piece.
+    /// Indices of the horizontal edges. A key is the level, the two points, and the middle of the piece.
     edge_indices: BTreeMap<(usize, usize, usize, usize), usize>,
     /// Middles of pieces, which distinguish two arcs between the same points.
     middles: Vec<Vector>,
@@ -363,7 +363,7 @@ pub(crate) fn position_along(side: Segment, to: Vector, point: Vector) -> f64 {
     }
 }
 
-/// Adds the points at which two sides intersect, or between which they overlap.
+/// Adds the points at which two sides intersect, or the two ends of their overlap.
 fn add_intersections(
     (a, a_end): (Segment, Vector),
     (b, b_end): (Segment, Vector),

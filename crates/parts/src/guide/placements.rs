@@ -29,7 +29,7 @@ struct PlacedBody<'a> {
     /// Placement of the printed part's file; `None` if the body is bought.
     #[serde(skip_serializing_if = "Option::is_none")]
     printed: Option<PrintPlacement>,
-    /// The placed screw; `None` if the body is no screw.
+    /// The placed screw; `None` if the body is not a screw.
     #[serde(skip_serializing_if = "Option::is_none")]
     screw: Option<PlacedScrew>,
     /// Shapes of a bought body; empty for a printed body.
@@ -54,7 +54,7 @@ struct PrintPlacement {
     /// Shift along x and y.
     #[serde(rename = "at")]
     shift: [f64; 2],
-    /// Middles of the holes to drill, chassis frame.
+    /// Centres of the holes to drill, chassis frame.
     #[serde(rename = "drill")]
     holes_to_drill: Vec<[f64; 2]>,
 }
@@ -75,7 +75,7 @@ struct PlacedScrew {
     /// True if the head is above the shank.
     #[serde(rename = "head_above")]
     is_head_above: bool,
-    /// Later steps of the guide that turn the screw again, from 1.
+    /// Numbers, from 1, of the later steps of the guide in which the screw is turned again.
     #[serde(rename = "turned", skip_serializing_if = "Vec::is_empty")]
     turning_steps: Vec<usize>,
 }

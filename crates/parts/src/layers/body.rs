@@ -135,7 +135,7 @@ impl Kind {
     }
 }
 
-/// The moving frame to which a body is fixed. Servos have numbers from 0 to 3 in servo order.
+/// The frame of reference in which a body is fixed. Servos have numbers from 0 to 3 in servo order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mount {
     /// The chassis, which does not move.

@@ -1,7 +1,7 @@
 //! Engraved marks for parts that are mirror images of each other.
 //!
-//! A link for A1 and its mirror image for A2 look alike in the hand. If a part has variants, each variant therefore
-//! has the numbers of its servos engraved: 13 is for A1 and A3. Digits consist of straight strokes.
+//! A link for A1 and its mirror image for A2 are hard to tell apart. If a part has variants, each variant is therefore
+//! engraved with the numbers of its servos: 13 means A1 and A3. Digits consist of straight strokes.
 
 use lizard_kinematics::Vector;
 

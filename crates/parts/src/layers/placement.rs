@@ -35,7 +35,7 @@ impl<T: Real> Placement<T> {
         self.origin + self.x_axis * point.x + self.x_axis.rotated_left() * point.y
     }
 
-    /// Converts this placement from the chassis frame to another body's frame, itself placed in the chassis frame.
+    /// Converts this placement to another body's frame. Both placements are given in the chassis frame.
     pub fn relative_to(&self, frame: &Self) -> Self {
         let to_frame = |v: Vector<T>| Vector::new(v.dot(frame.x_axis), frame.x_axis.cross(v));
         Self::new(to_frame(self.origin - frame.origin), to_frame(self.x_axis))

@@ -9,7 +9,7 @@ pub struct Floor {
     pub blocks: Vec<Block>,
     /// Slope in the robot's forward direction, deg; positive if the floor rises.
     pub slope: f64,
-    /// Friction coefficient under each pad, servo order.
+    /// Friction coefficient under each pad, in servo order.
     pub friction_coefficients: [f64; 4],
 }
 
@@ -25,7 +25,7 @@ pub struct Block {
 }
 
 impl Floor {
-    /// Creates the empty, level floor according to robot.toml.
+    /// Creates a level floor without blocks, with the friction coefficients of robot.toml.
     #[must_use]
     pub fn for_robot(robot: &Robot) -> Self {
         Self {

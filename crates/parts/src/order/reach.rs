@@ -6,9 +6,10 @@
 //! nut from turning, as a pocket does for a hexagonal head.
 //!
 //! When a screw is turned, all bodies of the earlier stages are in place, and all bodies of the screw's own stage
-//! except the screw and its nut, so the order within a stage does not matter. On the bench, only the bodies count that
-//! the step has added to the link or leg of the same servo. A screw whose nut comes in a later step is pushed in at its
-//! own stage, and turned when the nut comes. A pad moves with its screw, which the key reaches through the pad.
+//! except the screw and its nut, so the order within a stage does not matter. On the bench, only those bodies are
+//! considered that the step has added to the link or leg of the same servo. A screw whose nut comes in a later step is
+//! pushed in at its own stage, and turned when the nut comes. A pad moves with its screw, so it is no obstacle; the key
+//! reaches the screw through the pad's hole.
 //!
 //! The servos are at neutral. If a screw cannot be reached at neutral, a search finds the nearest accepted pose at
 //! which the screw can be reached, and the guide describes this pose.
@@ -239,9 +240,9 @@ impl PosedAssembly<'_> {
             let space = make_space_above_head(axis.head_radius, axis.length);
             spaces.push((ScrewOperation::Push, space));
         }
-        // Its pocket holds a hexagonal head.
+        // A hexagonal head is held by its pocket, so no tool has to turn it.
         let needs_turning = !matches!(screw.kind, Kind::HexScrew(_));
-        // The pad of a height screw if the hex key does not fit through the pad's hole.
+        // The pad in the way of the hex key, if the key does not fit through the pad's hole.
         let mut blocking_pad = None;
         if needs_turning && is_complete && (is_new || new_nut.is_some() || is_turned_later) {
             let tool_space = make_space_above_head(TOOL_RADIUS, TOOL_LENGTH);

@@ -13,7 +13,8 @@ pub(crate) fn mounted_spring_length(legs: &[LegPlan; 4], parts: &Parts) -> f64 {
     legs[0].strut_length + parts.screw.diameter
 }
 
-/// The strut of a robot with this spring. The servos' neutral angles are in deg, chassis frame.
+/// Returns the strut of a robot with these legs and parts and this spring. The servos' neutral angles are in deg,
+/// chassis frame.
 pub(crate) fn strut_with_coil(
     legs: &[LegPlan; 4],
     neutral_angles: [f64; 4],

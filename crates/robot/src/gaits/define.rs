@@ -82,7 +82,7 @@ pub(super) fn check_boot_keys(section: &Section, names: &[&str]) -> ReadResult<(
         let console_name = name.bytes().map(to_console);
         if let Some(other_name) = names_by_key.insert(gait_key(console_name), *name) {
             let message = format!(
-                "is not a gait name: the EEPROM cannot distinguish it from {other_name} as the value of `boot`; rename one of them"
+                "cannot be used together with {other_name}: the EEPROM stores both names as the same number (for `boot`); rename one of them"
             );
             return Err(section.error(name, message));
         }

@@ -1,6 +1,6 @@
 //! Gaits in floating point, as robot.toml defines them.
 //!
-//! A gait is a movement that four legs repeat, each with its own phase. An author defines a gait by a waveform, by a
+//! A gait is a movement that four legs repeat, each with its own phase. robot.toml defines a gait by a waveform, by a
 //! path of the head or the tail, or by changes to another gait. This module converts each definition to the sweep of
 //! each leg at any phase, which is the reference for tables, pulses and predictions.
 

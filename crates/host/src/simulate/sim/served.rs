@@ -46,7 +46,7 @@ pub(super) fn serve_until_interrupted(
             port = port.with_radio(radio);
             "opening the port does not reset it"
         }
-        None => "opening the port resets it",
+        None => "opening the port resets the UNO",
     };
     let port_name = match link {
         Some(link) => {
@@ -59,7 +59,7 @@ pub(super) fn serve_until_interrupted(
     };
     let mut out = io::stdout();
     writeln!(out, "the simulated UNO is at {}", port_name.display())?;
-    writeln!(out, "{reset_note}; Ctrl-C stops it")?;
+    writeln!(out, "{reset_note}; Ctrl-C ends this program")?;
     let mut printed_state = State::Alive;
     let mut contacts = contacts.iter().peekable();
     loop {

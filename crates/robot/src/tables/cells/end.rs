@@ -7,7 +7,7 @@
 //!
 //! * The tip distance is within a range, and so is the type-2 margin, the sine of the angle between the couplers;
 //!   [`bounds::EndErrors::min_type2`] is the margin's smallest value. The tips cannot cross if their distance along the
-//!   base is more than both tips together can move.
+//!   base is more than the sum of both movements.
 //! * The couplers close the loop: `a u2 - b u3 = k`, with their lengths `a` and `b` and their directions `u2` and `u3`.
 //!   The left coupler therefore turns by at most `|dk| / (a sin(theta3 - theta2))`, and the right coupler by at most
 //!   the same with `b` instead of `a`. Each crank turns by at most half the width of its range. The type-1 margin is a

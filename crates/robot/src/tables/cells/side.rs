@@ -1,7 +1,7 @@
-//! The condition of a side over a cell: the slider stays within its stroke.
+//! Checks that the slider of one side stays within its stroke at every pose of a cell.
 //!
 //! Between the cell's centre and any other pose of the cell, each arm tip moves by at most the arm's length times the
-//! arm's rotation, and the slider's length changes by at most the sum of both movements. With the error
+//! arm's rotation, and the slider's length changes by at most the sum of the movements of both tips. With the error
 //! bound of the guard's integers added, the length must still be within the guard's stroke.
 
 use lizard_core::guard::bounds;

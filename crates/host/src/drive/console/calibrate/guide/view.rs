@@ -49,7 +49,7 @@ impl<P: Read + Write> Guide<'_, P> {
                      teeth allow, and fasten its screw. Angles are measured from the robot's\n\
                      right, counter-clockwise, seen from above:\n\n\
                      {angles}\n\
-                     If the horns are already fitted, continue."
+                     If the horns are already fitted so, press Enter."
                 );
                 ("fit the horns".to_owned(), text, next_keys)
             }
@@ -90,11 +90,11 @@ impl<P: Read + Write> Guide<'_, P> {
             }
             Step::OfferScales => (
                 "scales and limits".to_owned(),
-                "Most servos turn one degree per 10 us, and parts as designed do not\n\
-                 touch: then continue. If a crank turns too far or not far enough, or if\n\
-                 two parts would touch, set scales and limits now."
+                "Most servos turn one degree per 10 us, and parts made as designed do not\n\
+                 touch. If this is true for your robot, press Enter. If a crank turns too\n\
+                 far or not far enough, or two parts would touch, set scales and limits."
                     .to_owned(),
-                "y: set them    Enter: leave them as they are    b: back    q: leave",
+                "y: set them    Enter: keep them    b: back    q: leave",
             ),
             Step::Scale(index) => {
                 let commanded_degrees = self.moved_degrees.unwrap_or(SCALE_TURNS_DEG[0]);
