@@ -599,6 +599,8 @@ export class Session {
       if (this.link === link) {
         this.startDialogue();
         this.setGait('');
+        // The program may already have sent its banner.
+        link.onBytes(line.takeUnreadBytes());
       }
     }
   }
@@ -609,7 +611,8 @@ export class Session {
    */
   async checkWrittenBoard(hash: string | null): Promise<string | null> {
     const { link } = this;
-    const hasSentBanner = await this.waitForBanner();
+    // The banner may have arrived right after the boot loader's last answer.
+    const hasSentBanner = this.banner !== undefined || (await this.waitForBanner());
     if (this.link !== link) return null;
     if (!hasSentBanner) {
       this.reportUnknownBoard(`The ${link.name} sends no banner: the written program is not this firmware.`);

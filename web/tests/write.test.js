@@ -47,6 +47,27 @@ testPage('a robot is written within 2.5 s, and firmware and saved settings stay 
   assert.deepEqual(await page.evaluate(() => Array.from(window.attachedBoard.eeprom)), savedEeprom);
 });
 
+testPage('a banner that arrives together with the boot loader\'s last answer is read', () => openWithBoard('large'), async (page) => {
+  await page.evaluate(() => {
+    const board = window.attachedBoard;
+    const deliver = board.onByte;
+    const heldBytes = [];
+    board.onByte = (byte) => {
+      // The last command to the boot loader; the program starts after its answer.
+      if (!window.receivedText.endsWith('Q ')) return deliver(byte);
+      if (heldBytes.push(byte) > 1) return;
+      setTimeout(() => {
+        board.onByte = deliver;
+        for (const heldByte of heldBytes) deliver(heldByte);
+      }, 60);
+    };
+  });
+  await pressAndWait(page, '#flash-robot', /^written and verified in [\d.]+ s$/);
+  await page.clock.runFor(3000);
+  assert.match(await readText(page, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
+  assert.match(await readText(page, '#flash-message'), /^written and verified in [\d.]+ s$/);
+});
+
 testPage('a board walks with an edited gait after it was written', openWithBoard, async (page) => {
   await unfold(page, '#gait-editor');
   await page.waitForFunction(() => /mm$/.test(document.querySelector('#gait-distance').textContent));

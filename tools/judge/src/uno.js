@@ -38,7 +38,7 @@ export class Uno {
     this.eeprom = new AVREEPROM(cpu, eepromMemory, { ...eepromConfig, ...cycles });
     /** The contents of the EEPROM. */
     this.eepromBytes = eepromMemory.memory;
-    new AVRWatchdog(cpu, watchdogConfig, new AVRClock(cpu, FREQUENCY_HZ));
+    this.watchdog = new AVRWatchdog(cpu, watchdogConfig, new AVRClock(cpu, FREQUENCY_HZ));
     cpu.data[MCUSR] = PORF;
     // avr8js would reset the processor only, not the peripherals.
     cpu.reset = () => {

@@ -37,8 +37,18 @@ export class BootLoaderLine implements SerialLine {
     this.receivedBytes = [];
   }
 
-  /** Restores the firmware's baud rate, which resets the board if the boot loader has another rate. */
+  /**
+   * Restores the firmware's baud rate, which resets the board if the boot loader has another rate. Bytes of the other
+   * rate are unreadable and are dropped.
+   */
   async restoreBaud(): Promise<void> {
-    if (this.baud !== BAUD_RATE) await this.link.reset(BAUD_RATE).catch(() => {});
+    if (this.baud === BAUD_RATE) return;
+    this.receivedBytes = [];
+    await this.link.reset(BAUD_RATE).catch(() => {});
+  }
+
+  /** Takes the received bytes that the boot loader's protocol did not read: a started program may have sent them. */
+  takeUnreadBytes(): Uint8Array {
+    return Uint8Array.from(this.receivedBytes.splice(0));
   }
 }

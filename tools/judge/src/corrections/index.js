@@ -9,6 +9,7 @@ import { extendInterruptEntry } from './interrupt-entry.js';
 import { simulateSleep } from './sleep.js';
 import { addTransmitBuffer } from './transmit-buffer.js';
 import { keepUnreadByte } from './unread-byte.js';
+import { applyNewWatchdogTimeout } from './watchdog-timeout.js';
 
 export const corrections = [
   ignoreCompareBeyondTop,
@@ -21,4 +22,5 @@ export const corrections = [
   extendInterruptEntry,
   delayInterruptAfterEnable,
   simulateSleep,
+  applyNewWatchdogTimeout,
 ];
