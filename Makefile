@@ -151,7 +151,7 @@ clean: ## remove everything that was built
 	@scripts/setup-book
 	@scripts/build-web
 	@cd crates && cargo build $(ALL) --bin lizard --quiet && cargo build -p lizard-studio --quiet
-	@LIZARD=$(HOST)/debug/lizard $$(cat target/web-node) --test --test-concurrency=$(if $(ONLY),1,2) --test-timeout=900000 $(or $(patsubst %,web/tests/%.test.js,$(subst +, ,$(ONLY))),$(filter-out $(patsubst %,web/tests/%.test.js,$(subst +, ,$(EXCEPT))),$(wildcard web/tests/*.test.js)))
+	@LIZARD=$(HOST)/debug/lizard "$$(cat target/web-node)" --test --test-concurrency=$(if $(ONLY),1,2) --test-timeout=900000 $(or $(patsubst %,web/tests/%.test.js,$(subst +, ,$(ONLY))),$(filter-out $(patsubst %,web/tests/%.test.js,$(subst +, ,$(EXCEPT))),$(wildcard web/tests/*.test.js)))
 
 # The last line puts the program at the path that the documentation names.
 .cli:
@@ -250,7 +250,7 @@ WALKS := target/walks.log
 	@$(LIZARD) draw --horns --robot robots/paper.toml --output docs/horns.svg
 	@$(LIZARD) draw charts docs/charts
 	@cd crates && BLESS_KEYS=1 cargo test -p lizard-robot --lib --quiet keys::
-	@cd crates && BLESS_PHYSICS=1 cargo test -p lizard-physics --test docs --test grains --test servos --quiet
+	@cd crates && BLESS_PHYSICS=1 cargo test -p lizard-physics --test grains --test servos --test stored_results --quiet
 	@BLESS_GAITS=1 $(MAKE) .docs-check
 	@scripts/walk-through $(LIZARD)
 	@scripts/setup-book

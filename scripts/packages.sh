@@ -1,7 +1,8 @@
 # Functions of the set-up scripts that install missing Debian packages.
 
 say() { printf 'setup: %s\n' "$*"; }
-is_installed() { [ "$(dpkg-query -W -f='${Status}' "$1" 2>/dev/null)" = 'install ok installed' ]; }
+# A package may be on hold, or installed for several architectures.
+is_installed() { [[ $(dpkg-query -W -f='${Status}' "$1" 2>/dev/null) == *' ok installed'* ]]; }
 
 as_root() {
     if [ "$(id -u)" -eq 0 ]; then "$@"

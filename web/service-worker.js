@@ -46,8 +46,8 @@ self.addEventListener('message', ({ data }) => {
 });
 
 async function respond(request) {
-  const url = new URL(request.url);
-  const address = url.href === self.registration.scope || request.mode === 'navigate' ? toUrl('index.html') : url.origin + url.pathname;
+  const { origin, pathname } = new URL(request.url);
+  const address = origin + pathname === self.registration.scope ? toUrl('index.html') : origin + pathname;
   return (await (await caches.open(CACHE_NAME)).match(address)) ?? fetch(request);
 }
 self.addEventListener('fetch', (event) => {

@@ -144,10 +144,9 @@ fn without_permission_the_message_names_the_group_to_join() {
     assert_contains(&error_output, "usermod -aG dialout nobody");
 }
 
-#[test]
-fn without_avrdude_the_message_names_the_package_to_install() {
-    // Simulates a user other than root on a machine without packages: dpkg-query finds no package, and avrdude and sudo
-    // are not on the PATH.
+/// Runs `scripts/setup-flash` as a user other than root on a machine where avrdude, sudo and cargo are not on the PATH
+/// and `dpkg_query_command` replaces `dpkg-query`. The script must fail; returns its standard output.
+fn run_setup_flash(dpkg_query_command: &str) -> String {
     let bin_folder = create_folder();
     for tool in ["bash", "env", "id", "dirname", "grep", "apt-get"] {
         let tool_path = Path::new("/usr/bin").join(tool);
@@ -155,7 +154,8 @@ fn without_avrdude_the_message_names_the_package_to_install() {
     }
     let dpkg_query = bin_folder.path().join("dpkg-query");
     // A new file instead of a link, because writing through a link would change the machine's own program.
-    fs::write(&dpkg_query, "#!/usr/bin/bash\nexit 1\n").expect("the test owns the file");
+    let dpkg_query_script = format!("#!/usr/bin/bash\n{dpkg_query_command}\n");
+    fs::write(&dpkg_query, dpkg_query_script).expect("the test owns the file");
     fs::set_permissions(&dpkg_query, Permissions::from_mode(0o755))
         .expect("the test owns the file");
     let scripts = copy_scripts();
@@ -174,6 +174,22 @@ fn without_avrdude_the_message_names_the_package_to_install() {
         "{stdout_text}{error_output}"
     );
     assert!(!output.status.success());
+    stdout_text.into_owned()
+}
+
+#[test]
+fn without_avrdude_the_message_names_the_package_to_install() {
     let instruction = "As root, run:\n    apt-get install -y avrdude";
-    assert_contains(&stdout_text, instruction);
+    assert_contains(&run_setup_flash("exit 1"), instruction);
+}
+
+#[test]
+fn packages_on_hold_or_for_two_architectures_count_as_installed() {
+    for status in [
+        "hold ok installed",
+        "install ok installedinstall ok installed",
+    ] {
+        let stdout_text = run_setup_flash(&format!("printf '{status}'"));
+        assert_contains(&stdout_text, "installing ravedude with cargo");
+    }
 }

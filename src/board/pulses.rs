@@ -1,8 +1,8 @@
-//! The pulses of the four servos and the 50 Hz clock: the engine of `servo-pulses`, whose pins are known once the
-//! robot's section has been read.
+//! The pulses of the four servos and the 50 Hz clock: the engine of `servo-pulses`. `later: 4` means four servos whose
+//! pins become known only when the robot's section has been read.
 //!
 //! The documentation of `servo-pulses` explains the generation of pulses that are exact to the cycle, and the rules for
-//! all other interrupts. With four servos, a slot is 4 ms and a frame is 20 ms; main has 3.9 ms to compute a frame.
+//! all other interrupts. With four servos, a slot is 4 ms, a frame 20 ms; the main loop has 3.9 ms to compute a frame.
 
 use servo_pulses::Pin;
 

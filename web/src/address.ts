@@ -34,15 +34,13 @@ export class Address {
   scheduleUpdate(): void {
     if (!this.isInitialAddressRead) return;
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => {
-      // In a browser that cannot compress, the address does not change; the button that copies a link shows the reason.
-      this.update().catch((error: unknown) => console.info(`Cannot update the address: ${String(error)}`));
-    }, UPDATE_DELAY_MS);
+    this.timer = setTimeout(() => void this.update(), UPDATE_DELAY_MS);
   }
 
   private async update(): Promise<void> {
     const { toml, original, file } = this.session;
-    const robot = toml === original ? null : await pack(toml);
+    // A robot that cannot be packed, for example because it is too long, is not in the address.
+    const robot = toml === original ? null : await pack(toml).catch(() => null);
     // If the robot has changed meanwhile, another update is scheduled.
     if (this.session.toml !== toml) return;
     const parameters = new URLSearchParams();

@@ -20,7 +20,7 @@ export class Companion {
   constructor(toml: string, { floor, servos, volts }: Session) {
     this.volts = volts;
     const result = this.robot.read(toml);
-    if (isRefused(result)) throw new Error(result.refused);
+    if (isRefused(result)) throw new Error(result.reason);
     this.robot.setFloor(floor);
     this.robot.setServos(servos);
     this.robot.startCore();

@@ -162,7 +162,7 @@ async function start(): Promise<void> {
   let isIntroOver = matchMedia('(prefers-reduced-motion: reduce)').matches;
   const startIntroWalk = () => {
     const gait = chooseGait({ forward: 1, left: 0 }, predictor.gaits);
-    if (isIntroOver || !gait || isSetupOpen() || session.isReal || session.gait !== session.description.gaits[0]?.command) return;
+    if (isIntroOver || !gait || isSetupOpen() || session.isBoardReal || session.gait !== session.description.gaits[0]?.command) return;
     isIntroOver = true;
     void session.drive(`${WORDS.speed} 50`).then(() => session.drive(gait));
   };
@@ -176,20 +176,20 @@ async function start(): Promise<void> {
     if (missingWords.length > 0) problems.setMessage('page', `The page sends words that the core does not have: ${missingWords.join(', ')}.`);
   });
   effect(() => {
-    const { link, banner, description, isReal } = session;
+    const { link, banner, description, isBoardReal } = session;
     if (!link) return;
     const isBusy = writer.isBusy.value;
     setText(element('where'), describeBoard(link.name, banner, description.hash));
     // Reserves the row's height for the text that most likely follows.
     const { version, name, hash } = description;
     element('where').parentElement!.dataset.longestText = describeBoard(link.name, { version, robot: { name, hash } }, hash);
-    element('heard').hidden = !isReal;
+    element('heard').hidden = !isBoardReal;
     element<HTMLButtonElement>('reset').disabled = isBusy || link.kind === 'radio';
-    connectButton.textContent = isReal ? 'Back to the simulation' : 'Connect a board…';
+    connectButton.textContent = isBoardReal ? 'Back to the simulation' : 'Connect a board…';
     // While the boot loader uses the line, no other action may use it.
-    connectButton.disabled = isBusy || (!isReal && !hasSerial());
+    connectButton.disabled = isBusy || (!isBoardReal && !hasSerial());
     radioButton.disabled = isBusy;
-    radioButton.hidden = isReal || findBluetoothProblem() !== null;
+    radioButton.hidden = isBoardReal || findBluetoothProblem() !== null;
     choice.list.disabled = isBusy;
   });
   session.state.link.subscribe(() => (latestCycle = 0));
@@ -242,7 +242,7 @@ async function start(): Promise<void> {
   if (!hasSerial()) showMessage(element('no-serial'), IPHONE_ADVICE ?? NO_SERIAL_MESSAGE);
   async function connectBoard(open: () => Promise<Link | null> = () => PortLink.open()): Promise<void> {
     try {
-      if (session.isReal) await session.disconnect();
+      if (session.isBoardReal) await session.disconnect();
       else if (await session.connect(await open())) setup.openNeededStep();
     } catch (error) {
       problems.setMessage('port', `No board is connected: ${getMessage(error)}`);
@@ -255,7 +255,7 @@ async function start(): Promise<void> {
   // The browser also asks while an image is being written to a board.
   addEventListener('beforeunload', (event) => {
     if (session.isBoardWalking) void session.stop();
-    else if (!(writer.isBusy.value && session.isReal)) return;
+    else if (!(writer.isBusy.value && session.isBoardReal)) return;
     event.preventDefault();
   });
 
@@ -293,6 +293,7 @@ async function start(): Promise<void> {
   });
   let msSinceNumbers = 0;
   let frameCount = 0;
+  let hasDrawingFailed = false;
   runInRealTime(
     (ms) => {
       msSinceNumbers += ms;
@@ -318,6 +319,13 @@ async function start(): Promise<void> {
         scope.updateNumbers(session.last?.scene ?? null);
         margins.updateNumbers(session.last?.scene ?? null);
       }
+    },
+    (error) => {
+      // A drawing that fails once may fail in every frame.
+      if (hasDrawingFailed) return;
+      hasDrawingFailed = true;
+      console.error(error);
+      problems.setMessage('page', `The page cannot draw everything (${getMessage(error)}). Reload it to try again.`);
     },
   );
 }

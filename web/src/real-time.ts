@@ -8,10 +8,10 @@ const SLICE_MS = 4;
 const FRAME_BUDGET_MS = 30;
 
 /**
- * In each animation frame, calls `advance` with slices of the time since the previous frame, and then `draw`. Neither
- * may throw.
+ * In each animation frame, calls `advance` with slices of the time since the previous frame, and then `draw`. `advance`
+ * may not throw; an error of `draw` is passed to `onDrawError`.
  */
-export function runInRealTime(advance: (ms: number) => void, draw: () => void): void {
+export function runInRealTime(advance: (ms: number) => void, draw: () => void, onDrawError: (error: unknown) => void): void {
   let previousTime: number | null = null;
   const handleFrame = async (now: number) => {
     let remainingMs = previousTime === null ? 0 : Math.min(MAX_CATCH_UP_MS, Math.max(0, now - previousTime));
@@ -22,7 +22,11 @@ export function runInRealTime(advance: (ms: number) => void, draw: () => void): 
       remainingMs -= SLICE_MS;
       await Promise.resolve();
     }
-    draw();
+    try {
+      draw();
+    } catch (error) {
+      onDrawError(error);
+    }
     requestAnimationFrame((time) => void handleFrame(time));
   };
   requestAnimationFrame((time) => void handleFrame(time));

@@ -28,10 +28,10 @@ export function load(module: WebAssembly.Module): Robot {
   return new Robot();
 }
 
-export const isRefused = (result: object): result is Refusal => 'refused' in result;
+export const isRefused = (result: object): result is Refusal => 'reason' in result;
 
 /** Makes a refusal by the page itself. */
-export const refuse = (refused: string): Refusal => ({ refused, consequence: null, line: null, key: '' });
+export const refuse = (reason: string): Refusal => ({ reason, consequence: null, line: null, key: '' });
 
 /** Returns true if a leg can lag behind its servo. */
 export const canLag = ({ kind, play }: Floor) => kind !== 'rigid' || play > 0;

@@ -62,7 +62,7 @@ export interface SessionListener {
 }
 
 /** Called with the progress of a write: `done` of the `total` pages of a step are finished. */
-export type ReportProgress = (step: 'reading' | 'writing' | 'verifying' | 'again', done: number, total: number) => void;
+export type ReportProgress = (step: 'reading' | 'writing' | 'verifying' | 'retrying', done: number, total: number) => void;
 
 const isBanner = (banner: BoardBanner | undefined): banner is Banner => typeof banner === 'object' && banner !== null;
 
@@ -93,7 +93,7 @@ export class Session {
   /** Number of unanswered drive commands. */
   private pendingDriveCount = 0;
   /** Number of `stop` commands so far; a waiting drive command is outdated when it changes. */
-  private stopCount = 0;
+  stopCount = 0;
   /** The arrival time of the robot's last line, on the page's clock, ms. */
   private lastLineAt = performance.now();
   /** The firmware's image, the same for every robot. */
@@ -160,21 +160,21 @@ export class Session {
    */
   async loadFile(name: string): Promise<void> {
     const loadNumber = ++this.loadCount;
-    const previousFile = this.file;
     this.file = '';
     try {
       const [toml, predictions, firmware] = await Promise.all([files.toml(name), files.predictions(name), this.firmware ?? files.firmware()]);
       if (loadNumber !== this.loadCount) return;
       this.firmware = firmware;
       const refusal = this.loadToml(toml, null, [toml, predictions]);
-      if (refusal) throw new Error(`${name}.toml: ${refusal.refused}`);
-      if (!this.isReal) await this.simulate();
+      if (refusal) throw new Error(`${name}.toml: ${refusal.reason}`);
+      if (!this.isBoardReal) await this.simulate();
       this.file = name;
       this.storeChanges();
     } catch (error) {
       // A later call has replaced this one.
       if (loadNumber !== this.loadCount) return;
-      this.file = previousFile;
+      // An earlier call may have emptied `file` before this one.
+      this.file = this.changes?.file ?? '';
       throw error;
     }
   }
@@ -186,7 +186,7 @@ export class Session {
   async change(toml: string, floor = this.state.floor.value): Promise<Refusal | null> {
     const refusal = this.loadToml(toml, floor);
     if (refusal) return refusal;
-    if (!this.isReal) await this.simulate(this.simulatedLink?.board.eeprom);
+    if (!this.isBoardReal) await this.simulate(this.simulatedLink?.board.eeprom);
     this.storeChanges();
     return null;
   }
@@ -253,7 +253,7 @@ export class Session {
   }
 
   /** True if the page is connected to a real board. */
-  get isReal(): boolean {
+  get isBoardReal(): boolean {
     // The link is null before the first robot is loaded.
     return this.link !== null && this.link.kind !== 'simulated';
   }
@@ -261,18 +261,20 @@ export class Session {
   /** Powers on a new simulated UNO with the page's robot and, optionally, the previous UNO's EEPROM. */
   async simulate(eeprom?: Uint8Array): Promise<void> {
     this.bootLoader ??= await files.bootLoader();
-    const pins = this.description.servos.map(({ pin }) => pin);
-    const board = new SimulatedBoard(this.image, this.bootLoader, this.description.rail, eeprom);
-    for (const [name, pin] of this.description.inputs) board.setContact(pin, this.closedInputs.has(name));
-    const onFrame = (widths: Four<number>) =>
-      this.handleFrame(this.robot.followPulses(widths), widths, FRAME_SECONDS);
-    await this.attach(new UnoLink(board, pins, onFrame, (...pulse) => this.listener.onPulse(...pulse)));
-    this.simulatedLink?.board.setSupply(this.volts);
+    await this.attach(() => {
+      const pins = this.description.servos.map(({ pin }) => pin);
+      const board = new SimulatedBoard(this.image, this.bootLoader, this.description.rail, eeprom);
+      for (const [name, pin] of this.description.inputs) board.setContact(pin, this.closedInputs.has(name));
+      board.setSupply(this.volts);
+      const onFrame = (widths: Four<number>) =>
+        this.handleFrame(this.robot.followPulses(widths), widths, FRAME_SECONDS);
+      return new UnoLink(board, pins, onFrame, (...pulse) => this.listener.onPulse(...pulse));
+    });
   }
 
   /**
-   * Connects to a board that the user picked, and identifies it; returns true if the board is connected at the end.
-   * Throws an error with a message for the user.
+   * Connects to a board that the user picked, and identifies it; returns true if the board is connected at the end, and
+   * false if the user disconnects it or writes to it meanwhile. Throws an error with a message for the user.
    */
   async connect(link: Link | null): Promise<boolean> {
     if (!link) return false;
@@ -280,19 +282,21 @@ export class Session {
       void this.simulate().then(() => this.listener.onProblem('port', `The board is gone: ${reason} The simulation continues.`));
     };
     link.onRange = (isInRange) => void this.handleRange(link, isInRange);
-    await this.attach(link);
+    await this.attach(() => link);
+    const { dialogue } = this;
     this.listener.onProblem('port', null);
     // Opening a USB port resets the board. The boot loader would receive bytes that are sent before the banner.
     const isRadio = link.kind === 'radio';
     const hasSentBanner = !isRadio && (await this.waitForBanner());
-    for (let n = 0; !hasSentBanner && this.banner === undefined && n < MAX_PROBE_COUNTS[link.kind]; n++) {
-      if (this.link === link && (await this.answersStatus())) this.state.banner.value = 'unknown';
+    for (let n = 0; !hasSentBanner && !dialogue.isClosed && this.banner === undefined && n < MAX_PROBE_COUNTS[link.kind]; n++) {
+      if (await this.answersStatus()) this.state.banner.value = 'unknown';
     }
-    if (this.link !== link) return false;
+    // The board is gone, or its boot loader already uses the line.
+    if (dialogue.isClosed) return false;
     if (this.banner) await this.watch();
     else if (isRadio) this.reportUnknownBoard(`The module is connected, but no robot answers from the ${link.name}. Check that the module's TXD is on D0, and that the robot is switched on.`);
     else await this.identify(link);
-    return this.link === link;
+    return this.link === link && !this.dialogue.isClosed;
   }
 
   /** Reports a board on which this firmware does not answer. */
@@ -346,7 +350,8 @@ export class Session {
     } catch (error) {
       message = `The board does not answer like this firmware: ${getMessage(error)}.`;
     }
-    if (this.link === link) this.reportUnknownBoard(message);
+    // A write may have begun first, and a started program of this firmware may already have sent its banner.
+    if (this.link === link && !this.dialogue.isClosed && this.banner === undefined) this.reportUnknownBoard(message);
   }
 
   /** Requests reports of the board's poses. */
@@ -368,7 +373,7 @@ export class Session {
 
   /** True if a real board is walking. */
   get isBoardWalking(): boolean {
-    return this.isReal && this.startsWalking(this.gait);
+    return this.isBoardReal && this.startsWalking(this.gait);
   }
 
   /** True while a routine runs, also a real board's routine that the page's robot does not have. */
@@ -405,15 +410,18 @@ export class Session {
    * is connected.
    */
   async stop(): Promise<boolean> {
-    if (!this.isReal || !this.banner) return true;
+    if (!this.isBoardReal || !this.banner) return true;
     const { link, dialogue } = this;
     const answer = dialogue.ask(WORDS.stop).catch(() => null);
     return Promise.race([answer, link.wait(STOP_TIMEOUT_MS)]).then(Boolean);
   }
 
-  private async attach(link: Link): Promise<void> {
+  /** Closes the current link, and then attaches the link that `makeLink` returns. */
+  private async attach(makeLink: () => Link): Promise<void> {
     this.dialogue?.close();
     await this.link?.close();
+    // The robot may have changed while the link was closing.
+    const link = makeLink();
     batch(() => {
       this.state.link.value = link;
       this.state.banner.value = undefined;
@@ -446,7 +454,7 @@ export class Session {
 
   private handleLine(line: string): void {
     const angles = parsePoseReport(line);
-    if (angles && this.isReal) return this.handlePose(angles);
+    if (angles && this.isBoardReal) return this.handlePose(angles);
     this.listener.onReceived(line);
     const word = /^ok (.+)$/.exec(line)?.[1] ?? '';
     const { stop, rest, center, pose, speed } = WORDS;
@@ -464,10 +472,11 @@ export class Session {
   private handleBanner(line: string): void {
     const { dialogue } = this;
     const bannerNumber = ++this.state.bannerCount.value;
+    // First, because `setGait` would send the robot's own `deadman`.
+    this.deadman.reset();
     this.setGait('stand');
     this.setPace(FULL_PACE);
     this.isWatching = false;
-    this.deadman.reset();
     this.listener.onProblem('board', null);
     this.state.banner.value = parseBanner(line) ?? 'unknown';
     this.resolveBanner();
@@ -477,7 +486,7 @@ export class Session {
       // The board may have restarted meanwhile, or the boot loader may be using the line.
       if (this.state.bannerCount.value !== bannerNumber || dialogue.isClosed) return;
       this.mayAsk = true;
-      if (this.isReal && !this.isWatching) void this.watch();
+      if (this.isBoardReal && !this.isWatching) void this.watch();
     });
   }
 
@@ -495,14 +504,17 @@ export class Session {
 
   /** Sends a line and returns its answer, or null after an error; the error is shown unless the line is quiet. */
   async ask(line: string, isQuiet = false, timeoutMs?: number): Promise<Answer | null> {
+    // The link is null before the first robot is loaded.
+    if (this.link === null) return null;
     if (!isQuiet) this.mayAsk = true;
     const { deadman } = this;
     const command = line.trim().toLowerCase();
     if (command === WORDS.stop) this.stopCount += 1;
-    const isDrive = this.isReal && this.startsWalking(command);
+    const isDrive = this.isBoardReal && this.startsWalking(command);
     if (isDrive) this.pendingDriveCount += 1;
     try {
       if (isDrive) {
+        if (document.hidden) throw new Error(`"${line}" was not sent, because the page is hidden`);
         const { stopCount } = this;
         const isConfirmed = await deadman.engage();
         // A `stop` was sent meanwhile.
@@ -551,7 +563,7 @@ export class Session {
     if (status.pace !== null) this.setPace(status.pace);
     // A fault lasts until the robot moves again, but is reported only once.
     if (status.fault !== this.state.status.value?.fault) {
-      this.listener.onProblem('fault', status.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself, because it received no line for too long.' : null);
+      this.listener.onProblem('fault', status.fault === LINK_FAULT && this.isBoardReal ? 'The robot has stopped by itself, because it received no line for too long.' : null);
     }
     const gait = status.gait.replaceAll('-', ' ');
     // The robot reports `center` as a pose, and the rest of a routine as `rest`.
@@ -590,6 +602,7 @@ export class Session {
   private async withBootLoader<T>(link: Link, action: (board: Awaited<ReturnType<typeof loadBoardModule>>, line: BootLoaderLine) => Promise<T>): Promise<T> {
     const board = await loadBoardModule();
     if (this.link !== link) throw new Error(GONE_MESSAGE);
+    if (this.dialogue.isClosed) throw new Error('the page is already talking to the boot loader; try again in a few seconds');
     this.dialogue.close();
     const line = new BootLoaderLine(link);
     try {
@@ -610,10 +623,11 @@ export class Session {
    * null. Returns the problem as the end of a sentence; null if there is none.
    */
   async checkWrittenBoard(hash: string | null): Promise<string | null> {
-    const { link } = this;
+    const { link, dialogue } = this;
     // The banner may have arrived right after the boot loader's last answer.
     const hasSentBanner = this.banner !== undefined || (await this.waitForBanner());
-    if (this.link !== link) return null;
+    // The board is gone, or another write has begun.
+    if (this.link !== link || dialogue.isClosed) return null;
     if (!hasSentBanner) {
       this.reportUnknownBoard(`The ${link.name} sends no banner: the written program is not this firmware.`);
       return 'the board sends no banner of this firmware';

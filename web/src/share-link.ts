@@ -3,6 +3,7 @@
 /** Largest accepted size of a robot.toml, bytes; a typical robot.toml is a few thousand bytes long. */
 const MAX_BYTES = 200_000;
 
+/** Compresses or decompresses; throws a RangeError with a message for the user if one side exceeds `MAX_BYTES`. */
 async function pipeThrough(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {
   const output = new Blob([bytes]).stream().pipeThrough(stream);
   const reader = output.getReader();
@@ -10,7 +11,7 @@ async function pipeThrough(bytes: Uint8Array<ArrayBuffer>, stream: CompressionSt
   let length = 0;
   for (let chunk = await reader.read(); !chunk.done; chunk = await reader.read()) {
     length += chunk.value.length;
-    if (length > MAX_BYTES) throw new Error(`the robot in this address exceeds ${MAX_BYTES} bytes`);
+    if (Math.max(bytes.length, length) > MAX_BYTES) throw new RangeError(`A robot.toml of more than ${MAX_BYTES / 1000} kB does not fit into a link.`);
     chunks.push(chunk.value);
   }
   return new Uint8Array(await new Blob(chunks).arrayBuffer());
@@ -41,11 +42,14 @@ export async function makeLink(toml: string): Promise<string> {
 
 /** Decompresses the parameter `robot` of an address to a robot.toml. Throws an error with a message for the user. */
 export async function unpack(encoded: string): Promise<string> {
+  // Fails in a browser that cannot decompress.
+  const stream = new DecompressionStream('deflate-raw');
   try {
     const base64 = atob(encoded.replaceAll('-', '+').replaceAll('_', '/'));
     const bytes = Uint8Array.from(base64, (character) => character.charCodeAt(0));
-    return new TextDecoder('utf-8', { fatal: true }).decode(await pipeThrough(bytes, new DecompressionStream('deflate-raw')));
-  } catch {
+    return new TextDecoder('utf-8', { fatal: true }).decode(await pipeThrough(bytes, stream));
+  } catch (error) {
+    if (error instanceof RangeError) throw error;
     throw new Error('The robot in the address is incomplete; was the whole link copied?');
   }
 }

@@ -66,6 +66,21 @@ testPage('a robot whose link is cut stops, and the page reconnects by itself', (
   await radio.runUntil('the robot walks again', async () => (await readGait(page)) === 'walk');
 });
 
+testPage('after a failed attempt to reconnect, each byte is received once', () => openWalking(HM10), async (page) => {
+  await radio.takeOutOfRange();
+  await radio.run(1000);
+  await page.evaluate(() => {
+    const { prototype } = BluetoothRemoteGATTCharacteristic;
+    const { startNotifications } = prototype;
+    prototype.startNotifications = async () => {
+      prototype.startNotifications = startNotifications;
+      throw new Error('GATT operation failed');
+    };
+  });
+  await radio.bringIntoRange();
+  await radio.runUntil('the robot is stopped', async () => (await readGait(page)) === 'stop');
+});
+
 testPage('a trim that was set out of range returns to the robot\'s value when the robot answers again', () => openPicked(HM10), async (page) => {
   await radio.runUntil('the robot stands', async () => (await readGait(page)) === 'stand');
   await unfold(page, '#calibrate');

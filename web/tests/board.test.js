@@ -66,7 +66,7 @@ testPage('choosing another robot keeps the board connected', openWalking, async 
   await chooseRobot(page, 'robot');
   assert.match(await readText(page, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
   await page.clock.runFor(500);
-  assert.ok(await page.evaluate(() => window.lizard.isReal && window.lizard.last.place.y > 1), 'the robot is tracked');
+  assert.ok(await page.evaluate(() => window.lizard.isBoardReal && window.lizard.last.place.y > 1), 'the robot is tracked');
 });
 
 testPage('the page reports a board with another robot, and one press shows that robot', () => openWithBoard('large'), async (page) => {
@@ -77,7 +77,7 @@ testPage('the page reports a board with another robot, and one press shows that 
   await page.waitForFunction(() => window.lizard.file === 'large' && window.lizard.hasThisRobot);
   assert.match(await readText(page, '#where'), /^on a board on USB, robot large [0-9a-f]{8}$/);
   await page.locator('#problems', { hasText: 'another robot' }).waitFor({ state: 'detached' });
-  assert.equal(await page.evaluate(() => window.lizard.isReal), true);
+  assert.equal(await page.evaluate(() => window.lizard.isBoardReal), true);
   // From here on, no file of the page has this robot.
   await page.evaluate(() => window.lizard.change(window.lizard.toml.replace('name = "large"', 'name = "longer"').replace('period = 1.25', 'period = 1.3')).then(() => null));
   await page.locator('#problems', { hasText: 'but the page draws and predicts large.toml with your changes' }).waitFor();
@@ -95,7 +95,7 @@ testPage('the alarm for a board that is out of range ends when the board is gone
     link.onRange(false);
     link.onGone('The test has taken it away.');
   });
-  await page.waitForFunction(() => !window.lizard.isReal);
+  await page.waitForFunction(() => !window.lizard.isBoardReal);
   assert.equal(await page.locator('#alarm').isHidden(), true);
 });
 
@@ -120,6 +120,31 @@ testPage('a press of the button while the port is closing has no effect', openWa
   await waitForText(page, '#where', /simulated UNO/);
   await page.clock.runFor(500);
   assert.equal(await page.locator('#problems').isVisible(), false);
+});
+
+testPage('the simulated UNO has the robot that was changed while the port was closing', openWalking, async (page) => {
+  await page.evaluate(async () => {
+    const port = await navigator.serial.requestPort();
+    const { close } = port;
+    port.close = async () => {
+      const { lizard } = window;
+      await lizard.change(lizard.toml.replace('name = "paper"', 'name = "mine"'));
+      await close();
+    };
+  });
+  await page.locator('#connect').click();
+  await waitForText(page, '#where', /^on a simulated UNO/);
+  assert.match(await readText(page, '#where'), /^on a simulated UNO, robot mine /);
+});
+
+testPage('a trim that is set while the settings are read stays on the screen', openWithBoard, async (page) => {
+  await unfold(page, '#calibrate');
+  const trim = page.locator('#calibration fieldset').first().getByLabel('trim');
+  await runUntil(page, 'the trim is read', () => trim.isVisible());
+  await page.locator('#cal-read').click();
+  await trim.fill('0.5');
+  await page.clock.runFor(3000);
+  assert.equal(await trim.inputValue(), '0.5');
 });
 
 testPage('the page reports a board that does not confirm the stop', openWalking, async (page) => {

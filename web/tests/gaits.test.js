@@ -85,13 +85,14 @@ testPage('a value that violates a limit is refused, and a button offers the near
   await button.waitFor();
 });
 
-testPage('a number out of range is marked and ignored, and the box restores its value when it loses the focus', openEditor, async (page) => {
+testPage('a number out of range, or none, is marked and ignored, and the box restores its value when it loses the focus', openEditor, async (page) => {
   const table = await readEditorText(page, 'table');
   for (const [input, wrongValue, validValue] of [
-    [page.locator('#gait-amplitude'), '61', '20'],
+    [page.locator('#gait-amplitude'), '91', '20'],
+    [page.locator('#gait-amplitude'), '', '20'],
     [page.locator('#gait-period'), '0.05', '1'],
     [page.getByLabel('LF starts at'), '1.5', '0.25'],
-    [page.getByLabel('RH gain'), '-3', '1'],
+    [page.getByLabel('RH gain'), '-5', '1'],
   ]) {
     await input.fill(wrongValue);
     assert.equal(await input.getAttribute('aria-invalid'), 'true', wrongValue);

@@ -96,6 +96,12 @@ testPage('a tap does not count as a line, and the message says so', openPanel, a
   assert.equal(await readPanelText(page, 'table'), previousTable);
 });
 
+testPage('without a line there are no results, and nothing can be tried, written or copied', openPanel, async (page) => {
+  await page.locator('#gesture-shape').selectOption('own');
+  assert.deepEqual([await readPanelText(page, 'table'), await readPanelText(page, 'margin')], ['', '–']);
+  for (const id of ['try', 'write', 'copy']) assert.ok(await page.locator(`#gesture-${id}`).isDisabled(), id);
+});
+
 testPage('a finger draws on a phone, and the page does not scroll meanwhile', () => openPanel(PHONE), async (page) => {
   assert.equal(await page.locator('#gesture-plane').evaluate((plane) => getComputedStyle(plane).touchAction), 'none');
   await drawCircle(page, 6);

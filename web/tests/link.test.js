@@ -237,6 +237,56 @@ testPage('a gait that waits for the confirmation of deadman does not start on a 
   assert.equal(await readGait(page), 'stop');
 });
 
+testPage('no gait starts on a hidden page', openWithBoard, async (page) => {
+  await hidePage(page);
+  await page.evaluate(() => void window.lizard.drive('walk'));
+  await page.clock.runFor(3000);
+  assert.doesNotMatch(await readReceivedText(page), /^walk$/m);
+  assert.match(await readText(page, '#problems'), /"walk" was not sent, because the page is hidden\./);
+});
+
+/** Resets the board as a power failure does: the boot loader starts the program at once. */
+const cutSupply = (page) => page.evaluate(() => window.attachedBoard.reset('power'));
+
+testPage('a gait that waits for an answer does not start after a restart of the robot', openWalking, async (page) => {
+  await dropLines(page, ['trim']);
+  await page.evaluate(() => void window.lizard.ask('trim 1 1'));
+  await findGaitButton(page, 'left').click();
+  await cutSupply(page);
+  await page.clock.runFor(3500);
+  assert.doesNotMatch(await readReceivedText(page), /^left$/m);
+  assert.equal(await readGait(page), 'stand');
+});
+
+testPage('after a restart of a walking robot, the page sends no line that would cancel its boot action', openWalking, async (page) => {
+  await cutSupply(page);
+  await page.clock.runFor(3500);
+  assert.equal(await readGait(page), 'stand');
+  assert.doesNotMatch(await readReceivedText(page), /^deadman 0$/m);
+});
+
+testPage('a gait that waits for the confirmation of deadman does not start after a restart of the robot', openWithBoard, async (page) => {
+  await dropLines(page, ['cal']);
+  await findGaitButton(page, 'walk').click();
+  await cutSupply(page);
+  await page.clock.runFor(4500);
+  assert.doesNotMatch(await readReceivedText(page), /^walk$/m);
+  assert.equal(await readGait(page), 'stand');
+});
+
+testPage('after a lost confirmation of deadman, the next press of a gait starts it', openWithBoard, async (page) => {
+  // Another sender has started the robot.
+  await page.evaluate(() => window.attachedBoard.send([...'walk\n'].map((letter) => letter.charCodeAt(0))));
+  await waitForText(page, '#doing', /^walk$/);
+  await dropLines(page, ['deadman']);
+  await findGaitButton(page, 'left').click();
+  await waitForText(page, '#problems', /"left" was not sent, because the robot did not confirm its deadman setting/);
+  await restoreLink(page);
+  await findGaitButton(page, 'left').click();
+  await page.clock.runFor(5000);
+  assert.equal(await readText(page, '#doing'), 'left');
+});
+
 testPage('a hidden page stops sending the lines that keep a robot walking', openWalking, async (page) => {
   await dropLines(page, ['stop']);
   await hidePage(page);

@@ -6,7 +6,7 @@ import { dirname, join } from 'node:path';
 import { afterEach, before, test } from 'node:test';
 
 import { connect } from './board.js';
-import { address, openBlankPage, closeBrowser, browserErrors, openBrowserWithCamera, openPage, closePages, download, testPage, readGait, waitForGait } from './browser.js';
+import { address, openBlankPage, closeBrowser, browserErrors, hidePage, openBrowserWithCamera, openPage, closePages, download, testPage, readGait, waitForGait } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 import { makeFolder } from './temporary-folder.js';
 
@@ -188,11 +188,51 @@ testPage('Stop, or leaving the room, ends the measurement and stops the robot, a
   assert.equal(await page.evaluate(() => document.querySelector('#measure-view video').srcObject), null);
 });
 
+testPage('a stop or a hidden page before the first walk ends the measurement', () => openRoomWithVideo(walkFolder), async (page) => {
+  await page.locator('#measure-driver').selectOption('page');
+  await typeNumber(page, 'pause', 30);
+  await switchCameraOn(page);
+  // The robot is stopped while the previous video is still being cleared.
+  await page.evaluate(() => {
+    document.querySelector('#measure-start').click();
+    void window.lizard.ask('stop');
+  });
+  await waitForMessage(page, 'message', 'it was stopped');
+  await page.getByRole('button', { name: 'Drive and measure' }).click();
+  await hidePage(page);
+  await waitForMessage(page, 'message', 'the page was hidden');
+});
+
+testPage('nothing is recorded if the camera is switched off before the recording begins', () => openRoomWithVideo(walkFolder), async (page) => {
+  await switchCameraOn(page);
+  // The previous video is still being cleared.
+  await page.evaluate(() => {
+    document.querySelector('#measure-start').click();
+    document.querySelector('#measure-camera').click();
+  });
+  await page.waitForTimeout(1000);
+  assert.equal(await page.locator('#measure-start').innerText(), 'Record');
+  assert.ok(await page.locator('#measure-driver').isEnabled());
+});
+
+testPage('leaving the room before the camera is open leaves it off', () => openRoomWithVideo(walkFolder), async (page) => {
+  let release;
+  const gate = new Promise((resolve) => (release = resolve));
+  await page.route('**/files/measure.wasm', (route) => gate.then(() => route.continue()));
+  await page.getByRole('button', { name: 'Camera' }).click();
+  await page.locator('nav a', { hasText: 'Drive' }).click();
+  const loading = page.waitForResponse('**/files/measure.wasm');
+  release();
+  await loading;
+  await page.waitForTimeout(1000);
+  assert.equal(await page.evaluate(() => document.querySelector('#measure-view video').srcObject), null);
+});
+
 testPage('after the link is cut, the board is no longer driven, the room reports the cut, and the recorded cycles are measured', () => openRoomWithVideo(walkFolder), async (page) => {
   await page.evaluate(installFakeSerial);
   // For a robot with a Bluetooth module, the page does not open the dialog of the first connection.
   await connect(page, { flashedRobot: 'paper', boardKeepsRunning: true, bluetoothService: '00001101-0000-1000-8000-00805f9b34fb' });
-  await page.waitForFunction(() => window.lizard.isReal && window.lizard.gait === 'stand' && window.lizard.mayAsk);
+  await page.waitForFunction(() => window.lizard.isBoardReal && window.lizard.gait === 'stand' && window.lizard.mayAsk);
   // At the start of the video the robot is near the end of the sheet, and the page would first drive it back.
   await startDriving(page, ['walk', 'left'], 8, 2500);
   await waitForMessage(page, 'message', '1 of 2: walk');

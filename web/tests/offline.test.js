@@ -34,6 +34,7 @@ async function makeNewer(copyFolder) {
 test('the page works without a server, with any of its robots, once it was opened', async () => {
   const { server } = await serveCopy();
   const page = await openStored(server);
+  const licenceAddress = `${address(server)}licence-mit.txt`;
   await stopServer(server);
   await reload(page);
   await chooseRobot(page, 'large');
@@ -41,6 +42,8 @@ test('the page works without a server, with any of its robots, once it was opene
   await clickAndAdvance(page, '#gaits button[data-command="walk"]', 3000);
   assert.ok((await page.evaluate(() => window.lizard.last.place.y)) > 20);
   assert.equal(await page.locator('#problems').isVisible(), false);
+  await page.goto(licenceAddress);
+  assert.match(await page.locator('body').innerText(), /^MIT License/);
 });
 
 test('a newer page replaces all files of the older page, but only on request', async () => {

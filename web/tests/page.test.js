@@ -27,6 +27,18 @@ testPage('the log shows the banner of the image', openStanding, async (page) => 
   assert.match(await readText(page, '#where'), /simulated UNO/);
 });
 
+testPage('the console shows the latest lines when it is opened', openStanding, async (page) => {
+  await page.evaluate(() => {
+    for (let n = 0; n < 16; n++) void window.lizard.ask('speed 100');
+  });
+  await advance(page, 2000);
+  await unfold(page, '#console');
+  await page.waitForFunction(() => {
+    const { scrollHeight, scrollTop, clientHeight } = document.querySelector('#log');
+    return scrollHeight > 2 * clientHeight && scrollHeight - scrollTop - clientHeight < 2;
+  });
+});
+
 testPage('walk moves the body as predicted', openStanding, async (page) => {
   const { predicted, measured } = await runGait(page, 'walk');
   assertNear(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');

@@ -28,11 +28,25 @@ testPage('the message about an unreadable robot file stays while the previous ro
   dropBrowserErrors(/404/);
 });
 
+testPage('the robot in use keeps its name if a second choice fails while the first is still loading', openStanding, async (page) => {
+  await page.route('**/files/large.toml', () => {});
+  await page.route('**/files/paper.toml', (route) => route.fulfill({ status: 404 }));
+  await page.locator('#robot').selectOption('large');
+  await page.locator('#robot').selectOption('paper');
+  await findProblems(page).getByText('files/paper.toml is missing (status 404)').waitFor();
+  assert.equal(await page.evaluate(() => window.lizard.file), 'robot');
+  // The browser also reports the missing file, as expected.
+  dropBrowserErrors(/404/);
+});
+
 testPage('the page reports an unreadable first robot and accepts another robot', openBlankPage, async (page) => {
   await page.route('**/files/robot.toml', (route) => route.fulfill({ status: 404 }));
   await page.goto(address());
   await findProblems(page).getByText('files/robot.toml is missing (status 404)').waitFor();
   assert.equal(await readText(page, '#where'), 'No robot is loaded.');
+  for (const control of ['#connect', '#reset']) assert.ok(await page.locator(control).isDisabled(), control);
+  await page.keyboard.press('Escape');
+  assert.doesNotMatch(await readText(page, '#problems'), /Cannot read/);
   await chooseRobot(page, 'paper');
   await advance(page, 2500);
   assert.match(await readText(page, '#where'), /^on a simulated UNO, robot paper [0-9a-f]{8}$/);
@@ -52,6 +66,22 @@ testPage('a failure of the simulation is reported, and another robot then walks'
   await sendLine(page, 'walk', 'ok walk');
   // The page also writes the error to the console, as expected.
   dropBrowserErrors(/unknown instruction/);
+});
+
+testPage('an error while drawing is reported once, and the simulation continues', openStanding, async (page) => {
+  await page.evaluate(() => {
+    CanvasRenderingContext2D.prototype.setTransform = () => {
+      throw new Error('no memory');
+    };
+    void window.lizard.ask('walk');
+  });
+  await findProblems(page).getByText('The page cannot draw everything (no memory)').waitFor();
+  await page.getByRole('button', { name: 'Dismiss' }).click();
+  const clock = await page.evaluate(() => window.lizard.clock);
+  await page.waitForFunction((clock) => window.lizard.clock > clock + 0.5, clock);
+  assert.equal(await findProblems(page).isVisible(), false);
+  // The page also writes the error to the console, as expected.
+  dropBrowserErrors(/no memory/);
 });
 
 testPage('the page reports once that its predictions cannot be computed', openStanding, async (page) => {

@@ -1,7 +1,7 @@
 // A run is recorded, replayed and saved, and two robots walk on one floor.
 import assert from 'node:assert/strict';
 
-import { advance, openUnfolded, sendLine, useBrowser, chooseRobot, download, testPage, waitForGait } from './browser.js';
+import { advance, openUnfolded, readGait, sendLine, useBrowser, chooseRobot, download, testPage, waitForGait } from './browser.js';
 
 useBrowser();
 
@@ -118,4 +118,14 @@ testPage('a robot that is changed while two robots are started stays alone', ope
   await advance(page, 500);
   assert.ok(await findButton(page, 'Remove the second robot').isDisabled());
   assert.equal(await page.locator('#keep-message').innerText(), '');
+});
+
+testPage('a stop that is pressed while two robots are started keeps both still', openRecordPanel, async (page) => {
+  await page.evaluate(() => {
+    document.querySelector('#both').click();
+    document.querySelector('.stop').click();
+  });
+  await advance(page, 1000);
+  assert.equal(await readGait(page), 'stop');
+  assert.ok(await findButton(page, 'Remove the second robot').isDisabled());
 });

@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFile, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
+import { deflateRawSync } from 'node:zlib';
 
 import jsQR from 'jsqr';
 import { parse } from 'smol-toml';
@@ -146,6 +147,9 @@ testPage('a link contains the robot, survives a reload, and equals the text of t
   // An incomplete link is refused with a message.
   await otherPage.goto(link.slice(0, -200));
   await otherPage.getByText('The robot in the address is incomplete').waitFor();
+  const tooLongRobot = deflateRawSync(Buffer.alloc(200_001, '#')).toString('base64url');
+  await otherPage.goto(`${address()}#robot=${tooLongRobot}`);
+  await otherPage.getByText('A robot.toml of more than 200 kB does not fit into a link.').waitFor();
 
   const qrButton = page.getByRole('button', { name: 'QR code' });
   await qrButton.click();
@@ -159,6 +163,21 @@ testPage('a link contains the robot, survives a reload, and equals the text of t
   await page.getByRole('img', { name: 'QR code' }).waitFor();
   await applyText(page, largeToml.replace('name = "large"', 'name = "other"'));
   await page.waitForFunction(() => document.querySelector('#robot-drawn svg') === null);
+});
+
+testPage('a QR code that is still being made is not shown for the next robot', openTextEditor, async (page) => {
+  let release;
+  const gate = new Promise((resolve) => (release = resolve));
+  await page.route('**/assets/qr-code-*', (route) => gate.then(() => route.continue()));
+  await page.getByRole('button', { name: 'QR code' }).click();
+  const changedToml = (await readToml(page)).replace('amplitude = 15.0', 'amplitude = 14.0');
+  await applyText(page, changedToml);
+  await waitForRobot(page, changedToml);
+  const loading = page.waitForResponse('**/assets/qr-code-*');
+  release();
+  await loading;
+  await page.waitForTimeout(1000);
+  assert.equal(await page.locator('#robot-drawn svg').count(), 0);
 });
 
 testPage('a link contains everything except comments', openTextEditor, async (page) => {
@@ -183,6 +202,13 @@ testPage('after every change the address contains the shown robot', openTextEdit
   await otherPage.evaluate(() => localStorage.clear());
   await otherPage.goto(await page.evaluate(() => location.href));
   await waitForRobot(otherPage, changedToml);
+  // A robot that is too long for an address is not in it.
+  const longToml = `${firstToml}# ${'-'.repeat(200_000)}\n`;
+  await applyText(page, longToml);
+  await waitForRobot(page, longToml);
+  await page.waitForFunction(() => location.hash === '#room=build');
+  await page.locator('#robot-undo').click();
+  await page.waitForFunction(() => location.hash.startsWith('#room=build&robot='));
   await page.locator('#robot-undo').click();
   await page.waitForFunction(() => location.hash === '#room=build');
   await page.locator('#robot').selectOption('large');
@@ -279,4 +305,38 @@ testPage('the list has the names of the user\'s own robots, and restores each un
   await list.selectOption({ label: 'bert' });
   await waitForRobot(page, makeToml('bert'));
   assert.deepEqual(await readNames(), ['anna']);
+});
+
+testPage('a robot put aside stays stored when another page stores one, or when another robot is chosen before its file is loaded', openTextEditor, async (page) => {
+  const ownToml = (await readToml(page)).replace('amplitude = 15.0', 'amplitude = 14.0');
+  await applyText(page, ownToml);
+  await waitForRobot(page, ownToml);
+  await chooseRobot(page, 'large');
+  // Another page puts its robot aside.
+  await page.evaluate(() => {
+    const key = `lizard ${location.pathname} aside`;
+    const [own] = JSON.parse(localStorage.getItem(key));
+    const other = { ...own, toml: own.toml.replace('amplitude = 14.0', 'amplitude = 13.0') };
+    localStorage.setItem(key, JSON.stringify([other, own]));
+  });
+  await page.locator('#problems').getByRole('button', { name: 'Back to my own robot' }).click();
+  await waitForRobot(page, ownToml);
+  await chooseRobot(page, 'large');
+  const readNames = () => page.locator('#robot optgroup[label="your own"] option').allInnerTexts();
+  assert.deepEqual(await readNames(), ['paper', 'paper'], 'the robot of the other page is still stored');
+  let release;
+  const gate = new Promise((resolve) => (release = resolve));
+  await page.route('**/files/unequal.toml', (route) => gate.then(() => route.continue()));
+  await page.evaluate(() => {
+    const list = document.querySelector('#robot');
+    list.querySelector('optgroup option').selected = true;
+    list.dispatchEvent(new Event('change'));
+    list.value = 'unequal';
+    list.dispatchEvent(new Event('change'));
+  });
+  // Meanwhile the file of the first chosen robot is loaded.
+  await page.waitForTimeout(500);
+  release();
+  await page.waitForFunction(() => window.lizard.file === 'unequal');
+  assert.deepEqual(await readNames(), ['paper', 'paper']);
 });

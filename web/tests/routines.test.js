@@ -384,3 +384,9 @@ test('two pages in one browser each keep their own routine', async () => {
     assert.deepEqual(await readSteps(page), expected);
   }
 });
+
+testPage('a routine that was only typed into robot.toml is part of the robot when it is started', () => openRoutine(null), async (page) => {
+  await page.locator('#robot-text').fill(`${await readToml(page)}\n[routine.patrol]\nsteps = ["walk 1"]\n`);
+  await press(page, 'Start it');
+  await page.waitForFunction(() => window.lizard.toml.includes('[routine.patrol]'));
+});

@@ -94,6 +94,18 @@ testPage('lengths that are still being tried do not replace a robot that is load
   assert.equal(await readToml(page), newToml);
 });
 
+testPage('a length that is still being tried changes the robot even if another length is chosen meanwhile', openSketch, async (page) => {
+  const mm = await page.evaluate(() => {
+    const slider = document.querySelector('#length-slide');
+    slider.valueAsNumber -= 1;
+    const { valueAsNumber } = slider;
+    for (const type of ['input', 'change']) slider.dispatchEvent(new Event(type));
+    document.querySelector('#lengths input[name="links.l2"]').focus();
+    return valueAsNumber;
+  });
+  await waitForLength(page, 'leg.crank', mm);
+});
+
 testPage('a pressed bar selects its number', openSketch, async (page) => {
   await page.locator('#sketch line[data-key="links.l2"]').click({ force: true });
   assert.equal(await page.evaluate(() => document.activeElement.name), 'links.l2');

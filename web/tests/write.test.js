@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { openWithBoard, openWithErasedBoard, readFlash, runUntil, reconnect, waitForText } from './board.js';
+import { openWithBoard, openWithDeafBoard, openWithErasedBoard, readFlash, runUntil, reconnect, waitForText } from './board.js';
 import { openUnfolded, openPage, readText, unfold, useBrowser, chooseRobot, testPage, readPlace, findGaitButton } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 import { makeImage, SECTION_START } from './flash-image.js';
@@ -68,6 +68,36 @@ testPage('a banner that arrives together with the boot loader\'s last answer is 
   assert.match(await readText(page, '#flash-message'), /^written and verified in [\d.]+ s$/);
 });
 
+testPage('a board is written although the page has not identified it yet', () => openWithBoard(null, 500), async (page) => {
+  await page.locator('#flash-write').click();
+  // The page's clock stands still until the boot loader uses the line.
+  await page.waitForFunction(() => window.lizard.dialogue.isClosed);
+  await waitForMessage(page, /^(not )?written/);
+  assert.match(await readText(page, '#flash-message'), /^written and verified in [\d.]+ s$/);
+  await waitForText(page, '#where', /^on a board on USB, robot paper [0-9a-f]{8}$/);
+  assert.equal(await page.locator('#problems').isVisible(), false);
+});
+
+testPage('no write begins while the page identifies a board', openWithDeafBoard, async (page) => {
+  await runUntil(page, 'the page calls the boot loader', () => page.evaluate(() => window.lizard.dialogue.isClosed));
+  await pressAndWait(page, '#flash-write', /^not written/);
+  assert.match(await readText(page, '#flash-message'), /^not written: the page is already talking to the boot loader/);
+  await waitForText(page, '#problems', /no boot loader answers/);
+});
+
+testPage('a foreign program that is replaced at once is not reported', openWithBoard, async (page) => {
+  await unfold(page, '#flash');
+  // A program that loops forever: rjmp .-2.
+  const loopHex = ':02000000FFCF30\n:00000001FF\n';
+  await page.getByLabel('HEX file').setInputFiles({ name: 'blink.hex', mimeType: 'text/plain', buffer: Buffer.from(loopHex) });
+  await page.locator('#flash-yes').click();
+  await waitForMessage(page, /^written and verified/);
+  await pressAndWait(page, '#flash-write', /^reading/);
+  await waitForMessage(page, /^written and verified/);
+  await page.clock.runFor(3000);
+  assert.match(await readText(page, '#flash-message'), /^written and verified in [\d.]+ s$/);
+});
+
 testPage('a board walks with an edited gait after it was written', openWithBoard, async (page) => {
   await unfold(page, '#gait-editor');
   await page.waitForFunction(() => /mm$/.test(document.querySelector('#gait-distance').textContent));
@@ -95,7 +125,7 @@ testPage('one button writes an edited text to the board', openWithBoard, async (
 
 testPage('without a board, Write it to the board asks for a connection', () => openUnfolded('#robot-editor'), async (page) => {
   await page.locator('#robot-write').click();
-  await page.locator('#robot-message', { hasText: 'No board is connected: press Connect a board…' }).waitFor();
+  await page.locator('#robot-message', { hasText: 'No board is connected. Press “Connect a board…”' }).waitFor();
 });
 
 testPage('a robot whose format the firmware does not read is refused, and the firmware keeps running', () => openWithBoard('large'), async (page) => {
@@ -166,7 +196,7 @@ testPage('a robot alone is refused for a board without this firmware', openWithE
 test('an older Nano, whose boot loader has another baud rate, is found, written and started', async () => {
   const page = await openWithBoard(null, 0, { loaderBaud: 57_600, usbVendor: 0x1a86 });
   await runUntil(page, 'the board is identified', async () => (await readText(page, '#problems')).startsWith('The board is an Arduino Nano, an ATmega328P according to its boot loader'));
-  await pressAndWait(page, '#flash-write', /^no answer; calling the board again/);
+  await pressAndWait(page, '#flash-write', /^no answer; calling the boot loader again/);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
   await assertFlash(page, 0, Buffer.from(await makeImage('robot')));
   await waitForText(page, '#where', /^on a board on USB, robot paper [0-9a-f]{8}$/);

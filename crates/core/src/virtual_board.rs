@@ -100,7 +100,7 @@ pub struct VirtualBoard {
     ms_since_fed: u16,
     /// True once the watchdog has ended the pulses.
     are_pulses_ended: bool,
-    /// The pins of the servos and of the rail, once the main loop has connected them.
+    /// The pins of the servos and the pin that measures their supply, once the main loop has connected them.
     connected_pins: Option<([u8; 4], Option<u8>)>,
 }
 
@@ -244,7 +244,7 @@ impl VirtualBoard {
 
     /// Switches the power off and on. A byte that is being written to the memory gets the value `torn_byte`, because it
     /// may have any value after a power cut; with `None`, the write is completed.
-    pub fn lose_power(&mut self, torn_byte: Option<u8>) {
+    pub fn cycle_power(&mut self, torn_byte: Option<u8>) {
         if let Some(byte) = torn_byte {
             self.memory.cut_power(byte);
         }
@@ -267,8 +267,8 @@ impl VirtualBoard {
         self.received_bytes.len()
     }
 
-    /// Counts this many bytes as lost.
-    pub const fn count_lost_bytes(&mut self, byte_count: u16) {
+    /// Adds this many bytes to the lost bytes.
+    pub const fn add_lost_bytes(&mut self, byte_count: u16) {
         self.lost_bytes = self.lost_bytes.saturating_add(byte_count);
     }
 

@@ -1,9 +1,9 @@
 //! The fit of all keys, and the choice of the keys to change.
 //!
 //! First, a fit has all keys free. It provides the reported standard errors, because the file's values enter this fit
-//! only through wide priors. Then keys return to their file values one at a time, always the key with the smallest
-//! distance in standard errors, until every distance is at least two. After each return, the free keys are adjusted.
-//! Therefore, if two keys have the same effect, only one of them changes.
+//! only through wide priors. Then keys are held at their file values one at a time, always the key with the smallest
+//! distance in standard errors, until the distance of every free key is at least two. After each key, the free keys are
+//! adjusted. Therefore, if two keys have the same effect, only one of them changes.
 
 use lizard_robot::{CheckedGait, Robot, Travel};
 use nalgebra::DMatrix;
@@ -13,14 +13,14 @@ use crate::error::IdentifyError;
 use crate::key::{FRICTION_RATIO_INDEX, KEY_COUNT, KEYS, Key, PLAY_INDEX, TWIST_INDEX};
 use crate::movement::MeasuredMovement;
 use crate::outcome::{GoodnessOfFit, Identification, KeyResult, MovementResult, Verdict};
-use crate::problem::{Problem, Solution, UNKNOWN_COUNT, Unknowns, Values, split_unknowns};
+use crate::problem::{Fit, Problem, UNKNOWN_COUNT, Unknowns, Values, split_unknowns};
 
 /// Indices in [`KEYS`] of the keys with the strongest nonlinearity near the file's value.
 const NONLINEAR_KEYS: [usize; 3] = [PLAY_INDEX, TWIST_INDEX, FRICTION_RATIO_INDEX];
 /// Smallest distance from the file's value at which a key changes, standard errors.
-const MIN_DISTANCE_ERRORS: f64 = 2.0;
-/// Lower bound for the rise of the sum of squares when a key is shifted by [`MIN_DISTANCE_ERRORS`] standard errors. A
-/// smaller rise may be due to the model's roughness. The bound limits the enlargement of an error to a factor of four.
+const MIN_SIGNIFICANT_DISTANCE: f64 = 2.0;
+/// Lower bound for the rise of the sum of squares when a key is shifted by [`MIN_SIGNIFICANT_DISTANCE`]. A smaller rise
+/// may be due to the model's roughness. With this bound, a standard error is enlarged at most fourfold.
 const MIN_RISE: f64 = 0.25;
 /// Largest standard error of a determined key, as a fraction of the prior standard deviation.
 const MAX_ERROR_FRACTION: f64 = 0.5;
@@ -79,17 +79,17 @@ pub fn identify(
         })
     };
     let file_values = std::array::from_fn(|i| KEYS[i].read_value(robot.ground()));
-    solve(&movements, file_values, &predict)
+    identify_with_model(&movements, file_values, &predict)
 }
 
 /// Identifies the keys with which the model `predict` best reproduces the measured movements.
-pub(crate) fn solve(
+pub(crate) fn identify_with_model(
     movements: &[MeasuredMovement],
     file_values: Values,
     predict: &dyn Fn(&Values) -> Vec<Travel>,
 ) -> Result<Identification, IdentifyError> {
     let problem = Problem::new(movements, file_values, predict);
-    if problem.value_count() == 0 {
+    if problem.measured_value_count() == 0 {
         return Err(IdentifyError::NothingDetermined);
     }
     let card_unknowns: Vec<usize> = (KEY_COUNT..UNKNOWN_COUNT).collect();
@@ -107,8 +107,8 @@ pub(crate) fn solve(
     };
     let errors = compute_standard_errors(&problem, &full_fit).map(|error| error_factor * error);
     let (last_fit, verdicts) = choose_keys(&problem, &full_fit, &errors)?;
-    let card_only_solution = problem.fit(&card_unknowns, &problem.start);
-    let card_only_fit = card_only_solution.ok_or(IdentifyError::NoFit)?;
+    let card_only_fit = problem.fit(&card_unknowns, &problem.start);
+    let card_only_fit = card_only_fit.ok_or(IdentifyError::NoFit)?;
     let residuals = problem.compute_residuals(&last_fit.unknowns);
     let indexed_residuals = residuals.iter().enumerate();
     let largest_residual = indexed_residuals.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
@@ -135,7 +135,7 @@ pub(crate) fn solve(
         card_error: split_unknowns(&errors).1,
         correlated_pairs: find_correlated_pairs(&full_fit.covariance),
         goodness: GoodnessOfFit {
-            value_count: problem.value_count(),
+            value_count: problem.measured_value_count(),
             chi_squares: [&card_only_fit, &last_fit, &full_fit].map(|fit| fit.chi_square),
             degrees_of_freedom,
             chi_square_limit,
@@ -152,9 +152,9 @@ pub(crate) fn solve(
 /// The model is not linear: another foot length changes which feet carry the body, and small play may have no effect
 /// at all. Therefore the first fit may end in a local minimum. If its sum of squares is larger than a correct model's
 /// average, the fit is repeated from other start points, in each of which one nonlinear key is one prior standard
-/// deviation above or below the file's value. The limit that 1 % of correct models exceed would be too high a
-/// threshold, because a local minimum may also be below this limit.
-fn fit_all(problem: &Problem) -> Result<Solution, IdentifyError> {
+/// deviation above or below the file's value. The threshold is not the limit that only 1 % of correct models exceed,
+/// because even a local minimum may be below that limit.
+fn fit_all(problem: &Problem) -> Result<Fit, IdentifyError> {
     let all_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).collect();
     let start = problem.start;
     let other_starts = NONLINEAR_KEYS.iter().flat_map(|&key| {
@@ -164,14 +164,14 @@ fn fit_all(problem: &Problem) -> Result<Solution, IdentifyError> {
             guess
         })
     });
-    let mut best_fit: Option<Solution> = None;
+    let mut best_fit: Option<Fit> = None;
     for guess in std::iter::once(start).chain(other_starts) {
         let Some(full_fit) = problem.fit(&all_unknowns, &guess) else {
             continue;
         };
         let degrees_of_freedom = compute_degrees_of_freedom(problem, &full_fit);
         let is_typical = degrees_of_freedom < 1.0 || full_fit.chi_square <= degrees_of_freedom;
-        let is_better = |best_fit: &Solution| full_fit.chi_square < best_fit.chi_square;
+        let is_better = |best_fit: &Fit| full_fit.chi_square < best_fit.chi_square;
         if best_fit.as_ref().is_none_or(is_better) {
             best_fit = Some(full_fit);
         }
@@ -184,12 +184,12 @@ fn fit_all(problem: &Problem) -> Result<Solution, IdentifyError> {
 
 /// Computes the standard errors of a fit of all unknowns.
 ///
-/// The errors from the derivatives are exact only for a linear model. The contact model has folds: a slightly longer
-/// foot takes over a load, and an even longer foot has no further effect. Therefore each key is shifted by two standard
+/// The errors from the derivatives are exact only for a linear model. The contact model has kinks: a slightly longer
+/// foot takes over a load, but an even longer foot has no further effect. Therefore each key is shifted by two standard
 /// errors in both directions, and the other unknowns follow according to their correlation with the key. In a linear
 /// model, the sum of squares rises by four. If the rise is smaller, the error is enlarged accordingly.
-fn compute_standard_errors(problem: &Problem, full_fit: &Solution) -> Unknowns {
-    let min_cost = problem.compute_cost(&full_fit.unknowns);
+fn compute_standard_errors(problem: &Problem, full_fit: &Fit) -> Unknowns {
+    let min_sum = problem.compute_sum_of_squares(&full_fit.unknowns);
     std::array::from_fn(|i| {
         let error = full_fit.covariance[(i, i)].max(0.0).sqrt();
         if i >= KEY_COUNT || error > MAX_ERROR_FRACTION * problem.prior_errors[i] {
@@ -198,30 +198,30 @@ fn compute_standard_errors(problem: &Problem, full_fit: &Solution) -> Unknowns {
         let compute_rise = |sign: f64| {
             let shifted = |j: usize| {
                 full_fit.unknowns[j]
-                    + sign * MIN_DISTANCE_ERRORS * full_fit.covariance[(j, i)] / error
+                    + sign * MIN_SIGNIFICANT_DISTANCE * full_fit.covariance[(j, i)] / error
             };
-            problem.compute_cost(&std::array::from_fn(shifted)) - min_cost
+            problem.compute_sum_of_squares(&std::array::from_fn(shifted)) - min_sum
         };
         let rise = compute_rise(1.0).min(compute_rise(-1.0)).max(MIN_RISE);
-        error * (MIN_DISTANCE_ERRORS / rise.sqrt()).max(1.0)
+        error * (MIN_SIGNIFICANT_DISTANCE / rise.sqrt()).max(1.0)
     })
 }
 
 /// Computes the degrees of freedom of a fit of all unknowns: the number of measured values minus, for each unknown, the
 /// fraction that the measurements determine instead of the prior.
-fn compute_degrees_of_freedom(problem: &Problem, full_fit: &Solution) -> f64 {
+fn compute_degrees_of_freedom(problem: &Problem, full_fit: &Fit) -> f64 {
     let fractions = (0..UNKNOWN_COUNT)
         .map(|i| 1.0 - full_fit.covariance[(i, i)] / problem.prior_errors[i].powi(2));
-    problem.value_count() as f64 - fractions.sum::<f64>()
+    problem.measured_value_count() as f64 - fractions.sum::<f64>()
 }
 
-/// Resets keys, undetermined keys first, until every free key differs from its file value by at least
-/// [`MIN_DISTANCE_ERRORS`] standard errors. Returns the last fit and the verdict on each key.
+/// Holds keys at their file values, undetermined keys first, until every free key differs from its file value by at
+/// least [`MIN_SIGNIFICANT_DISTANCE`]. Returns the last fit and the verdict on each key.
 fn choose_keys(
     problem: &Problem,
-    full_fit: &Solution,
+    full_fit: &Fit,
     errors: &Unknowns,
-) -> Result<(Solution, [Verdict; KEY_COUNT]), IdentifyError> {
+) -> Result<(Fit, [Verdict; KEY_COUNT]), IdentifyError> {
     let mut verdicts = [Verdict::Changed; KEY_COUNT];
     let mut guess = full_fit.unknowns;
     let mut covariance = full_fit.covariance.clone();
@@ -259,7 +259,7 @@ fn find_key_to_hold(
     let free_keys = || (0..KEY_COUNT).filter(|&i| verdicts[i] == Verdict::Changed);
     let distance = |i: usize| (unknowns[i] - start[i]).abs() / errors[i];
     let nearest_key = free_keys().min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
-    if distance(nearest_key) < MIN_DISTANCE_ERRORS {
+    if distance(nearest_key) < MIN_SIGNIFICANT_DISTANCE {
         return Some((nearest_key, Verdict::Unchanged));
     }
     let infeasible_key = free_keys().find(|&i| unknowns[i] < KEYS[i].min_value)?;
@@ -283,7 +283,7 @@ fn hold_key(key: usize, start: &Unknowns, unknowns: &mut Unknowns, covariance: &
 
 /// Finds the pairs of keys with strongly correlated errors; returns the keys and their correlation.
 fn find_correlated_pairs(covariance: &DMatrix<f64>) -> Vec<(&'static Key, &'static Key, f64)> {
-    let pairs = (0..KEY_COUNT).flat_map(|i| (0..i).map(move |j| (j, i)));
+    let pairs = (0..KEY_COUNT).flat_map(|j| (0..j).map(move |i| (i, j)));
     let correlated = pairs.map(|(i, j)| {
         let scale = (covariance[(i, i)] * covariance[(j, j)]).sqrt();
         (&KEYS[i], &KEYS[j], covariance[(i, j)] / scale)

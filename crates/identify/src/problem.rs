@@ -2,8 +2,8 @@
 //!
 //! The model takes tens of milliseconds for one movement. Therefore each result is cached, and derivatives with respect
 //! to the keys are reused for nearby values. Prior knowledge counts as a measurement: each key has the file's value,
-//! with the prior standard deviation as its error, and the card is near its nominal position. Therefore a key that the
-//! movements do not determine keeps the file's value, and its uncertainty enlarges the errors of the other keys.
+//! with the prior standard deviation as its error, and the tag card is near its nominal place on the deck. A key that
+//! the movements do not determine keeps the file's value, and its uncertainty enlarges the errors of the other keys.
 
 use std::cell::RefCell;
 
@@ -20,23 +20,23 @@ pub(crate) type Values = [f64; KEY_COUNT];
 pub(crate) const UNKNOWN_COUNT: usize = KEY_COUNT + card::PARAMETER_COUNT;
 /// Values of the unknowns.
 pub(crate) type Unknowns = [f64; UNKNOWN_COUNT];
-/// Standard deviation of the model's roughness, mm and deg: servos have a dead band and pads stick, so a small change
-/// of a key may shift a step of the gait by a frame.
+/// Standard deviation of the error that the model's roughness causes, mm and deg: servos have a dead band and pads
+/// stick, so a small change of a key may shift an event of the gait by a frame.
 pub(crate) const MODEL_ERROR: f64 = 0.05;
-/// Smallest predicted reduction of the sum of squares for another step of a fit. At the end of a fit, the error of each
-/// unknown due to the remaining step is at most a third of its standard error.
+/// Smallest predicted reduction of the sum of squares for another step of a fit. At the end of a fit, no unknown is
+/// farther from the minimum than a third of its standard error.
 const MIN_PREDICTED_REDUCTION: f64 = 0.1;
 /// Largest predicted reduction for which an unsuccessful step is attributed to the model's roughness and not to wrong
 /// derivatives.
-const MAX_ROUGHNESS_REDUCTION: f64 = 2.0;
+const MAX_REDUCTION_FROM_ROUGHNESS: f64 = 2.0;
 /// Largest number of iterations of a fit.
 const MAX_ITERATIONS: usize = 12;
 /// Largest number of halvings of a step that does not reduce the sum of squares.
 const MAX_HALVINGS: usize = 2;
 /// Largest distance at which derivatives are reused during a fit, in derivative steps of each key.
-const REUSE_STEPS_DURING_FIT: f64 = 4.0;
+const MAX_REUSE_DISTANCE_DURING_FIT: f64 = 4.0;
 /// Largest distance at which derivatives are reused at the end of a fit, in derivative steps of each key.
-const REUSE_STEPS_AT_END: f64 = 1.0;
+const MAX_REUSE_DISTANCE_AT_END: f64 = 1.0;
 
 /// The measured movements of a robot, and a model of it.
 pub(crate) struct Problem<'a> {
@@ -57,7 +57,7 @@ pub(crate) struct Problem<'a> {
 
 /// The result of a fit.
 #[derive(Clone, Debug)]
-pub(crate) struct Solution {
+pub(crate) struct Fit {
     /// Values of all unknowns; the unknowns that were not free have their start values.
     pub unknowns: Unknowns,
     /// Covariance of the free unknowns, in their order.
@@ -85,7 +85,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Number of measured values with a finite error.
-    pub fn value_count(&self) -> usize {
+    pub fn measured_value_count(&self) -> usize {
         let errors = self.movements.iter().flat_map(|movement| movement.error);
         errors.filter(|error| error.is_finite()).count()
     }
@@ -115,24 +115,24 @@ impl<'a> Problem<'a> {
 
     /// Computes the sum of squares that a fit of all unknowns minimises: residuals of the movements, and deviations
     /// from the prior values.
-    pub fn compute_cost(&self, unknowns: &Unknowns) -> f64 {
+    pub fn compute_sum_of_squares(&self, unknowns: &Unknowns) -> f64 {
         let all_unknowns: [usize; UNKNOWN_COUNT] = std::array::from_fn(|i| i);
         let residuals = self.compute_all_residuals(&all_unknowns, unknowns);
         residuals.iter().map(|residual| residual * residual).sum()
     }
 
-    /// Divides a value for each component of the movements by the component's standard error, which includes the
-    /// model's roughness.
+    /// Divides each value by the standard error of its component of the movements; the error includes the model's
+    /// roughness.
     fn divide_by_errors(&self, values: impl Iterator<Item = f64>) -> Vec<f64> {
         let errors = self.movements.iter().flat_map(|movement| movement.error);
         let pairs = values.zip(errors);
-        let in_errors = pairs.map(|(value, error)| value / error.hypot(MODEL_ERROR));
-        in_errors.collect()
+        let scaled_values = pairs.map(|(value, error)| value / error.hypot(MODEL_ERROR));
+        scaled_values.collect()
     }
 
-    /// Predicts the robot's movements with the model, and caches them. No robot has negative play, but a fit may try
-    /// it, so that the fit of a robot without play can err in both directions. Movements for negative play are
-    /// extrapolated as `2 f(0) - f(-play)`. Other keys are raised to their smallest possible values.
+    /// Predicts the robot's movements with the model, and caches them. No robot has negative play, but a fit may use
+    /// it: otherwise random errors could only increase the play of a robot without play. Movements for negative play
+    /// are extrapolated as `2 f(0) - f(-play)`. Other values that are too small are raised to the smallest possible.
     fn predict_robot_travels(&self, values: &Values) -> Vec<Travel> {
         if values[PLAY_INDEX] < 0.0 {
             let predict_with_play = |play: f64| {
@@ -165,7 +165,7 @@ impl<'a> Problem<'a> {
     ///
     /// Uses the Gauss-Newton method, and halves a step that does not reduce the sum of squares. A finer search would be
     /// useless, since the model is rough: servos have a dead band and pads stick.
-    pub fn fit(&self, free_unknowns: &[usize], guess: &Unknowns) -> Option<Solution> {
+    pub fn fit(&self, free_unknowns: &[usize], guess: &Unknowns) -> Option<Fit> {
         let mut unknowns = self.start;
         for &unknown in free_unknowns {
             unknowns[unknown] = guess[unknown];
@@ -182,50 +182,49 @@ impl<'a> Problem<'a> {
             let step = &covariance * &gradient;
             let predicted_reduction = step.dot(&gradient);
             if predicted_reduction < MIN_PREDICTED_REDUCTION {
-                // The standard errors follow from the derivatives, which must therefore be from near the end of the
-                // fit.
-                match self.discard_distant_jacobian(&unknowns, REUSE_STEPS_AT_END) {
+                // The standard errors follow from the derivatives, which must therefore be computed near the end.
+                match self.discard_distant_point(&unknowns, MAX_REUSE_DISTANCE_AT_END) {
                     true => continue,
                     false => break,
                 }
             }
-            let shortened_steps = (0..=MAX_HALVINGS).map(|halvings| {
-                let mut shortened_unknowns = unknowns;
+            let candidates = (0..=MAX_HALVINGS).map(|halvings| {
+                let mut candidate = unknowns;
                 for (unknown, step) in free_unknowns.iter().zip(step.iter()) {
-                    shortened_unknowns[*unknown] -= step / f64::from(1 << halvings);
+                    candidate[*unknown] -= step / f64::from(1 << halvings);
                 }
-                let residuals = compute_all_residuals(&shortened_unknowns);
-                (shortened_unknowns, residuals)
+                let residuals = compute_all_residuals(&candidate);
+                (candidate, residuals)
             });
-            let mut better_steps = shortened_steps.filter(|(_, residuals)| {
+            let mut better_candidates = candidates.filter(|(_, residuals)| {
                 residuals.norm_squared() < current_residuals.norm_squared()
             });
-            match better_steps.next() {
-                Some(next_step) => (unknowns, current_residuals) = next_step,
+            match better_candidates.next() {
+                Some(candidate) => (unknowns, current_residuals) = candidate,
                 // Derivatives from another point may give a wrong direction.
-                None if predicted_reduction > MAX_ROUGHNESS_REDUCTION
-                    && self.discard_distant_jacobian(&unknowns, 0.0) => {}
-                None if self.discard_distant_jacobian(&unknowns, REUSE_STEPS_AT_END) => {}
+                None if predicted_reduction > MAX_REDUCTION_FROM_ROUGHNESS
+                    && self.discard_distant_point(&unknowns, 0.0) => {}
+                None if self.discard_distant_point(&unknowns, MAX_REUSE_DISTANCE_AT_END) => {}
                 None => break,
             }
         }
         let residuals = self.compute_residuals(&unknowns);
         let chi_square: f64 = residuals.iter().map(|residual| residual * residual).sum();
         let is_finite = chi_square.is_finite() && covariance.iter().all(|value| value.is_finite());
-        is_finite.then_some(Solution {
+        is_finite.then_some(Fit {
             unknowns,
             covariance,
             chi_square,
         })
     }
 
-    /// Discards the derivatives if any key was more than `step_count` derivative steps away from its value in
-    /// `unknowns`. Returns true if no derivatives are left.
-    fn discard_distant_jacobian(&self, unknowns: &Unknowns, step_count: f64) -> bool {
+    /// Discards the point of the derivatives if any key is more than `max_steps` derivative steps away from its value
+    /// in `unknowns`. Returns true if no point is left.
+    fn discard_distant_point(&self, unknowns: &Unknowns, max_steps: f64) -> bool {
         let values = raise_to_min_values(split_unknowns(unknowns).0);
         let mut jacobian_point = self.jacobian_point.borrow_mut();
         let is_distant =
-            !jacobian_point.is_some_and(|point| are_within_steps(step_count, point, values));
+            !jacobian_point.is_some_and(|point| are_within_steps(max_steps, point, values));
         if is_distant {
             *jacobian_point = None;
         }
@@ -240,13 +239,13 @@ impl<'a> Problem<'a> {
         let row_count = 3 * self.movements.len() + free_unknowns.len();
         let mut jacobian = DMatrix::zeros(row_count, free_unknowns.len());
         for (column, &unknown) in free_unknowns.iter().enumerate() {
-            let step = KEYS.get(unknown).map_or(0.1, |key| key.derivative_step);
+            let shift = KEYS.get(unknown).map_or(0.1, |key| key.derivative_step);
             let mut shifted_unknowns = base;
-            shifted_unknowns[unknown] += step;
+            shifted_unknowns[unknown] += shift;
             let shifted_movements = self.predict_card_movements(&shifted_unknowns);
             let pairs = base_movements.iter().zip(shifted_movements.as_flattened());
             let slopes =
-                self.divide_by_errors(pairs.map(|(base, shifted)| (base - shifted) / step));
+                self.divide_by_errors(pairs.map(|(base, shifted)| (base - shifted) / shift));
             for (row, slope) in slopes.iter().enumerate() {
                 jacobian[(row, column)] = *slope;
             }
@@ -258,9 +257,9 @@ impl<'a> Problem<'a> {
     /// Returns the previous point of the derivatives if it is near enough to `values`; otherwise chooses `values`.
     fn choose_jacobian_point(&self, values: Values) -> Values {
         let mut jacobian_point = self.jacobian_point.borrow_mut();
-        if let Some(point) =
-            jacobian_point.filter(|point| are_within_steps(REUSE_STEPS_DURING_FIT, *point, values))
-        {
+        let is_near =
+            |point: &Values| are_within_steps(MAX_REUSE_DISTANCE_DURING_FIT, *point, values);
+        if let Some(point) = jacobian_point.filter(is_near) {
             return point;
         }
         // At a key's smallest value, the derivative is taken on the feasible side.
@@ -270,13 +269,13 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Returns true if each key differs by at most `step_count` of its derivative steps.
-fn are_within_steps(step_count: f64, a: Values, b: Values) -> bool {
+/// Returns true if each key differs by at most `max_steps` of its derivative steps.
+fn are_within_steps(max_steps: f64, a: Values, b: Values) -> bool {
     let mut pairs = a.iter().zip(b).zip(&KEYS);
-    pairs.all(|((a, b), key)| (a - b).abs() <= step_count * key.derivative_step)
+    pairs.all(|((a, b), key)| (a - b).abs() <= max_steps * key.derivative_step)
 }
 
-/// Raises each value to its key's smallest possible value.
+/// Raises each value that is too small to its key's smallest possible value.
 fn raise_to_min_values(values: Values) -> Values {
     std::array::from_fn(|i| values[i].max(KEYS[i].min_value))
 }

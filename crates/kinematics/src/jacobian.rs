@@ -45,7 +45,7 @@ impl FiveBarPose {
     /// The local conditioning index: the ratio of the smallest to the largest singular value of the
     /// Jacobian (spectral norm). It is 0 at a singularity of either type, and 1 where the servos move
     /// the end point equally well in every direction.
-    pub fn lci(&self) -> f64 {
+    pub fn conditioning_index(&self) -> f64 {
         // The index does not depend on a common factor. Omitting 1/type2 keeps the numbers finite at a type-2
         // singularity.
         let (left, right) = self.coupler_velocities();
@@ -87,7 +87,7 @@ mod tests {
             let computed = jacobian.left * rates[0].to_radians() + jacobian.right * rates[1].to_radians();
             prop_assert!((expected - computed).length() < 1e-9 * (1.0 + expected.length()) / solution.head.type2);
             let [max, min] = jacobian.singular_values();
-            prop_assert!((min / max - solution.head.lci()).abs() < 1e-9);
+            prop_assert!((min / max - solution.head.conditioning_index()).abs() < 1e-9);
             prop_assert!((max * min - jacobian.determinant().abs()).abs() < 1e-9 * max * max);
         }
     }

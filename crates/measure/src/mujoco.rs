@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
-/// The robots of `tools/physics/figures.json` and their files.
+/// The robots of `tools/physics/walks.json` and their files.
 const ROBOT_FILES: [(&str, &str); 4] = [
     ("large", include_str!("../../../robots/large.toml")),
     ("own-gaits", include_str!("../../../robots/own-gaits.toml")),
@@ -12,7 +12,7 @@ const ROBOT_FILES: [(&str, &str); 4] = [
     ("unequal", include_str!("../../../robots/unequal.toml")),
 ];
 /// The results of the last run of `make physics`.
-const RESULTS_JSON: &str = include_str!("../../../tools/physics/figures.json");
+const RESULTS_JSON: &str = include_str!("../../../tools/physics/walks.json");
 /// The key of the results without play, without lag, and with feet of equal length.
 const RIGID_CASE: &str = "rigid, level";
 

@@ -22,6 +22,12 @@ TIMESTEP = 0.001
 """Engine time step, s: the largest for which the movement in a cycle differs by at most 2 % from that at 0.2 ms."""
 SETTLING_TIME = 0.5
 """Time before the first frame in which the robot settles on the floor, s."""
+DIVERGENCES = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+)
+"""The engine's warnings about a simulation that diverges."""
 
 
 class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
@@ -55,10 +61,12 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
             raise ValueError(
                 "[ground] friction_back_over_forward must be 1: MuJoCo cannot simulate pads with a grain"
             )
+        # A frame has a whole number of steps.
+        self._substeps = max(1, round(FRAME_PERIOD / timestep))
+        timestep = FRAME_PERIOD / self._substeps
         _set_timestep(self.engine, timestep)
         self.data = mujoco.MjData(self.engine)
         self.friction_spread = friction_spread
-        self._substeps = round(FRAME_PERIOD / timestep)
         self._nominal_friction = self.engine.geom_friction.copy()
         joints = [
             self.engine.actuator(name).trnid[0] for name in ("A1", "A2", "A3", "A4")
@@ -102,7 +110,8 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         self.data.ctrl[:] = self._target
         previous_forward = self._forward_mm()
         mujoco.mj_step(self.engine, self.data, self._substeps)
-        has_diverged = not np.isfinite(self.data.qpos).all()
+        # If the simulation diverges, the engine moves the robot back to its start, and counts a warning.
+        has_diverged = any(self.data.warning[kind].number for kind in DIVERGENCES)
         reward = 0.0 if has_diverged else self._forward_mm() - previous_forward
         return self._observation(), reward, has_diverged, False, self._info(is_held)
 

@@ -77,7 +77,9 @@ class Robot:
         # None while a gait runs; afterwards the reason for an early end, or "".
         self._end_reason: str | None = ""
         self._port_error: OSError | None = None
-        self._has_banner = False
+        self._is_connected = False
+        # The start of the answer to a line that starts a gait, until that answer.
+        self._start_answer: str | None = None
         # `deadman` before and while this program drives the robot, ms.
         self._own_deadman: int | None = None
         self._driving_deadman: int | None = None
@@ -93,11 +95,12 @@ class Robot:
         self._keep_alive.start()
 
     def _wait_for_robot(self) -> None:
-        if self._wait(lambda: self._has_banner, BANNER_TIMEOUT):
+        if self._wait(lambda: self._is_connected, BANNER_TIMEOUT):
             return
         for _ in range(STATUS_ATTEMPT_COUNT):
             try:
                 self._send("status", ANSWER_TIMEOUT / 4)
+                self._is_connected = True
                 return
             except RobotError:
                 continue
@@ -115,7 +118,7 @@ class Robot:
     def close(self) -> None:
         """Stops the robot, restores its `deadman`, and closes the port."""
         try:
-            if not self._closing.is_set() and self._port_error is None:
+            if not self._is_closed:
                 self.stop()
         except (RobotError, OSError):
             pass  # The robot rests, or it is out of range and stops by itself.
@@ -124,6 +127,8 @@ class Robot:
 
     def _shut_down(self) -> None:
         self._closing.set()
+        with self._condition:
+            self._condition.notify_all()
         for thread in (self._listener, self._keep_alive):
             if thread.is_alive():
                 thread.join()
@@ -131,24 +136,27 @@ class Robot:
 
     def go(self, name: str, cycles: int | None = None) -> None:
         """Starts a gait or a routine by its name; if `cycles` is given, waits until they are done."""
-        line = name.replace("-", " ")
+        line = name.replace("-", " ").strip().lower()
         if cycles is not None:
             line += f" {cycles}"
         with self._exchange_lock:
-            was_going = self.is_going
             self._set_deadman()
-            self._end_reason = None
+            self._start_answer = f"ok {line.split(' ')[0]}"
             try:
                 self.send(line)
-            except NoAnswer:
-                self._end_reason = ""  # If the gait runs, `deadman` stops it.
+                self._set_deadman()  # A reset before the line has cleared it.
+            except NoAnswer as error:
+                # If the gait runs, `deadman` stops it.
+                self._end_reason = None
+                self._mark_ended(str(error))
                 raise
             except (RobotError, ValueError):
                 # A refused line changes nothing: an earlier gait continues.
-                if not was_going:
-                    self._end_reason = ""
+                if not self.is_going:
                     self._restore_deadman()
                 raise
+            finally:
+                self._start_answer = None
         if cycles is not None:
             self.wait()
 
@@ -163,7 +171,10 @@ class Robot:
         """
         if not self._wait(lambda: self._end_reason is not None, timeout):
             raise TimeoutError(f"the robot still moves after {timeout} s")
-        self._restore_deadman()
+        with self._exchange_lock:
+            # Another thread may have started a gait, or a gait that was not answered may run.
+            if self._end_reason == "":
+                self._restore_deadman()
         if self._end_reason:
             raise RobotError(self._end_reason)
 
@@ -182,9 +193,6 @@ class Robot:
             self._exchange_lock.acquire()
         try:
             self._end_gait("stop")
-        except RobotError as error:
-            if error.code not in NO_PULSES_CODES:
-                raise
         finally:
             self._exchange_lock.release()
 
@@ -255,7 +263,7 @@ class Robot:
                 yield frame
         finally:
             self._watchers.remove(frames)
-            if self._port_error is None and not self._closing.is_set():
+            if not self._is_closed:
                 self._send_until_answered("watch 0")
 
     def send(self, line: str) -> list[str]:
@@ -263,11 +271,27 @@ class Robot:
 
         Raises RobotError if the robot refuses the line. Does not change `deadman`.
         """
-        return self._send(line, ANSWER_TIMEOUT)
+        word = line.strip().lower().split(" ")[0]
+        if word not in ("deadman", "factory", "load", "save"):
+            return self._send(line, ANSWER_TIMEOUT)
+        # These lines change or store the robot's own `deadman`.
+        with self._exchange_lock:
+            was_driving = self._driving_deadman is not None
+            self._restore_deadman()
+            try:
+                return self._send(line, ANSWER_TIMEOUT)
+            finally:
+                self._own_deadman = None
+                if was_driving:
+                    self._set_deadman()
 
     def _end_gait(self, line: str) -> None:
         with self._exchange_lock:
-            self._send_until_answered(line)
+            try:
+                self._send_until_answered(line)
+            except RobotError as error:
+                if line != "stop" or error.code not in NO_PULSES_CODES:
+                    raise
             self._mark_ended(f"`{line}` has ended the gait")
             self._restore_deadman()
 
@@ -319,10 +343,14 @@ class Robot:
         """Waits until `is_ready` is true; returns False after `timeout` seconds. Raises an error if the port closes."""
         with self._condition:
             was_ready = self._condition.wait_for(
-                lambda: is_ready() or self._port_error is not None, timeout
+                lambda: is_ready() or self._is_closed, timeout
             )
             self._check_open()
             return was_ready
+
+    @property
+    def _is_closed(self) -> bool:
+        return self._port_error is not None or self._closing.is_set()
 
     def _check_open(self) -> None:
         if self._port_error is not None:
@@ -335,7 +363,8 @@ class Robot:
     def _set_deadman(self) -> None:
         if self._driving_deadman is not None:
             return
-        if self._own_deadman is None:
+        own_deadman = self._own_deadman
+        if own_deadman is None:
             notes = self._send_until_answered("cal")
             values = [
                 note.split()[-1] for note in notes if note.startswith("# deadman ")
@@ -343,10 +372,13 @@ class Robot:
             if not (values and values[0].isdecimal()):
                 raise NoAnswer("the answer to `cal` has no `deadman`")
             own_deadman = int(values[0])
-            self._own_deadman = 0 if own_deadman == DRIVING_DEADMAN else own_deadman
-        driving_deadman = min(self._own_deadman or DRIVING_DEADMAN, DRIVING_DEADMAN)
+            if own_deadman == DRIVING_DEADMAN:
+                own_deadman = 0
+            self._own_deadman = own_deadman
+        driving_deadman = min(own_deadman or DRIVING_DEADMAN, DRIVING_DEADMAN)
         self._send_until_answered(f"deadman {driving_deadman}")
-        self._driving_deadman = driving_deadman
+        # A reset meanwhile has cleared both.
+        self._own_deadman, self._driving_deadman = own_deadman, driving_deadman
 
     def _restore_deadman(self) -> None:
         with self._exchange_lock:
@@ -376,7 +408,9 @@ class Robot:
                     continue
                 except OSError:
                     return
-                if status.gait in ("pose", "stop", "rest"):
+                # A routine may rest between two steps.
+                may_wake = status.gait == "rest" and status.fault == "none"
+                if status.gait in ("pose", "stop", "rest") and not may_wake:
                     self._mark_stopped(status.fault)
 
     def _mark_stopped(self, fault: str) -> None:
@@ -417,11 +451,11 @@ class Robot:
                 for watcher in self._watchers:
                     watcher.put(frame)
             elif line.startswith(BANNER_PREFIX):
-                if self._has_banner:
+                if self._is_connected:
                     # After a reset, the robot has its saved settings.
-                    self._driving_deadman = None
+                    self._own_deadman = self._driving_deadman = None
                     self._mark_ended("the robot was reset")
-                self._has_banner = True
+                self._is_connected = True
             elif line == "# done":
                 self._mark_ended("")
             elif line.startswith("# fault: "):
@@ -430,4 +464,9 @@ class Robot:
                 self._notes.append(line)
             elif line:
                 self._answers.append(line)
+                if line == "ok rest":  # `status` is the same while a routine rests
+                    self._mark_ended("`rest` has ended the gait")
+                # A `# done` before this answer belongs to the gait before.
+                elif self._start_answer and line.startswith(self._start_answer):
+                    self._end_reason = None
             self._condition.notify_all()

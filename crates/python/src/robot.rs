@@ -118,7 +118,7 @@ impl Robot {
     /// Returns messages with the reasons why a pose is not safe; an empty list if it is safe.
     fn describe_violations(&self, angles: [f64; 4]) -> Vec<String> {
         match self.0.lizard().solve(&angles.into()) {
-            Ok(solution) => violations::find_pose_violations(&self.0, &solution),
+            Ok(solution) => violations::describe_pose_violations(&self.0, &solution),
             Err(infeasible) => vec![infeasible.to_string()],
         }
     }

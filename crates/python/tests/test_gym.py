@@ -73,6 +73,22 @@ def test_targets_are_safe_and_within_the_speed_limit_of_gaits(model):
     assert held_count > 0
 
 
+def test_a_step_of_the_environment_takes_20_ms_with_any_time_step():
+    env = LizardEnv(timestep=0.003)
+    env.reset(seed=0)
+    env.step(np.zeros(4, np.float32))
+    assert env.data.time == pytest.approx(0.02)
+
+
+def test_a_simulation_that_diverges_ends_the_episode(monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)  # the engine writes a log to the working directory
+    env = LizardEnv()
+    env.reset(seed=0)
+    env.data.qvel[6] = 1e11
+    _, reward, has_diverged, *_ = env.step(np.zeros(4, np.float32))
+    assert (reward, has_diverged) == (0.0, True)
+
+
 def test_the_environment_rejects_pads_with_a_grain():
     grain_path = Path(__file__).parents[3] / "robots" / "grain.toml"
     with pytest.raises(ValueError, match="grain"):

@@ -8,6 +8,7 @@ import subprocess
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -67,6 +68,54 @@ def test_a_gait_continues_while_the_program_drives_with_deadman(robot):
     assert robot.status().gait == "arc-left"
     robot.stop()
     assert read_deadman(robot) == 700
+
+
+def test_save_stores_the_robots_own_deadman_while_the_robot_walks(robot):
+    robot.walk()
+    robot.stop()
+    robot.send("deadman 5000")
+    robot.walk()
+    robot.send("save")
+    assert read_deadman(robot) == 901
+    robot.stop()
+    robot.send("load")
+    assert read_deadman(robot) == 5000
+
+
+def test_a_gait_keeps_its_deadman_when_the_gait_before_has_ended(robot, monkeypatch):
+    write = robot._write
+
+    def write_after_end(line: str) -> None:
+        if line == "walk":
+            robot._handle_line("# done")
+        write(line)
+
+    monkeypatch.setattr(robot, "_write", write_after_end)
+    robot.walk()
+    assert robot.is_going
+
+
+def test_a_robot_that_was_reset_just_before_a_gait_walks_with_deadman(
+    robot, monkeypatch
+):
+    write = robot._write
+
+    def write_after_reset(line: str) -> None:
+        if line == "walk":
+            robot._port.board.reset()
+        write(line)
+
+    monkeypatch.setattr(robot, "_write", write_after_reset)
+    robot.walk()
+    assert (robot.is_going, read_deadman(robot)) == (True, 901)
+
+
+def test_stop_restores_deadman_even_if_the_robot_rests_already(robot):
+    robot.walk()
+    robot.send("rest")
+    assert not robot.is_going
+    robot.stop()
+    assert read_deadman(robot) == 0
 
 
 def test_the_robot_stops_if_the_program_sends_no_lines(robot):
@@ -147,6 +196,45 @@ def test_after_a_reset_wait_raises_an_error_and_the_robot_can_walk_again(robot):
     robot.walk(cycles=1)
 
 
+def test_after_a_start_without_a_banner_wait_recognizes_a_reset(monkeypatch):
+    with monkeypatch.context() as patch:
+        patch.setattr("lizard.robot.BANNER_PREFIX", "# lost")
+        patch.setattr("lizard.robot.BANNER_TIMEOUT", 0.1)
+        robot = lizard.Robot.simulated()
+    with robot:
+        robot.walk()
+        robot._port.board.reset()
+        with pytest.raises(lizard.RobotError, match="the robot was reset"):
+            robot.wait(timeout=5)
+
+
+def lose_all_bytes(robot, monkeypatch):
+    monkeypatch.setattr(robot._port, "write", lambda data: None)
+    monkeypatch.setattr(robot._port, "read", lambda: time.sleep(0.02) or b"")
+
+
+def test_close_ends_a_wait_even_if_the_robot_is_out_of_range(robot, monkeypatch):
+    monkeypatch.setattr("lizard.robot.RETRY_TIME", 0.0)
+    robot.walk()
+    lose_all_bytes(robot, monkeypatch)
+    threading.Timer(0.1, robot.close).start()
+    with pytest.raises(lizard.RobotError, match="this robot is closed"):
+        robot.wait(timeout=10)
+
+
+def test_an_unanswered_gait_ends_the_wait_for_the_gait_before(robot, monkeypatch):
+    def trot() -> None:
+        with suppress(lizard.RobotError):
+            robot.go("trot")
+
+    robot.walk()
+    monkeypatch.setattr("lizard.robot.ANSWER_TIMEOUT", 0.1)
+    lose_all_bytes(robot, monkeypatch)
+    threading.Timer(0.1, trot).start()
+    with pytest.raises(lizard.RobotError, match="does not answer to `trot`"):
+        robot.wait(timeout=10)
+
+
 def test_wait_raises_an_error_after_a_stop_or_a_timeout(robot):
     threading.Timer(0.5, robot.stop).start()
     start_time = time.monotonic()
@@ -169,8 +257,8 @@ def test_a_with_block_that_raises_stops_the_robot():
         robot.walk()
 
 
-def test_the_simulated_robot_has_the_routines_of_its_model():
-    routine = '[routine.round]\nsteps = ["walk 1", "stand 0.5 s"]\nrepeat = 1\n'
+def test_a_routine_of_the_model_continues_after_a_rest():
+    routine = '[routine.round]\nsteps = ["walk 1", "rest 2 s", "stand 0.5 s"]\n'
     model = lizard.Model.from_toml(lizard.default_toml() + routine)
     with lizard.Robot.simulated(model) as robot:
         robot.go("round")

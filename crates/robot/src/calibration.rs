@@ -11,7 +11,7 @@ use lizard_core::numbers::gaits::MAX_NAME_BYTES;
 use toml::de::DeTable;
 
 use crate::config::servo::SERVO_NAMES;
-use crate::file::{Error, ReadResult, Section, parse, read_for_each};
+use crate::file::{Error, ReadResult, Table, parse, read_for_each};
 
 /// The value of the key `format`. The number is incremented when the meaning of a key changes.
 const FORMAT_VERSION: &str = "lizard calibration 1";
@@ -104,21 +104,21 @@ impl ServoSettings {
     }
 
     /// Reads the table of a servo in a calibration file.
-    fn from_section(section: &Section) -> ReadResult<Self> {
+    fn from_table(table: &Table) -> ReadResult<Self> {
         let read_number = |key| {
-            let value = section.number(key, (-360.0, 360.0), "deg")?;
-            require_two_decimals(section, key, value)
+            let value = table.number(key, (-360.0, 360.0), "deg")?;
+            require_two_decimals(table, key, value)
         };
-        let limit: [f64; 2] = section.numbers("limit", (-360.0, 360.0), "deg")?;
+        let limit: [f64; 2] = table.numbers("limit", (-360.0, 360.0), "deg")?;
         for angle in limit {
-            require_two_decimals(section, "limit", angle)?;
+            require_two_decimals(table, "limit", angle)?;
         }
-        let dir = match section.text("dir")? {
+        let dir = match table.text("dir")? {
             "+" => '+',
             "-" => '-',
             direction => {
                 let problem = format!("is \"{direction}\"; it must be \"+\" or \"-\"");
-                return Err(section.error("dir", problem));
+                return Err(table.error("dir", problem));
             }
         };
         Ok(Self {
@@ -233,7 +233,7 @@ impl Calibration {
             );
             return Err(Error::new("format", problem));
         }
-        let root = Section::root(table, &["format", "boot", "deadman", "servo"])?;
+        let root = Table::root(table, &["format", "boot", "deadman", "servo"])?;
         let boot = root.text("boot")?;
         if !is_gait_name(boot) {
             return Err(root.error("boot", "is not the name of a gait"));
@@ -242,13 +242,13 @@ impl Calibration {
         if deadman.fract() != 0.0 {
             return Err(root.error("deadman", "must be a whole number of ms"));
         }
-        let servos = root.section("servo", &SERVO_NAMES)?;
+        let servos = root.table("servo", &SERVO_NAMES)?;
         Ok(Self {
             boot: boot.to_owned(),
             deadman: deadman as u16,
             servos: read_for_each(SERVO_NAMES, |name| {
                 let keys = ["trim", "limit", "dir", "scale"];
-                ServoSettings::from_section(&servos.section(name, &keys)?)
+                ServoSettings::from_table(&servos.table(name, &keys)?)
             })?,
         })
     }
@@ -330,10 +330,10 @@ fn is_gait_name(text: &str) -> bool {
 }
 
 /// Returns the value if it has at most two decimals, which is the most that the console accepts; otherwise an error.
-fn require_two_decimals(section: &Section, key: &str, value: f64) -> ReadResult<f64> {
+fn require_two_decimals(table: &Table, key: &str, value: f64) -> ReadResult<f64> {
     match (value * 100.0 - (value * 100.0).round()).abs() < 1e-6 {
         true => Ok(value),
-        false => Err(section.error(
+        false => Err(table.error(
             key,
             format!("is {value}; it must have at most two decimals"),
         )),

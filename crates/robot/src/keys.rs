@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use crate::config::RobotConfig;
-use crate::file::{self, Error, KEY_READS, KeyRead, Range, Section, format_number};
+use crate::file::{self, Error, KEY_READS, KeyRead, Range, Table, format_number};
 use crate::gaits::{define, routine};
 use crate::robot::TOP_LEVEL_KEYS;
 
@@ -192,7 +192,7 @@ fn the_reference_page_is_up_to_date() {
 /// Reads configuration, gaits and routines, but does not compute their tables, which takes long.
 fn read_definitions(text: &str) -> Result<(), Error> {
     file::parse(text, |table| {
-        let root = Section::root(table, &TOP_LEVEL_KEYS)?;
+        let root = Table::root(table, &TOP_LEVEL_KEYS)?;
         let config = RobotConfig::read(&root)?;
         let gaits = define::read_gaits(&root, &config)?;
         let names: Vec<&str> = gaits.iter().map(|gait| gait.name.as_str()).collect();

@@ -15,7 +15,7 @@ use crate::config::servo::FORWARD_TURN_SIGN;
 use crate::config::{
     self, Coil, Inputs, LegPlan, Parts, Plate, RobotConfig, Servo, ServoType, SpeedLimits, Supplies,
 };
-use crate::file::{self, Error, ReadResult, Section};
+use crate::file::{self, Error, ReadResult, Table};
 use crate::gaits::{Routine, define, routine};
 use crate::tables::{CellMaps, CoreRobot, Tables, flash, numbers};
 
@@ -73,7 +73,7 @@ impl Robot {
         // The table is first parsed alone, because the message of a syntax error may contain a second line number.
         file::parse(table, |_| Ok(()))?;
         let robot = file::parse(&format!("{STAND}{table}"), |table| {
-            let root = Section::root(table, &["gait"])?;
+            let root = Table::root(table, &["gait"])?;
             Self::with_config(self.name(), self.config.clone(), &root)
         });
         robot.map_err(|mut error| {
@@ -86,7 +86,7 @@ impl Robot {
 
     /// Reads and checks all tables of a robot.toml.
     fn read(table: &DeTable) -> ReadResult<Self> {
-        let root = Section::root(table, &TOP_LEVEL_KEYS)?;
+        let root = Table::root(table, &TOP_LEVEL_KEYS)?;
         let name = read_name(&root)?;
         let mut config = RobotConfig::read(&root)?;
         let robot = Self::with_config(name, config.clone(), &root)?;
@@ -110,7 +110,7 @@ impl Robot {
     }
 
     /// Reads and checks the gaits of a robot with this configuration, and computes its tables.
-    fn with_config(name: &str, config: RobotConfig, root: &Section) -> ReadResult<Self> {
+    fn with_config(name: &str, config: RobotConfig, root: &Table) -> ReadResult<Self> {
         let gaits = define::read_gaits(root, &config)?;
         let names: Vec<&str> = gaits.iter().map(|gait| gait.name.as_str()).collect();
         let routines = routine::read_routines(root, &names, &config.inputs)?;
@@ -415,7 +415,7 @@ pub(crate) const TOP_LEVEL_KEYS: [&str; 14] = [
 ];
 
 /// Reads the robot's name from the top of the file.
-fn read_name<'a>(root: &Section<'a>) -> ReadResult<&'a str> {
+fn read_name<'a>(root: &Table<'a>) -> ReadResult<&'a str> {
     let name = root.text_or("name", "robot")?;
     let is_allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     if name.is_empty() || name.len() > MAX_NAME_BYTES || !name.chars().all(is_allowed) {

@@ -19,7 +19,7 @@ pub struct Status {
     pub pace: Option<f64>,
     /// Number of frames since power-on.
     pub frames: u64,
-    /// The smallest of the guard's margins, as a sine; `None` if the flash contains no robot.
+    /// The smallest of the guard's margins, the sine of an angle; `None` if the flash contains no robot.
     pub margin: Option<f64>,
     /// True if the guard holds the robot in its last safe pose.
     pub is_held: bool,
@@ -80,7 +80,7 @@ impl Status {
 
     /// True if a gait or a routine runs, so that the robot keeps moving without further commands.
     #[must_use]
-    pub fn is_moving(&self) -> bool {
+    pub fn is_walking(&self) -> bool {
         !matches!(self.gait.as_str(), "stand" | "pose" | "stop" | "rest")
     }
 
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn a_status_is_parsed_and_formatted_in_one_line() {
         let status = Status::parse(WALKING_STATUS).expect("the line is a status");
-        assert!(status.is_moving());
+        assert!(status.is_walking());
         assert_eq!((status.phase, status.pace), (0.35, Some(100.0)));
         assert_eq!(status.reset_cause, "external");
         assert_eq!(status.reset_count, 3);

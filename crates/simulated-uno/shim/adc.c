@@ -17,7 +17,7 @@ enum { /* ADMUX */
 #define SETTLING_CYCLES (70 * CHIP_CYCLES_PER_US) /* longest start-up of the bandgap (29.5) */
 
 /* Times from the start of a conversion to its sample and to its end, in half ADC clocks
- * (table 24-1). Index 1 is the first conversion after ADEN was set, index 0 every other one. */
+ * (table 24-1). Index 1 is the first conversion after ADEN was set, index 0 each later one. */
 static const unsigned sample_half_clocks[2] = { 3, 27 };
 static const unsigned length_half_clocks[2] = { 26, 50 };
 
@@ -171,10 +171,10 @@ void adc_correct(struct adc *adc, struct interrupts *interrupts, const struct su
 	hook_register(avr, REG_ADCH, read_result, ignore_write, adc);
 }
 
-void adc_set_pin(struct adc *adc, uint8_t channel, uint16_t mv)
+void adc_set_pin(struct adc *adc, uint8_t pin, uint16_t mv)
 {
-	adc->pin_mv[channel % ADC_PIN_COUNT] = mv;
-	avr_raise_irq(adc->stock->io.irq + ADC_IRQ_ADC0 + channel % ADC_PIN_COUNT, mv);
+	adc->pin_mv[pin % ADC_PIN_COUNT] = mv;
+	avr_raise_irq(adc->stock->io.irq + ADC_IRQ_ADC0 + pin % ADC_PIN_COUNT, mv);
 }
 
 void adc_reset(struct adc *adc)

@@ -1,9 +1,9 @@
-/* The ADC according to the ATmega328P's data sheet, chapter 24. It measures relative to a supply that
- * changes, the bandgap needs time to settle, the first conversion takes 25 ADC clocks and every other
- * one 13, and a result is read in two halves.
+/* The ADC according to the ATmega328P's data sheet, chapter 24. It measures relative to AVCC, which
+ * may change, the bandgap needs time to settle, the first conversion takes 25 ADC clocks and each
+ * later one 13, and reading a result's low byte locks the result until the high byte is read.
  *
- * Not modelled: triggers other than free running, the noise reduction sleep, the settling of a
- * reference that is switched, the errors of an ADC clock above 200 kHz.
+ * Not modelled: triggers other than free running, the sleep mode ADC Noise Reduction, the settling
+ * of the reference after a switch, the errors caused by an ADC clock above 200 kHz.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -35,9 +35,9 @@ struct adc {
 	uint16_t result;                /* contents of the ADC Data Register, right adjusted */
 };
 
-/* Gives adc_set_pin access to simavr's ADC, which is sufficient for the stock fidelity. */
+/* Connects adc_set_pin to simavr's ADC; the stock fidelity needs nothing else. */
 void adc_attach(struct adc *adc, avr_t *avr);
 /* Replaces simavr's callbacks for the ADC's registers. */
 void adc_correct(struct adc *adc, struct interrupts *interrupts, const struct supply *supply);
-void adc_set_pin(struct adc *adc, uint8_t channel, uint16_t mv);
+void adc_set_pin(struct adc *adc, uint8_t pin, uint16_t mv);
 void adc_reset(struct adc *adc);

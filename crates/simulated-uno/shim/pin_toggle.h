@@ -1,5 +1,5 @@
-/* Makes `sbi PINx, n` toggle only pin n, as on the chip; simavr 1.6 also toggles every other high
- * pin of the port.
+/* Makes `sbi PINx, n` toggle only pin n, as on the chip; simavr 1.6 also toggles all other high
+ * pins of the port.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */

@@ -48,17 +48,17 @@ pub struct Wire {
     /// The bytes of each sender that may still be read, in order.
     frames: [VecDeque<Frame>; 2],
     /// The cycle from which on the receiver waits for the next start bit.
-    idle_from: f64,
+    idle_from_cycle: f64,
 }
 
 impl Wire {
     /// Creates an idle wire for two senders with these baud rates.
     #[must_use]
-    pub fn new(rates: [f64; 2]) -> Self {
+    pub fn new(baud_rates: [f64; 2]) -> Self {
         Self {
-            bit_cycles: rates.map(|baud| FREQUENCY as f64 / baud),
+            bit_cycles: baud_rates.map(|rate| FREQUENCY as f64 / rate),
             frames: [VecDeque::new(), VecDeque::new()],
-            idle_from: f64::NEG_INFINITY,
+            idle_from_cycle: f64::NEG_INFINITY,
         }
     }
 
@@ -78,12 +78,12 @@ impl Wire {
 
     /// Returns the bytes that a receiver with this baud rate has read between the last call and the cycle `now`; `None`
     /// for a byte without a stop bit.
-    pub fn receive(&mut self, now: u64, baud: f64) -> Vec<Option<u8>> {
-        let bit_cycles = FREQUENCY as f64 / baud;
+    pub fn receive(&mut self, now: u64, baud_rate: f64) -> Vec<Option<u8>> {
+        let bit_cycles = FREQUENCY as f64 / baud_rate;
         let mut received_bytes = Vec::new();
         while let Some(start_cycle) = self.next_falling_edge() {
-            let end_cycle = start_cycle + STOP_BIT_MIDDLE * bit_cycles;
-            if end_cycle > now as f64 {
+            let read_cycle = start_cycle + STOP_BIT_MIDDLE * bit_cycles;
+            if read_cycle > now as f64 {
                 break;
             }
             let is_bit_high =
@@ -92,9 +92,9 @@ impl Wire {
                 byte | u8::from(is_bit_high(index)) << index
             });
             received_bytes.push(is_bit_high(8).then_some(byte));
-            self.idle_from = end_cycle;
+            self.idle_from_cycle = read_cycle;
             for sender_frames in &mut self.frames {
-                sender_frames.retain(|frame| frame.end_cycle() > end_cycle);
+                sender_frames.retain(|frame| frame.end_cycle() > read_cycle);
             }
         }
         received_bytes
@@ -109,7 +109,7 @@ impl Wire {
             })
         });
         edges
-            .filter(|(cycle, _)| *cycle > self.idle_from)
+            .filter(|(cycle, _)| *cycle > self.idle_from_cycle)
             .filter(|(cycle, bit_cycles)| {
                 // The samples lie on both sides of the edge, since the sums are rounded.
                 let margin = bit_cycles / 100.0;

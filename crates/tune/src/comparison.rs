@@ -80,9 +80,11 @@ impl Comparison {
         self.tuned.speeds[0] > self.gait.speeds[0] && 2 * self.faster_count > self.robot_count
     }
 
-    /// Gain in the 5th percentile of the speed, as a fraction of the given gait's value.
-    pub fn gain(&self) -> f64 {
-        self.tuned.speeds[0] / self.gait.speeds[0] - 1.0
+    /// Gain in the 5th percentile of the speed, as a fraction of the given gait's value; `None` if that value is not
+    /// positive, because the given gait then does not move 95 % of the robots towards its goal.
+    pub fn gain(&self) -> Option<f64> {
+        let [given, tuned] = [&self.gait, &self.tuned].map(|gait| gait.speeds[0]);
+        (given > 0.0).then(|| tuned / given - 1.0)
     }
 }
 
@@ -105,5 +107,41 @@ impl GaitPerformance {
             speeds: compute_quantiles(speeds.clone(), [0.05, 0.5, 0.95]),
         };
         (performance, speeds)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn compare(given_speed: f64, tuned_speed: f64) -> Comparison {
+        let [gait, tuned] = [given_speed, tuned_speed].map(|speed| GaitPerformance {
+            name: "x".to_owned(),
+            period: 1.0,
+            rate: 100.0,
+            margin: ("leg", 0.3),
+            predicted: speed,
+            sg90: speed,
+            speeds: [speed; 3],
+        });
+        Comparison {
+            unit: "mm/s",
+            rate: 100.0,
+            gait,
+            tuned,
+            robot_count: 1,
+            faster_count: 1,
+            fragment: String::new(),
+        }
+    }
+
+    #[test]
+    fn only_a_gait_with_a_positive_speed_is_a_base_for_a_gain() {
+        assert_eq!(compare(2.0, 5.0).gain(), Some(1.5));
+        for given_speed in [0.0, -0.1] {
+            let comparison = compare(given_speed, 5.0);
+            assert!(comparison.is_better());
+            assert_eq!(comparison.gain(), None);
+        }
     }
 }

@@ -170,7 +170,7 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
     assert!(lines[0].starts_with(&banner), "{lines:?}");
     assert_eq!(lines[1..], [damaged.expected_note]);
     // The firmware answers only queries, and refuses all other commands.
-    let query_words = [Word::Help, Word::QuestionMark, Word::Status, Word::Watch];
+    let query_words = [Word::Help, Word::QuestionMark, Word::Status];
     let refused_words = Word::ALL.iter().filter(|word| !query_words.contains(word));
     let examples = refused_words.map(|word| word.example().to_owned());
     let moves = [first_moving_gait(), "stand".into(), pose_command([1.0; 4])];
@@ -182,7 +182,6 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
     let (notes, answer) = bench.ask("help");
     assert_eq!(answer, "ok help");
     assert!(notes.len() < 10, "{notes:?}");
-    assert_eq!(bench.ask("watch 0"), (vec![], "ok watch 0".into()));
     // Waits until after the delay of `boot`.
     bench.run_ms(3_200);
     let (notes, status) = bench.ask("status");

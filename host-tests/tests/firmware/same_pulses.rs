@@ -38,10 +38,10 @@ impl Random {
 fn random_command(random: &mut Random, robot: &Robot) -> String {
     let servo = 1 + random.next_below(4);
     let neutral_hundredths = |index: usize| (robot.servos()[index].neutral * 100.0).round() as i64;
-    let random_pose_near = |random: &mut Random, max_hundredths: i64| {
+    let random_pose_near = |random: &mut Random, max_offset: i64| {
         let random_angle = |index: usize| {
             let angle = neutral_hundredths(index);
-            random.next_decimal(angle - max_hundredths, angle + max_hundredths)
+            random.next_decimal(angle - max_offset, angle + max_offset)
         };
         let angles: Vec<String> = (0..4).map(random_angle).collect();
         format!("pose {}", angles.join(" "))
@@ -98,8 +98,8 @@ fn run_and_digest(name: &str) -> (u64, u64) {
     for frame in 0..frame_count {
         let start = first_rise + frame * FRAME_CYCLES;
         if frame == next_frame {
-            // The line is sent far from a tick, which comes 4 ms before A1's slot, and long before the next line, so
-            // the frame in which the robot executes the line is certain.
+            // The line is sent far from the interrupt that starts a frame, 4 ms before A1's pulse may begin, and long
+            // before the next line, so the frame in which the robot executes the line is certain.
             uno.run_until_cycle(start + random.next_below(8) * CYCLES_PER_MS);
             uno.send(random_command(&mut random, &robot).as_bytes());
             uno.send(b"\n");
@@ -123,6 +123,7 @@ fn run_and_digest(name: &str) -> (u64, u64) {
     }
     let text = decode_text(&uno.transmitted());
     let answer_count = text.lines().filter(|line| !line.starts_with('#')).count();
+    // The last command may have come too late for its answer.
     assert!(
         (command_count - 1..=command_count).contains(&answer_count),
         "{answer_count} answers to {command_count} commands"

@@ -118,7 +118,7 @@ fn only_the_guard_and_not_the_papers_condition_refuses_the_real_singularity() {
     assert_eq!(refused_margin(&tail_pose), Some(Margin::Type2(End::Tail)));
 }
 
-/// Returns the margin because of which the guard refuses a pose; `None` if the guard accepts every margin.
+/// Returns the margin that makes the guard refuse a pose; `None` if the guard accepts every margin.
 fn refused_margin(pose: &Pose) -> Option<Margin> {
     let firmware = paper_robot().firmware();
     match Clearance::measure(firmware, pose).first_hazard(firmware) {

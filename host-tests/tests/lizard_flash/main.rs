@@ -219,6 +219,17 @@ fn a_board_whose_reset_button_is_pressed_during_an_upload_is_reset_again_and_fla
 }
 
 #[test]
+fn a_closed_standard_error_does_not_stop_an_upload() {
+    let mut board = ConnectedBoard::with_new_uno();
+    let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
+    let script = r#""$0" flash "$1" --json 2>&1 >/dev/null | head -n 1"#;
+    let port = board.port_path();
+    let shell = Shell::start("bash", &["-c", script, &lizard, &port], &[]);
+    board.run_until_exit(&shell);
+    board.assert_flashed_with(&firmware());
+}
+
+#[test]
 fn a_byte_that_changes_after_its_write_is_rewritten() {
     let mut board = ConnectedBoard::with_new_uno();
     let shell = start_lizard_flash(&board, &[]);

@@ -175,7 +175,7 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
         }
         write_checksum(&mut section);
         match find_damage(&section) {
-            Some(SectionError::Impossible) => refused_count += 1,
+            Some(SectionError::Harmful) => refused_count += 1,
             Some(error) => panic!("section {index} is {error:?}"),
             None => {
                 accepted_count += 1;
@@ -243,7 +243,7 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
                 (needed_travel.min, needed_travel.max) = (Sweep(min), Sweep(max));
                 let damage = find_damage(&content.section_bytes());
                 let case = format!("{} {servo} {min} {max}", named.name);
-                assert_eq!(damage, Some(SectionError::Impossible), "{case}");
+                assert_eq!(damage, Some(SectionError::Harmful), "{case}");
             }
         }
     }

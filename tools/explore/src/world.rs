@@ -192,7 +192,7 @@ impl World {
             }
             Action::Reset(cause) => self.reset(cause),
             Action::PowerLoss(torn_byte) => {
-                self.running_robot.lose_power(torn_byte);
+                self.running_robot.cycle_power(torn_byte);
                 self.record_restart(Cause::Power);
             }
             Action::Contact(pin, is_closed) => self.set_contact(pin, is_closed)?,

@@ -114,12 +114,12 @@ pub fn format_table(
     assumptions: &GroupedDisplacements,
 ) -> String {
     let percent_change = |gait: &str, displacement: Displacement| {
-        let level = surface::find_level_displacement(walk_results, gait);
-        let component = match level.0[0].abs() > level.0[2].abs() {
+        let level_displacement = surface::find_level_displacement(walk_results, gait);
+        let component = match level_displacement.0[0].abs() > level_displacement.0[2].abs() {
             true => Component::Forward,
             false => Component::Turn,
         };
-        100.0 * (component.value(displacement) / component.value(level) - 1.0)
+        100.0 * (component.value(displacement) / component.value(level_displacement) - 1.0)
     };
     let surface_rows = Surface::ALL.map(|surface| {
         let name = surface.to_string();

@@ -19,9 +19,9 @@ pub enum FootSetup {
     /// All feet have the same length; their leaves are as in robot.toml.
     Level,
     /// The front left foot is 0.6 mm too long; all leaves have a stiffness of 2 N/mm.
-    Stiff,
+    LongStiff,
     /// The front left foot is 1.0 mm too long; the leaves are as in robot.toml.
-    Soft,
+    Long,
 }
 
 impl FootSetup {
@@ -29,16 +29,16 @@ impl FootSetup {
     pub fn excess_length_mm(self) -> f64 {
         match self {
             Self::Level => 0.0,
-            Self::Stiff => 0.6,
-            Self::Soft => 1.0,
+            Self::LongStiff => 0.6,
+            Self::Long => 1.0,
         }
     }
 
     /// Returns the leaves' stiffness on a robot, N/mm.
     pub fn leaf_stiffness(self, robot: &Robot) -> f64 {
         match self {
-            Self::Stiff => 2.0,
-            Self::Level | Self::Soft => robot.ground().stance.stiffness,
+            Self::LongStiff => 2.0,
+            Self::Level | Self::Long => robot.ground().stance.stiffness,
         }
     }
 }
@@ -61,10 +61,10 @@ impl Case {
         }
         [
             case(LegDrive::Rigid, FootSetup::Level),
-            case(LegDrive::Rigid, FootSetup::Stiff),
-            case(LegDrive::Rigid, FootSetup::Soft),
+            case(LegDrive::Rigid, FootSetup::LongStiff),
+            case(LegDrive::Rigid, FootSetup::Long),
             case(LegDrive::Strut, FootSetup::Level),
-            case(LegDrive::Strut, FootSetup::Stiff),
+            case(LegDrive::Strut, FootSetup::LongStiff),
         ]
     };
 
@@ -97,8 +97,8 @@ impl fmt::Display for Case {
         };
         let feet = match self.feet {
             FootSetup::Level => "level",
-            FootSetup::Stiff => "0.6 mm long on 2 N/mm",
-            FootSetup::Soft => "1.0 mm long",
+            FootSetup::LongStiff => "0.6 mm long on 2 N/mm",
+            FootSetup::Long => "1.0 mm long",
         };
         write!(f, "{legs}, {feet}")
     }

@@ -3,7 +3,7 @@
 use lizard_robot::{CheckedGait, Effort, GRAVITY, HIGH_UTILISATION, Robot, ServoType};
 
 /// Returns the table of expected results for `docs/measure.md`.
-pub fn format_expected_table(robot: &Robot) -> String {
+pub fn format_expected_results_table(robot: &Robot) -> String {
     let ground = robot.ground();
     let (mass, stiffness) = (ground.body.mass, ground.stance.stiffness);
     let grams = |newton: f64| 1000.0 * newton / GRAVITY;

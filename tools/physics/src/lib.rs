@@ -5,8 +5,8 @@
 //! `lizard model` writes, without using the contact model.
 //!
 //! `make physics` runs MuJoCo ([`mujoco`]), compares its displacements with the model's and with the stored ones in
-//! `figures.json`, and prints all displacements. The tables in the documentation come from the stored results
-//! ([`WalkResults`], [`format_table`]). Therefore a test without MuJoCo keeps the tables current.
+//! `walks.json`, and prints all displacements. The tables in the documentation come from the stored results
+//! ([`WalkResults`], [`format_comparison_table`]). Therefore a test without MuJoCo keeps the tables current.
 
 pub mod assumptions;
 mod case;
@@ -24,9 +24,9 @@ mod walk;
 
 pub use case::{Case, FootSetup, LegDrive};
 pub use crossing::Crossing;
-pub use expected::format_expected_table;
+pub use expected::format_expected_results_table;
 pub use results::{Displacement, DisplacementPair, GroupedDisplacements, WalkResults};
-pub use table::{format_displacement_table, format_table};
+pub use table::{format_comparison_table, format_displacement_table};
 pub use walk::{Walk, list_walks};
 
 use std::path::PathBuf;

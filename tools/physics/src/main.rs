@@ -16,7 +16,7 @@ use lizard_physics::surface::{self, Surface, SurfaceDisplacements, format_surfac
 use lizard_physics::text::{format_stored, load_stored};
 use lizard_physics::{
     Displacement, DisplacementPair, GroupedDisplacements, ROBOT_NAMES, WalkResults, crate_dir,
-    format_table, list_walks, load_robot,
+    format_comparison_table, list_walks, load_robot,
 };
 
 /// The largest difference from a stored displacement that does not count as a change.
@@ -93,8 +93,8 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     }
     for (name, walk) in &surface_walks {
         let assembly = Assembly::new(&load_robot(walk.robot));
-        let (surface, level) = (walk.surface, walk.level_displacement);
-        let scene = surface.make_scene(name, &assembly, &walk.gait, level);
+        let (surface, displacement) = (walk.surface, walk.level_displacement);
+        let scene = surface.make_scene(name, &assembly, &walk.gait, displacement);
         batch.add(&assembly, [scene])?;
     }
     for (name, (variant, gait)) in &servo_walks {
@@ -103,15 +103,15 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     }
     for (name, (assumption, gait)) in &assumption_walks {
         let assembly = Assembly::new(&assumption.load_robot());
-        let level = surface::find_level_displacement(&stored_results, gait);
-        let scene = assumption.make_scene(name, &assembly, gait, level);
+        let displacement = surface::find_level_displacement(&stored_results, gait);
+        let scene = assumption.make_scene(name, &assembly, gait, displacement);
         batch.add(&assembly, [scene])?;
     }
     let paper = Assembly::new(&load_robot("paper"));
-    let level = surface::find_level_displacement(&stored_results, pads::GAIT);
+    let displacement = surface::find_level_displacement(&stored_results, pads::GAIT);
     let named_pad_walks = pad_walks.iter();
     let scenes = named_pad_walks
-        .map(|(name, (shape, surface))| shape.make_scene(name, &paper, *surface, level));
+        .map(|(name, (shape, surface))| shape.make_scene(name, &paper, *surface, displacement));
     batch.add(&paper, scenes)?;
     let walk_count = batch.walk_count();
     println!("physics: MuJoCo simulates {walk_count} walks, which takes some minutes");
@@ -134,15 +134,16 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
             faults.extend(messages.into_iter().map(describe));
             walk_results.store(robot_name, &walk.gait, walk.case, results);
         }
-        println!("\n{}", format_table(robot_name, robot, &walk_results));
+        let table = format_comparison_table(robot_name, robot, &walk_results);
+        println!("\n{table}");
     }
     let stored_surfaces: SurfaceDisplacements = load_stored("surfaces.json");
     let mut surfaces = SurfaceDisplacements::new();
     for (name, walk) in &surface_walks {
         let (robot, gait, surface) = (walk.robot, &walk.gait, walk.surface);
         let displacement = mujoco_displacements[name];
-        let level = walk.level_displacement;
-        let mut messages = surface::describe_excess_losses(surface, level, displacement);
+        let mut messages =
+            surface::describe_shortfalls(surface, walk.level_displacement, displacement);
         if surface::KNOWN_SHORTFALLS.contains(&(robot, gait.as_str(), surface)) {
             messages.clear();
         }
@@ -213,7 +214,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     }
     if is_writing {
         for (file, text) in [
-            ("figures.json", format_stored(&walk_results, 3)),
+            ("walks.json", format_stored(&walk_results, 3)),
             ("surfaces.json", format_stored(&surfaces, 2)),
             ("assumptions.json", format_stored(&by_assumption, 1)),
             ("pads.json", format_stored(&by_shape, 1)),

@@ -46,10 +46,10 @@ pub struct DisplacementPair {
 /// The allowed difference between MuJoCo and the model with level feet: that of the distance in mm, or as a fraction
 /// of the distance if this is larger, and that of the turn in deg.
 const LEVEL_FEET_TOLERANCE: (f64, f64, f64) = (1.5, 0.08, 1.0);
-/// The allowed difference with one foot too long on soft leaves.
-const SOFT_FOOT_TOLERANCE: (f64, f64, f64) = (2.5, 0.08, 1.5);
+/// The allowed difference with one foot too long on leaves as in robot.toml.
+const LONG_FOOT_TOLERANCE: (f64, f64, f64) = (2.5, 0.08, 1.5);
 /// The allowed difference with one foot too long on stiff leaves, where hundredths of a mm decide which feet stick.
-const STIFF_FOOT_TOLERANCE: (f64, f64, f64) = (5.0, 0.35, 4.0);
+const LONG_STIFF_FOOT_TOLERANCE: (f64, f64, f64) = (5.0, 0.35, 4.0);
 /// The model's displacement below which MuJoCo may differ by [`STANDSTILL_TOLERANCE_MM`]. The robot then moves nearly
 /// equally fast in both directions, and the result depends on inertia.
 const STANDSTILL_MM: f64 = 1.0;
@@ -61,8 +61,8 @@ impl DisplacementPair {
     pub fn allowed_difference(&self, case: Case) -> (f64, f64) {
         let (mm, fraction, deg) = match case.feet {
             FootSetup::Level => LEVEL_FEET_TOLERANCE,
-            FootSetup::Soft => SOFT_FOOT_TOLERANCE,
-            FootSetup::Stiff => STIFF_FOOT_TOLERANCE,
+            FootSetup::Long => LONG_FOOT_TOLERANCE,
+            FootSetup::LongStiff => LONG_STIFF_FOOT_TOLERANCE,
         };
         let [forward, left, turn] = self.model.unwrap_or_default().0;
         let distance = forward.hypot(left);
@@ -96,12 +96,12 @@ pub type GroupedDisplacements = BTreeMap<String, BTreeMap<String, Displacement>>
 pub struct WalkResults(BTreeMap<String, BTreeMap<String, BTreeMap<String, DisplacementPair>>>);
 
 impl WalkResults {
-    /// Loads the results stored in `figures.json`.
+    /// Loads the results stored in `walks.json`.
     ///
     /// # Panics
-    /// If `figures.json` does not have the format of the results.
+    /// If `walks.json` does not have the format of the results.
     pub fn load_stored() -> Self {
-        text::load_stored("figures.json")
+        text::load_stored("walks.json")
     }
 
     /// Returns the results for a robot's gait in a case; `None` if no results are stored.

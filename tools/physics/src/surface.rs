@@ -38,25 +38,25 @@ pub(crate) fn list_gait_purposes(displacement: Displacement) -> Vec<Component> {
 pub fn list_walking_gaits(walk_results: &WalkResults, robot: &str) -> Vec<(String, Displacement)> {
     if robot == grains::ROBOT {
         let stored: GrainResults = load_stored("grains.json");
-        let find_level = |(gait, _): (&str, bool)| {
+        let with_displacement = |(gait, _): (&str, bool)| {
             let results = grains::find_results_at_own_ratio(&stored[gait]);
             (gait.to_owned(), results.mujoco)
         };
-        return grains::GAITS.map(find_level).into();
+        return grains::GAITS.map(with_displacement).into();
     }
     let loaded_robot = crate::load_robot(robot);
     let gaits = loaded_robot.gaits().iter();
     let moving = gaits.filter(|gait| gait.has_movement());
     let level_results = moving.map(|gait| {
         let results = walk_results.get(robot, gait.name(), Case::ALL[0]);
-        let results = results.expect("figures.json has the result");
+        let results = results.expect("walks.json has the result");
         (gait.name().to_owned(), *results)
     });
     // If two feet pull against the other two, the contact model has no result, and the gait has no definite path.
     level_results
         .filter(|(_, results)| results.model.is_some())
         .map(|(gait, results)| (gait, results.mujoco))
-        .filter(|(_, level)| !list_gait_purposes(*level).is_empty())
+        .filter(|(_, displacement)| !list_gait_purposes(*displacement).is_empty())
         .collect()
 }
 
@@ -226,7 +226,7 @@ pub type SurfaceDisplacements = BTreeMap<String, GroupedDisplacements>;
 /// If no displacement of the gait is stored.
 pub fn find_level_displacement(walk_results: &WalkResults, gait: &str) -> Displacement {
     let results = walk_results.get("paper", gait, Case::ALL[0]);
-    results.expect("figures.json has the result").mujoco
+    results.expect("walks.json has the result").mujoco
 }
 
 /// Gaits that keep less of their displacement than required, each with its robot and surface. On pads with a grain,
@@ -236,13 +236,13 @@ pub const KNOWN_SHORTFALLS: [(&str, &str, Surface); 2] = [
     (grains::ROBOT, "back", Surface::Blocks(10)),
 ];
 
-/// Returns a message for each purpose (distance, turn) of which the gait loses more than allowed on the surface.
-pub fn describe_excess_losses(
+/// Returns a message for each purpose (distance, turn) of which the gait keeps less than required on the surface.
+pub fn describe_shortfalls(
     surface: Surface,
     level_displacement: Displacement,
     displacement: Displacement,
 ) -> Vec<String> {
-    let describe_loss = |component: Component| {
+    let describe_shortfall = |component: Component| {
         let [level_value, value] =
             [level_displacement, displacement].map(|displacement| component.value(displacement));
         let unit = component.unit();
@@ -256,7 +256,7 @@ pub fn describe_excess_losses(
         })
     };
     let purposes = list_gait_purposes(level_displacement).into_iter();
-    purposes.filter_map(describe_loss).collect()
+    purposes.filter_map(describe_shortfall).collect()
 }
 
 /// Returns the table of a robot's gaits on its surfaces in Markdown.
@@ -270,23 +270,23 @@ pub fn format_surfaces_table(
     let headings = headings.collect::<String>();
     let lines = "---|".repeat(robot_surfaces.len());
     let mut text = format!("| gait | level |{headings}\n|---|---|{lines}\n");
-    for (gait, level) in list_walking_gaits(walk_results, robot) {
+    for (gait, level_displacement) in list_walking_gaits(walk_results, robot) {
         let stored = surfaces.get(robot).and_then(|by_gait| by_gait.get(&gait));
-        for component in list_gait_purposes(level) {
+        for component in list_gait_purposes(level_displacement) {
             let format_cell = |displacement| format!(" {:+.1}", component.value(displacement));
             let displacements = robot_surfaces.iter().map(|surface| {
                 let find_displacement = || stored?.get(&surface.to_string());
                 let Some(displacement) = find_displacement() else {
                     return " - |".to_owned();
                 };
-                let fraction = component.value(*displacement) / component.value(level);
+                let fraction = component.value(*displacement) / component.value(level_displacement);
                 let min_fraction = surface.min_fraction(component);
                 let is_shortfall = min_fraction.is_some_and(|min_fraction| fraction < min_fraction);
                 let mark = if is_shortfall { "!" } else { "" };
                 format!("{}{mark} |", format_cell(*displacement))
             });
             let displacements = displacements.collect::<String>();
-            let (unit, level_cell) = (component.unit(), format_cell(level));
+            let (unit, level_cell) = (component.unit(), format_cell(level_displacement));
             _ = writeln!(text, "| {gait}, {unit} |{level_cell} |{displacements}");
         }
     }

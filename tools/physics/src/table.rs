@@ -54,7 +54,7 @@ impl Component {
 
 /// Returns a plain-text table of all results of a robot, with the model and MuJoCo side by side and one block for each
 /// kind of leg drive.
-pub fn format_table(name: &str, robot: &Robot, walk_results: &WalkResults) -> String {
+pub fn format_comparison_table(name: &str, robot: &Robot, walk_results: &WalkResults) -> String {
     let mut lines = Vec::new();
     for legs in [LegDrive::Rigid, LegDrive::Strut] {
         let title = match legs {
@@ -67,8 +67,8 @@ pub fn format_table(name: &str, robot: &Robot, walk_results: &WalkResults) -> St
         let width = list_moving_gaits(robot).map(str::len).max().unwrap_or(0);
         let headings = cases.iter().map(|case| match case.feet {
             FootSetup::Level => "level",
-            FootSetup::Stiff => "0.6 mm long, 2 N/mm",
-            FootSetup::Soft => "1.0 mm long",
+            FootSetup::LongStiff => "0.6 mm long, 2 N/mm",
+            FootSetup::Long => "1.0 mm long",
         });
         let headings: String = headings.map(|heading| format!("  {heading:<20}")).collect();
         lines.push(format!("{:width$}    {headings}", ""));
@@ -113,7 +113,7 @@ pub fn format_displacement_table(name: &str, robot: &Robot, walk_results: &WalkR
             let legs = LegDrive::Rigid;
             walk_results.get(name, gait.name(), Case { legs, feet })
         };
-        let results = [FootSetup::Level, FootSetup::Soft].map(find_results);
+        let results = [FootSetup::Level, FootSetup::Long].map(find_results);
         let [Some(level), Some(long_foot)] = results else {
             continue;
         };

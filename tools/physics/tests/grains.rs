@@ -34,7 +34,7 @@ fn the_documentation_and_the_robot_file_have_the_stored_speeds() {
 }
 
 #[test]
-fn every_result_is_stored_as_it_is_formatted_and_agrees_with_the_model() {
+fn every_result_is_stored_in_the_format_of_format_stored_and_agrees_with_the_model() {
     let stored: GrainResults = load_stored("grains.json");
     let text = std::fs::read_to_string(crate_dir().join("grains.json"));
     let text = text.expect("grains.json is readable");

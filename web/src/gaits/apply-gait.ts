@@ -25,7 +25,7 @@ export async function driveGait(session: Session, gait: EditedGait): Promise<Ref
  * board.
  */
 export async function restartWithGait(session: Session, gait: EditedGait): Promise<Refusal | null> {
-  if (session.isReal) return refuse('A real board has only the gaits that were written to it. Write this gait to the board, or return to the simulation to try it.');
+  if (session.isBoardReal) return refuse('A real board has only the gaits that were written to it. Write this gait to the board, or return to the simulation to try it.');
   const refusal = await applyGait(session, gait);
   if (refusal) return refusal;
   const { dialogue } = session;

@@ -23,7 +23,7 @@ const api = {
     robot.setFloor(floor);
     robot.setServos(servos);
     const search = robot.beginSearch(task);
-    if (isRefused(search)) throw new Error(search.refused);
+    if (isRefused(search)) throw new Error(search.reason);
     return { ...search, referenceTrial: robot.tryGait(task.bars) as Trial };
   },
 

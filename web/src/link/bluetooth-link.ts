@@ -83,10 +83,7 @@ export class BluetoothLink implements Link {
       const service = await server.getPrimaryService(candidate.service).catch(() => null);
       if (!service) continue;
       const readCharacteristic = await service.getCharacteristic(candidate.read);
-      readCharacteristic.addEventListener('characteristicvaluechanged', () => {
-        const { value } = readCharacteristic;
-        if (value) this.onBytes(new Uint8Array(value.buffer, value.byteOffset, value.byteLength).slice());
-      });
+      readCharacteristic.addEventListener('characteristicvaluechanged', this.forwardValue);
       await readCharacteristic.startNotifications();
       this.writeCharacteristic = candidate.write === candidate.read ? readCharacteristic : await service.getCharacteristic(candidate.write);
       return;
@@ -94,6 +91,12 @@ export class BluetoothLink implements Link {
     this.gatt.disconnect();
     throw new Error(`${this.device.name ?? 'The module'} has no serial service: expected service FFE0 of an HM-10, or Nordic's.`);
   }
+
+  /** Forwards received bytes; one function, so that a second attempt to connect does not add another listener. */
+  private readonly forwardValue = ({ target }: Event): void => {
+    const { value } = target as BluetoothRemoteGATTCharacteristic;
+    if (value) this.onBytes(new Uint8Array(value.buffer, value.byteOffset, value.byteLength).slice());
+  };
 
   private async reconnect(): Promise<void> {
     // If the first connection fails, `open` reports it.

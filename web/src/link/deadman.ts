@@ -31,12 +31,17 @@ export class Deadman {
   }
 
   private async setAndConfirm(): Promise<boolean> {
-    if (this.robotSettingMs === null) await this.readSetting();
+    if (this.robotSettingMs === null) {
+      await this.readSetting();
+      // Meanwhile the robot has restarted, or a user's line needs the robot's own setting.
+      if (!this.isEngaged) return false;
+    }
     const ms = this.robotSettingMs ? Math.min(this.robotSettingMs, DRIVING_DEADMAN_MS) : DRIVING_DEADMAN_MS;
     const line = `${WORDS.deadman} ${ms}`;
     const isConfirmed = (await this.askQuietly(line))?.ok ?? false;
     if (isConfirmed && this.isEngaged) this.dialogue.keepAlive(line, Math.floor(ms / LINES_PER_DEADMAN));
-    return isConfirmed;
+    else this.restore();
+    return this.isEngaged;
   }
 
   private async readSetting(): Promise<void> {

@@ -121,15 +121,21 @@ export class Dialogue {
 
   /** Drops all requests: the board restarts, or another user takes over the link. */
   dropRequests(): void {
-    const dropped = [...(this.pendingRequest ? [this.pendingRequest] : []), ...(this.pendingStop?.callers ?? [])];
-    this.pendingRequest = null;
+    const { pendingStop: stop } = this;
     this.partialLine = '';
     this.notes = [];
-    if (this.pendingStop) this.listener.onStopping(false);
+    if (stop) this.listener.onStopping(false);
     this.pendingStop = null;
     this.setSilent(false);
-    for (const { reject } of dropped) reject(new DroppedRequest());
+    for (const { reject } of stop?.callers ?? []) reject(new DroppedRequest());
+    this.dropPendingRequest();
     this.dropQueuedRequests();
+  }
+
+  private dropPendingRequest(): void {
+    const { pendingRequest: request } = this;
+    this.pendingRequest = null;
+    request?.reject(new DroppedRequest());
   }
 
   private dropQueuedRequests(): void {
@@ -175,9 +181,7 @@ export class Dialogue {
     this.listener.onStopping(false);
     this.setSilent(false);
     // Answers arrive in order; therefore the answer to the line before `stop` was lost.
-    const { pendingRequest: request } = this;
-    this.pendingRequest = null;
-    request?.reject(new DroppedRequest());
+    this.dropPendingRequest();
     for (const { resolve } of stop.callers) resolve(answer);
     const lateAnswerPeriod = (this.lateAnswerPeriod = stop.sendCount > 1 ? this.link.wait(LATE_STOP_ANSWERS_MS) : null);
     void lateAnswerPeriod?.then(() => {
@@ -232,6 +236,12 @@ export class Dialogue {
     const line = received.slice(Math.max(0, received.indexOf(BANNER_PREFIX))).replace(BLUETOOTH_MODULE_MESSAGES, '');
     if (line === '') return;
     this.listener.onAnyLine(line);
+    if (line.startsWith(BANNER_PREFIX)) {
+      // The robot has restarted: it answers no earlier line, and a waiting line must not make it walk.
+      this.dropPendingRequest();
+      this.dropQueuedRequests();
+      if (!this.pendingStop) this.setSilent(false);
+    }
     const { pendingRequest: request, pendingStop: stop } = this;
     const isAnswer = /^(ok|err)\b/.test(line);
     if (!isAnswer) {

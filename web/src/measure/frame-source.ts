@@ -59,7 +59,7 @@ export class FrameSource {
     stream.getVideoTracks()[0]?.addEventListener('ended', onEnd);
     this.video.srcObject = stream;
     this.processFrames(1);
-    await this.video.play();
+    await this.play();
   }
 
   /** Plays a video file; resolves at its end. Throws an error with a message for the user. */
@@ -75,11 +75,19 @@ export class FrameSource {
       });
       video.src = address;
       this.processFrames(MAX_PENDING_FRAMES);
-      await Promise.race([video.play().then(() => videoEnd), videoEnd]);
+      await Promise.race([this.play().then(() => videoEnd), videoEnd]);
       while (this.pendingFrameCount > 0 && this.generation === startGeneration) await new Promise((resolve) => setTimeout(resolve, 20));
     } finally {
       URL.revokeObjectURL(address);
     }
+  }
+
+  /** Plays the video; also resolves if `stop` is called before it plays. */
+  private async play(): Promise<void> {
+    const { generation: startGeneration } = this;
+    await this.video.play().catch((error: unknown) => {
+      if (this.generation === startGeneration) throw error;
+    });
   }
 
   /** Switches the camera off, or closes the video. */
@@ -112,7 +120,7 @@ export class FrameSource {
         .finally(() => {
           if (this.generation !== startGeneration) return;
           this.pendingFrameCount -= 1;
-          if (!this.isCamera && video.paused && !video.ended) void video.play();
+          if (!this.isCamera && video.paused && !video.ended) void this.play();
         });
     };
     video.requestVideoFrameCallback(onFrame);

@@ -1,13 +1,13 @@
 // Makes the robot's parts in a worker: solids, their places in a pose, and all files as one archive.
 import { proxy, type Remote } from 'comlink';
 
-import type { Clash, ModelEntry, Refusal } from '../../generated/parts';
+import type { CollidingPair, ModelDescription, Refusal } from '../../generated/parts';
 import { files } from '../files';
 import { CallableWorker } from '../callable-worker';
 import type { PartsWorkerApi, Progress } from './worker';
 
-export type { Clash, Progress };
-export type Model = ModelEntry;
+export type { CollidingPair, Progress };
+export type Model = ModelDescription;
 /** The triangles of a solid: the corners' coordinates in mm, and three corner indices per triangle. */
 export type Solid = { corners: Float32Array; triangles: Uint32Array };
 /**
@@ -19,11 +19,11 @@ export type PartsArchive = ReturnType<PartsWorkerApi['makeArchive']>;
 /** The error for a robot whose parts cannot be made; its message is for the user. */
 export class UnfitError extends Error {
   /** The two parts that overlap or come too close; null for another reason. */
-  readonly clash: Clash | null;
+  readonly collidingPair: CollidingPair | null;
 
-  constructor({ refused, clash }: Refusal) {
-    super(refused);
-    this.clash = clash;
+  constructor({ reason, colliding_pair }: Refusal) {
+    super(reason);
+    this.collidingPair = colliding_pair;
   }
 }
 
@@ -41,7 +41,7 @@ export class PartsWorker extends CallableWorker<PartsWorkerApi> {
     const module = await files.partsModule();
     await this.call((parts) => parts.load(module));
     return this.call(invoke).catch((error: Error | Refusal) => {
-      throw 'refused' in error ? new UnfitError(error) : error;
+      throw 'reason' in error ? new UnfitError(error) : error;
     });
   }
 

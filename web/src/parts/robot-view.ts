@@ -31,7 +31,7 @@ export interface ViewSettings {
   /** Index of the selected body; null for none. */
   selectedBody: number | null;
   /** Indices of the two bodies that overlap or come too close; empty if all bodies fit. */
-  clashingBodies: number[];
+  collidingBodies: number[];
 }
 
 /** A 3D view of the robot, which the user can rotate, zoom and click. */
@@ -46,7 +46,7 @@ export class RobotView {
   private model: Model | null = null;
   private mounts: three.Group[] = [];
   private meshes: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>[] = [];
-  private settings: ViewSettings = { explosion: 0, guideStep: null, selectedBody: null, clashingBodies: [] };
+  private settings: ViewSettings = { explosion: 0, guideStep: null, selectedBody: null, collidingBodies: [] };
   private needsRendering = true;
   /** Time of the last change, ms. */
   private changedAt = 0;
@@ -145,7 +145,7 @@ export class RobotView {
       geometry.computeBoundingSphere();
       return geometry;
     });
-    this.mounts = Array.from({ length: model.mounts }, () => {
+    this.mounts = Array.from({ length: model.mount_count }, () => {
       const mount = new three.Group();
       mount.matrixAutoUpdate = false;
       this.scene.add(mount);
@@ -163,7 +163,7 @@ export class RobotView {
   /** Applies the view's settings and the colours of the current colour scheme. */
   applySettings(settings: ViewSettings): void {
     this.settings = settings;
-    const { guideStep, explosion, selectedBody, clashingBodies } = settings;
+    const { guideStep, explosion, selectedBody, collidingBodies } = settings;
     const colours = getPalette();
     const floor = new three.Color(colours.floor);
     this.scene.background = floor;
@@ -177,11 +177,11 @@ export class RobotView {
       const mesh = this.meshes[index];
       const isInCurrentStep = guideStep === null || body.step === guideStep;
       mesh.visible = guideStep === null || body.step <= guideStep;
-      const highlightedBodies = clashingBodies.length > 0 ? clashingBodies : selectedBody === null ? null : [selectedBody];
+      const highlightedBodies = collidingBodies.length > 0 ? collidingBodies : selectedBody === null ? null : [selectedBody];
       const isPale = highlightedBodies ? !highlightedBodies.includes(index) : !isInCurrentStep;
-      mesh.material.color.set(clashingBodies.includes(index) ? colours.alarm : chooseColour(body)).lerp(floor, isPale ? PALE_FRACTION : 0);
+      mesh.material.color.set(collidingBodies.includes(index) ? colours.alarm : chooseColour(body)).lerp(floor, isPale ? PALE_FRACTION : 0);
       const lift = new three.Matrix4().makeTranslation(0, 0, isInCurrentStep ? explosion * LIFT_MM * body.lift : 0);
-      mesh.matrix.copy(lift.multiply(new three.Matrix4().fromArray(body.place)));
+      mesh.matrix.copy(lift.multiply(new three.Matrix4().fromArray(body.matrix)));
       mesh.matrixWorldNeedsUpdate = true;
     });
     this.needsRendering = true;
@@ -226,7 +226,7 @@ export class RobotView {
     if (!this.grid) return;
     const rotation = new three.Matrix4().makeRotationZ((-heading * Math.PI) / 180);
     const wrapToCell = (value: number) => value - GRID_CELL_MM * Math.round(value / GRID_CELL_MM);
-    const floorZ = this.settings.guideStep === null ? -(this.model?.floor ?? 0) : -2 * (this.model?.floor ?? 0);
+    const floorZ = this.settings.guideStep === null ? -(this.model?.sole_depth ?? 0) : -2 * (this.model?.sole_depth ?? 0);
     const translation = new three.Matrix4().makeTranslation(-wrapToCell(x), -wrapToCell(y), floorZ);
     this.grid.matrix.copy(rotation.multiply(translation));
     this.grid.matrixWorldNeedsUpdate = true;

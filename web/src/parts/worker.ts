@@ -18,9 +18,9 @@ let shownParts: Parts | null = null;
 /** Makes all files of a robot; returns their bytes by path. */
 function makeFiles(parts: Parts, onProgress: (progress: Progress) => void): Record<string, Uint8Array> {
   const filesByPath: Record<string, Uint8Array> = {};
-  const fileCount = parts.entry().files;
-  for (let index = 0; index < fileCount; index++) {
-    onProgress({ stage: 'make', done: index, total: fileCount });
+  const groupCount = parts.describe().file_group_count;
+  for (let index = 0; index < groupCount; index++) {
+    onProgress({ stage: 'make', done: index, total: groupCount });
     for (const { path, bytes } of parts.files(index)) filesByPath[path] = bytes;
   }
   return filesByPath;
@@ -36,7 +36,7 @@ const api = {
     shownParts = null;
     shownParts = new Parts(toml);
     const solids = shownParts.solids().map(({ corners, triangles }) => ({ corners, triangles }));
-    return transfer({ model: shownParts.entry(), solids }, solids.flatMap(({ corners, triangles }) => [corners.buffer, triangles.buffer]));
+    return transfer({ model: shownParts.describe(), solids }, solids.flatMap(({ corners, triangles }) => [corners.buffer, triangles.buffer]));
   },
 
   /** Returns the places of the shown parts' mounts; null if no parts are shown or a loop does not close. */

@@ -18,7 +18,7 @@ export function warnOfBoardRobot(session: Session, problems: ProblemList, showRo
   const reader = new Robot();
   const update = async () => {
     const { otherRobot } = session;
-    if (!session.isReal || !otherRobot) return problems.setMessage('other', null);
+    if (!session.isBoardReal || !otherRobot) return problems.setMessage('other', null);
     const knownRobot = await findByHash(reader, otherRobot.hash);
     if (session.otherRobot?.hash !== otherRobot.hash) return;
     const message = `The ${session.link.name} has another robot, ${otherRobot.name}, but the page draws and predicts ${formatRobotName(session)}.`;

@@ -15,9 +15,12 @@ export function setUpCalibration(session: Session): void {
   let servos: ShowSettings[] = [];
   /** True after a command without an answer: the shown settings may differ from the robot's settings. */
   let mayBeOutdated = false;
+  /** Number of lines that the panel has sent. */
+  let sentCount = 0;
 
   /** Reads the robot's settings and shows them. */
   async function read(): Promise<void> {
+    const previousCount = sentCount;
     const answer = await session.ask(WORDS.cal, true);
     const board = await loadBoardModule().catch((error: unknown) => {
       message.textContent = getMessage(error);
@@ -25,12 +28,15 @@ export function setUpCalibration(session: Session): void {
     });
     const settings = answer && board?.readCalibration(answer.notes);
     if (!settings) return;
+    // The user has changed a setting meanwhile.
+    if (sentCount !== previousCount) return read();
     mayBeOutdated = false;
     if (servos.length === 0) servos = settings.servos.map((_, index) => addServo(index + 1, send));
     settings.servos.forEach((servo, index) => servos[index](servo));
   }
 
   async function send(line: string): Promise<void> {
+    sentCount += 1;
     const answer = await session.ask(line);
     message.textContent = answer?.text ?? '';
     mayBeOutdated ||= answer === null;

@@ -114,7 +114,7 @@ export class FasterView {
       reportedScore = progress.best_score;
       const best = await worker.call((search) => search.compareBest(ROBOT_COUNT.progress));
       if (best?.is_better) this.show(best);
-      if (best) this.setMessage(best.is_better ? `${formatGain(best)} faster so far.` : 'No faster gait so far.');
+      if (best) this.setMessage(best.is_better ? `The best gait so far is ${formatGain(best)}faster.` : 'No faster gait so far.');
     }
     const best = await worker.call((search) => search.compareBest(ROBOT_COUNT.final));
     this.endSearch();
@@ -126,7 +126,7 @@ export class FasterView {
     if (best?.is_better) {
       this.show(best);
       const { comparison } = best;
-      return this.setMessage(`${stopText}Faster on ${comparison.faster} of ${comparison.robots} random robots and floors; the speed that 95 % of them exceed is ${formatGain(best)} higher. No servo turns faster than ${comparison.rate.toFixed(0)} °/s.`);
+      return this.setMessage(`${stopText}Faster on ${comparison.faster} of ${comparison.robots} random robots and floors; the speed that 95 % of them exceed is ${formatGain(best)}higher. No servo turns faster than ${comparison.rate.toFixed(0)} °/s.`);
     }
     this.resultBox.hidden = true;
     if (done === 0) return this.setMessage(`${stopText}No gait was tried.`);
@@ -168,13 +168,13 @@ export class FasterView {
   private async compare(): Promise<void> {
     const { referenceGait, best } = this;
     if (!referenceGait || !best) return;
-    const { robot, toml, isReal } = this.session;
+    const { robot, toml, isBoardReal } = this.session;
     // The comparison only puts the found gait into the robot; therefore the result stays valid.
-    if (!isReal) this.toml = robot.putGait(toml, best.bars);
+    if (!isBoardReal) this.toml = robot.putGait(toml, best.bars);
     await this.editor.compare(referenceGait, best.bars, element('faster-distances'));
   }
 
   private readonly setMessage = (text: string): void => setText(element('faster-message'), text);
 }
 
-const formatGain = ({ gain }: BestGait) => `${(100 * gain).toFixed(0)} %`;
+const formatGain = ({ gain }: BestGait) => (gain === null ? '' : `${(100 * gain).toFixed(0)} % `);

@@ -1,6 +1,6 @@
 // Checks that the robot's parts fit after a change of lengths, also during a drag. The proof runs in a web worker. The
 // 3D view shows two parts that come too close in red, and the page searches for the nearest lengths whose parts fit.
-import type { Clash } from '../parts/make-parts';
+import type { CollidingPair } from '../parts/make-parts';
 import { type Length, Robot } from '../robot';
 import type { Session } from '../session';
 import { getMessage } from '../problem';
@@ -100,7 +100,7 @@ export class FitView {
     this.setMessage('Checking that the parts fit…', null);
     const result = await proveParts(toml, signal);
     if (signal.aborted) return false;
-    if (result instanceof Error) this.setMessage(describeUnfit(result), result.clash);
+    if (result instanceof Error) this.setMessage(describeUnfit(result), result.collidingPair);
     else this.setMessage(`The parts fit${result === null ? '' : `: no two come nearer than ${result.toFixed(2)} mm`}.`, null);
     return !(result instanceof Error);
   }
@@ -170,12 +170,12 @@ export class FitView {
     return best;
   }
 
-  private setMessage(text: string, clash: Clash | null): void {
+  private setMessage(text: string, collidingPair: CollidingPair | null): void {
     element('fit').hidden = text === '';
     this.message.textContent = text;
     this.useButton.hidden = true;
-    this.showOverlapButton.hidden = clash === null;
-    this.parts.showClash(clash);
+    this.showOverlapButton.hidden = collidingPair === null;
+    this.parts.showCollidingPair(collidingPair);
   }
 }
 
@@ -193,9 +193,9 @@ async function proveParts(toml: string, signal: AbortSignal) {
 }
 
 /** Returns a message with the two parts that come too close, or else with the reason that prevents the parts. */
-function describeUnfit({ message, clash }: { message: string; clash: Clash | null }): string {
-  if (!clash) return `These lengths cannot be printed: ${message.replace(/\.$/, '')}.`;
-  const { first, second, mm } = clash;
+function describeUnfit({ message, collidingPair }: { message: string; collidingPair: CollidingPair | null }): string {
+  if (!collidingPair) return `These lengths cannot be printed: ${message.replace(/\.$/, '')}.`;
+  const { first, second, mm } = collidingPair;
   const distanceText = mm < 0 ? `would overlap by ${(-mm).toFixed(2)} mm` : `would be only ${mm.toFixed(2)} mm apart`;
   return `These lengths cannot be printed: ${first} and ${second} ${distanceText}.`;
 }

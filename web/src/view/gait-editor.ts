@@ -22,7 +22,7 @@ const HELD_STANCE_FRACTION = 0.25;
 /** The keys of a gait's numbers that have an input. In index.html, each input has a range that robot.toml allows. */
 const GAIT_NUMBERS = ['period', 'duty', 'amplitude'] as const;
 /** Ranges of a leg's numbers, which robot.toml allows, and the steps of their inputs. */
-const LEG_NUMBER_RANGES = { start: { min: '0', max: '1', step: '0.005' }, gain: { min: '-2', max: '2', step: '0.05' } };
+const LEG_NUMBER_RANGES = { start: { min: '0', max: '1', step: '0.005' }, gain: { min: '-4', max: '4', step: '0.05' } };
 
 /** Rounds a value to a multiple of `step`. */
 const roundToMultiple = (value: number, step: number) => Number((Math.round(value / step) * step).toFixed(4));
@@ -108,7 +108,7 @@ export class GaitEditorView {
     this.addDragHandler(handle, (cycles, startGait) => this.changeGait({ duty: roundToMultiple(clampDuty(startGait.duty + cycles), 0.005) }));
     const row = element('gait-legs').appendChild(tableRow([LEGS[leg] ?? '']));
     for (const [key, label] of [['start', 'starts at'], ['gain', 'gain']] as const) {
-      const input = make('input', { type: 'number', ...LEG_NUMBER_RANGES[key], ariaLabel: `${LEGS[leg]} ${label}` });
+      const input = make('input', { type: 'number', required: true, ...LEG_NUMBER_RANGES[key], ariaLabel: `${LEGS[leg]} ${label}` });
       row.append(make('td', {}, input));
       setUpNumberInput(input, (value) => value !== null && this.setLegValue(key, leg, value));
       this.legInputs[key].push(input);

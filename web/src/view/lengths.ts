@@ -48,7 +48,7 @@ export function setUpLengths(session: Session, offerValidLengths: (edits: Edits)
   element('lengths-reset').addEventListener('click', () => void session.change(session.original));
   element('lengths-save').addEventListener('click', () => {
     const refusal = downloadRobot(session.toml, session.floor);
-    if (refusal) setMessage(`This robot.toml does not have the settings of Legs, feet and floor: ${refusal.refused}`);
+    if (refusal) setMessage(`This robot.toml does not have the settings of Legs, feet and floor: ${refusal.reason}`);
   });
   session.followRobot(({ lengths }) => {
     if (lengths.length !== inputs.size) buildInputs(lengths);

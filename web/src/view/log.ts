@@ -12,6 +12,8 @@ export class LogView {
   private historyIndex = 0;
 
   constructor(onLine: (line: string) => void) {
+    // Lines that arrive while the panel is hidden do not scroll it.
+    element('console').addEventListener('toggle', () => element('log').scrollTo(0, element('log').scrollHeight));
     element<HTMLFormElement>('line').addEventListener('submit', (event) => {
       event.preventDefault();
       const line = this.lineInput.value.trim();

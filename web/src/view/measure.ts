@@ -92,6 +92,7 @@ export class MeasureView {
     this.startButton.addEventListener('click', () => void this.runAction(() => this.handleStartButton()));
     this.driverList.addEventListener('change', () => this.updateControls());
     document.addEventListener(ROOM_OPENED, () => this.room.hidden && this.switchCameraOff());
+    document.addEventListener('visibilitychange', () => document.hidden && this.protocol?.stop('the page was hidden'));
     session.followRobot((description) => this.showRobot(description));
     predictor.predictions.subscribe(() => this.tickMovingGaits());
     session.state.gait.subscribe((activity) => this.protocol?.setActivity(activity));
@@ -124,7 +125,7 @@ export class MeasureView {
   /** Ends driving after a change of the link, and preselects the page as the driver of a real robot. */
   private followLink(): void {
     this.protocol?.end('the link to the robot has changed');
-    this.driverList.value = this.session.isReal ? 'page' : 'other';
+    this.driverList.value = this.session.isBoardReal ? 'page' : 'other';
     this.updateControls();
   }
 
@@ -166,13 +167,17 @@ export class MeasureView {
     this.setMessage('Opening the camera…');
     this.hasVideo = false;
     await this.getVideoWorker();
+    // The user may have left the room meanwhile.
+    if (this.room.hidden) return this.setMessage('');
     await this.source.openCamera(() => {
       this.switchCameraOff();
       this.setMessage('The camera was disconnected.', true);
       this.updateControls();
     });
+    // Meanwhile the user may have opened a video, which has its own messages.
+    if (this.task === 'play' || this.hasVideo) return;
     this.tracker = new TagTracker();
-    this.setMessage('Place the camera so that all five tags are visible.');
+    this.setMessage(this.source.isCamera ? 'Place the camera so that all five tags are visible.' : '');
   }
 
   /** Switches the camera off and ends the task that uses it. */
@@ -225,13 +230,17 @@ export class MeasureView {
     if (this.task === 'record') return this.measureWalks(this.wholeVideoWalks);
     if (this.task === 'drive') return void this.session.ask(WORDS.stop);
     if (this.hasVideo) return this.measureWalks(this.wholeVideoWalks);
-    const isPageDriving = this.driverList.value === 'page';
-    const gaits = isPageDriving ? this.getDrivableGaits() : [];
-    await this.callVideo((video) => video.clear());
-    this.tracker.path = [];
-    if (isPageDriving) return this.driveGaits(gaits);
+    if (this.driverList.value === 'page') return this.driveGaits(this.getDrivableGaits());
+    await this.clearVideo();
+    // The camera may have been switched off meanwhile.
+    if (!this.source.isCamera) return;
     this.task = 'record';
     this.setMessage('Recording. Let the robot walk at least four cycles, then press Done.');
+  }
+
+  private async clearVideo(): Promise<void> {
+    await this.callVideo((video) => video.clear());
+    this.tracker.path = [];
   }
 
   /** Returns the ticked gaits. Throws the reason if the page cannot drive. */
@@ -264,6 +273,7 @@ export class MeasureView {
     this.task = 'drive';
     this.updateControls();
     try {
+      await this.clearVideo();
       await protocol.run({ gaits, cycles: cycles ?? 8, speed, pause: pause ?? 1 });
       await this.measureWalks(this.withGaitNames(protocol.walks), speed);
     } catch (error) {

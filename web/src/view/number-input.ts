@@ -2,15 +2,16 @@
 import { putAttribute } from './elements';
 
 /**
- * Calls `onNumber` with each number in the input's range that the user types, and with null when the input is empty.
- * When the user leaves the input with an invalid number, the last valid number is restored.
+ * Calls `onNumber` with each number in the input's range that the user types, and with null when an input that is not
+ * required is empty. When the user leaves an input with an invalid number, or a required input without a number, the
+ * last valid number is restored.
  */
 export function setUpNumberInput(input: HTMLInputElement, onNumber: (value: number | null) => void): void {
   const { min, max } = input;
   input.title = `from ${min} to ${max}`;
   input.addEventListener('input', () => {
     const value = input.valueAsNumber;
-    const isEmpty = input.value === '' && !input.validity.badInput;
+    const isEmpty = input.value === '' && !input.required && !input.validity.badInput;
     const isInRange = value >= Number(min) && value <= Number(max);
     markInvalid(input, !isEmpty && !isInRange);
     if (isInRange || isEmpty) input.defaultValue = input.value;

@@ -6,6 +6,9 @@ import type { ProblemList } from './problems';
 const readName = (toml: string) => /^name\s*=\s*["'](.+?)["']/m.exec(toml)?.[1] ?? 'robot';
 
 export class OwnRobots {
+  /** The robots in the list; another page may have changed the stored robots since. */
+  private listedRobots: SavedChanges[] = [];
+
   /** `loadFile` loads a robot by its file name; `listNames` shows the names of the robots put aside. */
   constructor(
     private readonly session: Session,
@@ -23,17 +26,17 @@ export class OwnRobots {
     this.problems.setMessage('own', 'This is another robot. Your own robot is put aside and stays in the list of robots.', { label: 'Back to my own robot', action: () => void this.restore() });
   }
 
-  /** Restores the robot with this index among the robots put aside, and puts the current robot aside. */
+  /** Restores the robot with this index in the list, and puts the current robot aside. */
   async restore(index = 0): Promise<void> {
-    const robotsAside = browserStorage.getRobotsAside();
-    const ownRobot = robotsAside[index];
+    const ownRobot = this.listedRobots[index];
     this.problems.setMessage('own', null);
-    if (!ownRobot) return;
     const { changes: previous } = this.session;
     await this.loadFile(ownRobot.file);
+    // The user has chosen another robot meanwhile, whose file is still being loaded.
+    if (this.session.file === '') return;
     // If the robot's file has changed meanwhile, only the stored text is loaded.
     if (!(await this.session.restoreSaved(ownRobot)) && (await this.session.change(ownRobot.toml))) return this.putAside(previous);
-    this.storeAside(robotsAside.filter((_, n) => n !== index));
+    this.storeAside(browserStorage.getRobotsAside().filter(({ toml }) => toml !== ownRobot.toml));
     this.putAside(previous);
   }
 
@@ -43,6 +46,7 @@ export class OwnRobots {
   }
 
   private updateList(): void {
-    this.listNames(browserStorage.getRobotsAside().map(({ toml }) => readName(toml)));
+    this.listedRobots = browserStorage.getRobotsAside();
+    this.listNames(this.listedRobots.map(({ toml }) => readName(toml)));
   }
 }

@@ -1,7 +1,7 @@
 // The robot in 3D on the stage, and its panel: the parts, the steps of the building guide, and all files to print and
 // to cut. The 3D code is loaded only when 3D is shown or the panel is opened.
 import type { RobotView } from '../parts/robot-view';
-import type { PartsArchive, Clash, Model, Progress, PartsWorker } from '../parts/make-parts';
+import type { PartsArchive, CollidingPair, Model, Progress, PartsWorker } from '../parts/make-parts';
 import type { Frame, Place } from '../robot';
 import type { Session } from '../session';
 import { getMessage } from '../problem';
@@ -39,7 +39,7 @@ export class PartsView {
   /** The index of the picked body; null for none. */
   private pickedBody: number | null = null;
   /** The two parts that overlap or come too close, which are shown in red; null if all parts fit. */
-  private clash: Clash | null = null;
+  private collidingPair: CollidingPair | null = null;
   /** Angles and lags of the last requested pose, as text; empty if the pose must be requested again. */
   private requestedPose = '';
   /** Cancels making files; null while no files are being made. */
@@ -162,9 +162,9 @@ export class PartsView {
     this.partList.value = index === null ? '' : String(index);
     const body = index === null ? undefined : this.model?.bodies[index];
     const part = body?.part == null ? undefined : this.model?.parts[body.part];
-    const { clash } = this;
-    if (clash) {
-      const { first, second, mm } = clash;
+    const { collidingPair } = this;
+    if (collidingPair) {
+      const { first, second, mm } = collidingPair;
       setMessage('parts-message', `${first} and ${second} ${mm < 0 ? `overlap by ${(-mm).toFixed(2)} mm` : `are only ${mm.toFixed(2)} mm apart`}.`);
     } else if (!body) setMessage('parts-message', this.robotView ? 'Click a part for its name and its file.' : '');
     else if (!part) setMessage('parts-message', `${body.name}: ${body.kind}, bought; mounted in step ${body.step}.`);
@@ -175,20 +175,20 @@ export class PartsView {
     this.updateRobotView();
   }
 
-  /** Shows two clashing parts in red, in the pose of their clash; null if all parts fit. */
-  showClash(clash: Clash | null): void {
-    if (clash === this.clash) return;
-    this.clash = clash;
+  /** Shows two colliding parts in red, in the pose of their collision; null if all parts fit. */
+  showCollidingPair(pair: CollidingPair | null): void {
+    if (pair === this.collidingPair) return;
+    this.collidingPair = pair;
     this.requestedPose = '';
     this.pickBody(this.pickedBody);
   }
 
   private updateRobotView(): void {
     element('explosion-out').textContent = `${this.explosionSlider.value} %`;
-    const { step, pickedBody, clash, model } = this;
-    const names = clash ? [clash.first, clash.second] : [];
-    const clashingBodies = names.map((name) => model?.bodies.findIndex((body) => body.name === name) ?? -1);
-    this.robotView?.applySettings({ explosion: Number(this.explosionSlider.value) / 100, guideStep: step, selectedBody: pickedBody, clashingBodies });
+    const { step, pickedBody, collidingPair, model } = this;
+    const names = collidingPair ? [collidingPair.first, collidingPair.second] : [];
+    const collidingBodies = names.map((name) => model?.bodies.findIndex((body) => body.name === name) ?? -1);
+    this.robotView?.applySettings({ explosion: Number(this.explosionSlider.value) / 100, guideStep: step, selectedBody: pickedBody, collidingBodies });
   }
 
   /** Renders the robot; called in every animation frame. */
@@ -196,9 +196,9 @@ export class PartsView {
     const { robotView, worker } = this;
     if (!robotView || !worker || !robotView.renderBudget.mayRender() || !this.is3d) return;
     const neutral = this.session.description.servos.map((servo) => servo.neutral);
-    // The robot stands still while a step of the guide or a clash is shown.
-    const isMoving = this.step === null && !this.clash && frame?.scene != null;
-    const [angles, lags] = isMoving ? [frame.scene?.angles ?? neutral, frame.lag] : [this.clash?.pose ?? neutral, [0, 0, 0, 0]];
+    // The robot stands still while a step of the guide or a collision is shown.
+    const isMoving = this.step === null && !this.collidingPair && frame?.scene != null;
+    const [angles, lags] = isMoving ? [frame.scene?.angles ?? neutral, frame.lag] : [this.collidingPair?.pose ?? neutral, [0, 0, 0, 0]];
     const poseText = [...angles, ...lags].map((angle) => angle.toFixed(2)).join(' ');
     if (poseText !== this.requestedPose) {
       this.requestedPose = poseText;
@@ -241,7 +241,7 @@ export class PartsView {
       const archive = await makeArchive(toml, selection === 'all' ? null : original, showProgress, cancellation.signal).finally(() => (isOver = true));
       if (!archive) return;
       if (archive.paths.length > 0) saveFile(`${file || 'robot'}-${selection === 'all' ? 'parts' : 'changed-parts'}.zip`, [archive.zip], 'application/zip');
-      setMessage('files-message', this.describeArchive(archive, selection));
+      setMessage('files-message', this.describeArchive(archive, selection, file));
       if (selection === 'changed') this.listFiles(archive.paths);
     } catch (error) {
       setMessage('files-message', `Cannot make the files: ${getMessage(error)}`);
@@ -253,10 +253,10 @@ export class PartsView {
     }
   }
 
-  private describeArchive({ paths, fileCount, minDistanceMm }: PartsArchive, selection: 'all' | 'changed'): string {
+  private describeArchive({ paths, fileCount, minDistanceMm }: PartsArchive, selection: 'all' | 'changed', file: string): string {
     const distanceText = minDistanceMm === null ? '' : ` No two parts come nearer than ${minDistanceMm.toFixed(2)} mm in any pose that the guard accepts.`;
     if (selection === 'all') return `${fileCount} files.${distanceText}`;
-    return paths.length === 0 ? `None of the ${fileCount} files changed.` : `${paths.length} of ${fileCount} files differ from the files of ${this.session.file}.toml:`;
+    return paths.length === 0 ? `None of the ${fileCount} files changed.` : `${paths.length} of ${fileCount} files differ from the files of ${file}.toml:`;
   }
 
   private listFiles(paths: string[]): void {

@@ -248,7 +248,7 @@ export class RecordView {
     const toml = session.robot.putGait(session.toml, previousGait);
     this.setMessage('The robot restarts with this gait…', output);
     const refusal = await restartWithGait(session, foundGait);
-    if (refusal) return this.setMessage(refusal.refused, output);
+    if (refusal) return this.setMessage(refusal.reason, output);
     const gait = foundGait.name.replaceAll('-', ' ');
     await this.startBoth({ toml, gaits: [gait, gait], names: ['Found', 'Before'], output });
   }
@@ -260,11 +260,11 @@ export class RecordView {
     this.removeCompanion();
     this.setMessage('Switching on the second robot…', pair.output);
     try {
-      await session.drive(WORDS.stop);
-      // The robot was changed meanwhile.
-      if (session.description !== description) return this.setMessage('', pair.output);
-      // The button may have been pressed twice.
-      this.removeCompanion();
+      const pendingStop = session.drive(WORDS.stop);
+      const { stopCount } = session;
+      await pendingStop;
+      // The robot was changed or stopped again meanwhile.
+      if (session.description !== description || session.stopCount !== stopCount) return this.setMessage('', pair.output);
       const companion = new Companion(pair.toml, session);
       session.returnToStart();
       this.floor.clearTracks();

@@ -163,9 +163,12 @@ export class RobotTextView {
     element('robot-code').setAttribute('aria-pressed', String(isShown));
     qrCodeBox.replaceChildren();
     if (!isShown) return this.setMessage('');
+    const { toml } = this.session;
     try {
-      const { makeQrCode } = await import('./qr-code');
-      qrCodeBox.replaceChildren(makeQrCode(await makeLink(this.session.toml)));
+      const [{ makeQrCode }, link] = await Promise.all([import('./qr-code'), makeLink(toml)]);
+      // The code would belong to the previous robot.
+      if (this.session.toml !== toml) return;
+      qrCodeBox.replaceChildren(makeQrCode(link));
       const isLocal = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
       this.setMessage(isLocal ? 'This address works only on this computer: a phone needs the page’s address on a web server.' : 'Scan the code with a phone’s camera to open this robot.');
     } catch (error) {
@@ -187,7 +190,7 @@ export class RobotTextView {
 
   private showRefusal(refusal: Refusal | null): void {
     this.refusal = refusal;
-    showMessage(element('robot-refusal'), refusal?.refused ?? '');
+    showMessage(element('robot-refusal'), refusal?.reason ?? '');
     const button = element('robot-line');
     button.hidden = refusal?.line == null;
     button.textContent = `Go to line ${refusal?.line}`;

@@ -54,7 +54,7 @@ export class RoutinesView {
     onClick('add', () => void this.addStep());
     onClick('undo', () => void this.text.undo());
     onClick('start', () => void this.startRoutine());
-    onClick('write', () => void writer.writeRobot('routine'));
+    onClick('write', () => void this.useDraft().then((isAccepted) => isAccepted && writer.writeRobot('routine')));
     const { state } = session;
     session.followRobot(() => this.recorder && this.toggleRecording());
     state.gait.subscribe((activity) => {
@@ -131,7 +131,7 @@ export class RoutinesView {
     if (Robot.routines(draft).some((routine) => routine.name === name)) return this.setMessage(`The routine ${name} already exists; choose another name.`);
     const { text, refusal } = Robot.putSteps(draft, name, this.recordedSteps);
     // A routine with an invalid step is stored, too: the step's block shows the error.
-    if (refusal && refusal.key !== `routine.${name}.steps`) return this.setMessage(refusal.refused);
+    if (refusal && refusal.key !== `routine.${name}.steps`) return this.setMessage(refusal.reason);
     this.offerToStore([]);
     await this.text.loadText(text);
     this.routineList.value = name;
@@ -157,8 +157,15 @@ export class RoutinesView {
     await this.replaceSteps(moveItem(chosenRoutine.steps, from, to));
   }
 
+  /** Makes the shown text the robot, unless it is already; returns true if the text is accepted. */
+  private async useDraft(): Promise<boolean> {
+    const { draft } = this.text;
+    return draft === this.session.toml || this.text.loadText(draft);
+  }
+
   private async startRoutine(): Promise<void> {
     const session = this.session;
+    if (!(await this.useDraft())) return;
     // A simulated UNO restarts after each change of the robot.
     if (!session.isFirmwareAnswering) await session.waitForBanner();
     await session.drive(this.routineList.value.replaceAll('-', ' '));
@@ -183,7 +190,7 @@ export class RoutinesView {
       input.setAttribute('aria-invalid', String(invalidIndex === index));
       putAttribute(input, 'aria-describedby', invalidIndex === index ? this.refusalBox.id : null);
     });
-    showMessage(this.refusalBox, refusal?.refused ?? '');
+    showMessage(this.refusalBox, refusal?.reason ?? '');
     if (invalidIndex !== null) stepList.children[invalidIndex]?.append(this.refusalBox);
     else stepList.after(this.refusalBox);
     element<HTMLButtonElement>('routine-undo').disabled = !canUndo;
@@ -265,8 +272,8 @@ export class RoutinesView {
 }
 
 /** Returns the index of the step that a refusal names; null if it names no step. */
-function parseStepIndex({ refused }: Refusal): number | null {
-  const stepText = /: step (\d+), /.exec(refused)?.[1];
+function parseStepIndex({ reason }: Refusal): number | null {
+  const stepText = /: step (\d+), /.exec(reason)?.[1];
   return stepText === undefined ? null : Number(stepText) - 1;
 }
 

@@ -35,9 +35,9 @@ export class ScopeView {
   constructor(session: Session) {
     session.followRobot((description) => this.showRobot(description));
     effect(() => {
-      const { isReal } = session;
-      this.hasPulses = !isReal;
-      element('scope-note').hidden = !isReal;
+      const { isBoardReal } = session;
+      this.hasPulses = !isBoardReal;
+      element('scope-note').hidden = !isBoardReal;
       this.pulses = [];
       this.frameWidths = [0, 0, 0, 0];
     });

@@ -55,7 +55,7 @@ export class SetupDialog {
   /** Settles at the end of the last action. */
   private runningAction: Promise<void> = Promise.resolve();
   private lastLink: Link | null = null;
-  private wasReal = false;
+  private wasBoardReal = false;
   /**
    * True from the loss of a board until the next connection, or until the user continues without the board: an action
    * that started on the lost board must not continue on another board.
@@ -88,7 +88,7 @@ export class SetupDialog {
   }
 
   /** The last turn in this step if the selected servo has turned; null otherwise. */
-  get turn(): Turn | null {
+  get turnInStep(): Turn | null {
     const { lastTurn } = this;
     return lastTurn?.step === this.step && lastTurn.servo === this.servo ? lastTurn : null;
   }
@@ -125,11 +125,11 @@ export class SetupDialog {
 
   /** Updates the view for the session's link; drops the current action if the link is new. */
   private followLink(): void {
-    const { link, isReal } = this.session;
+    const { link, isBoardReal } = this.session;
     if (link === this.lastLink) return this.update();
-    const isGone = this.wasReal && !isReal;
+    const isGone = this.wasBoardReal && !isBoardReal;
     this.lastLink = link;
-    this.wasReal = isReal;
+    this.wasBoardReal = isBoardReal;
     this.isUncalibrated = false;
     this.isLost = isGone && !this.dialog.hidden;
     this.dropAction();
@@ -305,7 +305,7 @@ export class SetupDialog {
     this.servoButtons.hidden = !isUsable || !step.isPerServo;
     this.servoButtons.querySelectorAll('button').forEach((servoButton, servo) => servoButton.setAttribute('aria-pressed', String(servo === this.servo)));
     const scene = session.last?.scene ?? null;
-    const drawing = isUsable && step.selectedServo && scene ? makeDrawing(session.description, scene, step.selectedServo(this)) : null;
+    const drawing = isUsable && step.highlight && scene ? makeDrawing(session.description, scene, step.highlight(this)) : null;
     this.drawingBox.replaceChildren(...(drawing ? [drawing] : []));
     this.drawingBox.hidden = !drawing;
     const tryOnSimulation = () => {

@@ -49,6 +49,8 @@ export class SketchView {
 
   /** Requests a drawing of the session's robot and the range of the slider's length. */
   private requestDrawing(): void {
+    // The request would replace the queued last position of a drag; the end of the drag requests a drawing, too.
+    if (this.isDragEnding) return;
     this.lengthsQueue.submit({ toml: this.session.toml, edits: [], isLast: false, keys: this.slider.keys });
   }
 

@@ -55,11 +55,12 @@ export class TrialView {
     this.element('copy').addEventListener('click', () => void this.copyTable());
   }
 
-  /** Requests a trial of the edited gait. */
+  /** Requests a trial of the edited gait; without a gait, removes the results of the previous one. */
   requestTrial(): void {
     const { toml, floor, servos } = this.session;
     const gait = this.editor.editedGait();
-    if (!gait || toml === '') return;
+    if (!gait) return this.showResult(null);
+    if (toml === '') return;
     this.trialQueue.submit({ toml, floor, servos, gait });
   }
 
@@ -70,7 +71,9 @@ export class TrialView {
     return element<E>(`${this.editor.prefix}-${name}`);
   }
 
-  private showResult(trial: Trial | RefusedTrial | null): void {
+  private showResult(result: Trial | RefusedTrial | null): void {
+    // The result of a gait that was removed meanwhile is not shown.
+    const trial = this.editor.editedGait() && result;
     const refusal = trial && isRefused(trial) ? trial : null;
     const validTrial = trial && !isRefused(trial) ? trial : null;
     this.trial = validTrial;
@@ -80,7 +83,7 @@ export class TrialView {
     for (const name of ['distance', 'speed', 'turn', 'margin', 'fastest'] as const) show(name, results?.[name] ?? '–');
     show('table', validTrial?.table ?? '');
     this.element('refused').hidden = refusal === null;
-    show('refusal', refusal?.refused ?? '');
+    show('refusal', refusal?.reason ?? '');
     this.element('alternatives').replaceChildren(
       ...(refusal?.alternatives ?? []).map(({ parameter, value }) => button(ALTERNATIVE_LABELS[parameter](value), () => this.editor.change(parameter, value))),
     );
@@ -92,15 +95,15 @@ export class TrialView {
     if (!gait) return;
     this.setMessage('The robot restarts with this gait…');
     const refusal = await driveGait(this.session, gait);
-    this.setMessage(refusal?.refused ?? `The robot starts ${gait.name.replaceAll('-', ' ')}, which now has a button in Drive and is part of the downloaded robot.toml.`);
+    this.setMessage(refusal?.reason ?? `The robot starts ${gait.name.replaceAll('-', ' ')}, which now has a button in Drive and is part of the downloaded robot.toml.`);
   }
 
   private async writeToBoard(): Promise<void> {
     const gait = this.editor.editedGait();
     if (!gait) return;
     const { session } = this;
-    const refusal = session.isReal ? await applyGait(session, gait) : null;
-    if (refusal) return this.setMessage(refusal.refused);
+    const refusal = session.isBoardReal ? await applyGait(session, gait) : null;
+    if (refusal) return this.setMessage(refusal.reason);
     if (!(await this.writer.writeRobot(this.editor.prefix))) return;
     this.setMessage(`${this.element('message').textContent}. The board has restarted; ${gait.name.replaceAll('-', ' ')} has a button in Drive.`);
   }

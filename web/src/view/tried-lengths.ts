@@ -21,14 +21,14 @@ export function formatLengths(edits: Edits, lengths: Length[]): string {
  * Returns a message with the reason for refusing lengths; `lengthsText` names these lengths, and `lengths` are the
  * current robot's lengths.
  */
-export function describeRefusal(lengthsText: string, edits: Edits, { refused, consequence, key }: Refusal, lengths: Length[]): string {
+export function describeRefusal(lengthsText: string, edits: Edits, { reason, consequence, key }: Refusal, lengths: Length[]): string {
   const lengthByKey = new Map(lengths.map((length) => [length.key, length]));
   const changes = edits.map(([editedKey, value]) => value - (lengthByKey.get(editedKey)?.value ?? value));
   const [more, less] = edits.every(([editedKey]) => lengthByKey.get(editedKey)?.unit === 'deg') ? ['large', 'small'] : ['long', 'short'];
   const judgement = changes.every((change) => change >= 0) ? `too ${more}` : changes.every((change) => change <= 0) ? `too ${less}` : 'not possible';
   // The message of a refusal without a consequence starts with the key.
-  const reason = consequence ?? refused.slice(Math.max(0, refused.indexOf(key))).replace(key, lengthByKey.get(key)?.label ?? key);
-  return `${lengthsText} is ${judgement}: ${reason}.`;
+  const cause = consequence ?? reason.slice(Math.max(0, reason.indexOf(key))).replace(key, lengthByKey.get(key)?.label ?? key);
+  return `${lengthsText} is ${judgement}: ${cause}.`;
 }
 
 /** Shows a button for each valid alternative to refused lengths; null removes the buttons. */

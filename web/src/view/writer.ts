@@ -9,11 +9,11 @@ import { element, setText } from './elements';
 /** The content to write: the page's robot alone, firmware and robot, or the image of a chosen file. */
 export type WriteContent = 'robot' | 'all' | Uint8Array;
 
-const NO_BOARD_MESSAGE = 'No board is connected: press Connect a board… in the room Board. The simulated board already has this robot.';
+const NO_BOARD_MESSAGE = 'No board is connected. Press “Connect a board…” in the room Board. The simulated board already has this robot.';
 
 /** The message of each step, and the progress bar's percentages at its start and its end. */
 const PROGRESS_STEPS = {
-  again: ['no answer; calling the board again…', 0, 0],
+  retrying: ['no answer; calling the boot loader again…', 0, 0],
   reading: ['reading the board…', 0, 25],
   writing: ['writing…', 25, 75],
   verifying: ['verifying…', 75, 100],
@@ -27,19 +27,22 @@ export class BoardWriter {
 
   /** Writes the page's robot alone to a real board; returns true if the board then reports this robot. */
   async writeRobot(prefix: string): Promise<boolean> {
-    if (this.session.isReal) return this.write('robot', prefix);
+    if (this.session.isBoardReal) return this.write('robot', prefix);
     element(`${prefix}-message`).textContent = NO_BOARD_MESSAGE;
     return false;
   }
 
-  /** Writes and verifies, then waits for the board's banner; returns true if all steps succeed. */
+  /**
+   * Writes and verifies, then waits for the board's banner; returns false if a step fails, if no banner arrives or,
+   * unless the content is a file's image, if the banner does not name the page's robot.
+   */
   async write(content: WriteContent, prefix: string): Promise<boolean> {
     if (this.isBusy.value) return false;
     const progress = element<HTMLProgressElement>(`${prefix}-progress`);
     const message = element(`${prefix}-message`);
     const { session } = this;
-    // The name shows that the simulated board was written, not a real board.
-    const targetText = session.isReal ? '' : ` to the ${session.link.name}`;
+    // The name tells the user that the simulated board was written to, not a real board.
+    const targetText = session.isBoardReal ? '' : ` to the ${session.link.name}`;
     const start = performance.now();
     const hash = typeof content === 'string' ? session.description.hash : null;
     this.isBusy.value = true;
@@ -49,8 +52,8 @@ export class BoardWriter {
     let isWritten = false;
     const showProgress: ReportProgress = (step, done, total) => {
       const [text, from, to] = PROGRESS_STEPS[step];
-      // The bar never moves back, although the program's first page is written after all other pages are verified.
-      progress.value = step === 'again' ? 0 : Math.max(progress.value, from + ((to - from) * done) / total);
+      // Within an attempt, the bar never moves back, although the first page is written after the others are verified.
+      progress.value = step === 'retrying' ? 0 : Math.max(progress.value, from + ((to - from) * done) / total);
       setText(message, text);
     };
     try {

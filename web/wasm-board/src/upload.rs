@@ -42,7 +42,7 @@ pub enum Board {
 
 /// Writes an image from address 0 on, or only a robot's section, to a board, verifies it and starts the program.
 /// `report` gets the progress: `reading`, `writing` or `verifying`, the number of finished pages and their total
-/// number; or `again` if the board is reset for another attempt.
+/// number; or `retrying` if the board is reset for another attempt.
 ///
 /// # Errors
 /// Rejects with a message for the user that states the flash's current content.
@@ -53,7 +53,7 @@ pub async fn upload(
     #[wasm_bindgen(js_name = isRobotAlone)] is_robot_alone: bool,
     board: Board,
     #[wasm_bindgen(
-        unchecked_param_type = "(step: 'reading' | 'writing' | 'verifying' | 'again', done: number, total: number) => void"
+        unchecked_param_type = "(step: 'reading' | 'writing' | 'verifying' | 'retrying', done: number, total: number) => void"
     )]
     report: Function,
 ) -> Result<(), JsError> {
@@ -76,7 +76,7 @@ pub async fn upload(
     let mut loader = Loader::new(JsBoard(line));
     lizard_upload::upload(&mut loader, &image, target, &mut |event| match event {
         Event::Found(_) => {}
-        Event::Retry { .. } => report("again", 0, 1),
+        Event::Retry { .. } => report("retrying", 0, 1),
         Event::Progress(Step::Reading, done, total) => report("reading", done, total),
         Event::Progress(Step::Writing, done, total) => report("writing", done, total),
         Event::Progress(Step::Verifying, done, total) => report("verifying", done, total),

@@ -11,7 +11,7 @@ use crate::solids::Triangles;
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = "
 /** Two parts that overlap or come too close. */
-export interface Clash {
+export interface CollidingPair {
   first: string;
   second: string;
   /** Their distance, mm; negative if they overlap. */
@@ -60,9 +60,9 @@ impl Parts {
 
     /// Describes the model for the page, without triangles.
     #[must_use]
-    #[wasm_bindgen(unchecked_return_type = "ModelEntry")]
-    pub fn entry(&self) -> JsValue {
-        to_js(self.0.entry())
+    #[wasm_bindgen(unchecked_return_type = "ModelDescription")]
+    pub fn describe(&self) -> JsValue {
+        to_js(self.0.describe())
     }
 
     /// Makes the triangles of the solids, in the order of `BodyEntry.solid`.
@@ -101,7 +101,7 @@ impl Parts {
         })
     }
 
-    /// Makes one group of files; `group` is the group's index, below `ModelEntry.files`.
+    /// Makes one group of files; `group` is the group's index, below `ModelDescription.file_group_count`.
     ///
     /// # Errors
     /// Fails if the layers of a part do not form a closed body, or if a screw cannot be reached.

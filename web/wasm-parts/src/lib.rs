@@ -14,5 +14,5 @@ mod model;
 mod solids;
 
 pub use javascript::{PartFile, Parts};
-pub use model::{BodyEntry, Model, ModelEntry, PartEntry, Refusal, StepEntry};
+pub use model::{BodyEntry, Model, ModelDescription, PartEntry, Refusal, StepEntry};
 pub use solids::Triangles;

@@ -1,4 +1,4 @@
-//! The model that the page shows: bodies, printed parts and the guide's steps.
+//! The model that the page shows: bodies, printed parts and the steps of the assembly guide.
 
 use lizard_kinematics::Vector;
 use lizard_parts::{
@@ -10,21 +10,21 @@ use lizard_robot::servo::FORWARD_TURN_SIGN;
 use serde::Serialize;
 use tsify::Tsify;
 
-/// The reason why the parts of a robot cannot be made.
+/// The refusal of a request for a robot's parts.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Refusal {
     /// The reason, as a message.
-    pub refused: String,
+    pub reason: String,
     /// The two parts that overlap or come too close; `None` if there is another reason.
-    #[tsify(type = "Clash | null")]
-    pub clash: Option<CollidingPair>,
+    #[tsify(type = "CollidingPair | null")]
+    pub colliding_pair: Option<CollidingPair>,
 }
 
 impl Refusal {
-    fn without_clash(error: impl ToString) -> Self {
+    fn without_pair(error: impl ToString) -> Self {
         Self {
-            refused: error.to_string(),
-            clash: None,
+            reason: error.to_string(),
+            colliding_pair: None,
         }
     }
 }
@@ -32,8 +32,8 @@ impl Refusal {
 impl From<BuildError> for Refusal {
     fn from(error: BuildError) -> Self {
         Self {
-            clash: error.colliding_pair(),
-            ..Self::without_clash(error)
+            colliding_pair: error.colliding_pair(),
+            ..Self::without_pair(error)
         }
     }
 }
@@ -45,18 +45,17 @@ pub struct BodyEntry {
     pub name: String,
     /// The kind of body, in a word or two.
     pub kind: &'static str,
-    /// The index of the mount with which the body moves.
+    /// The index of the body's mount, the frame of reference in which the body is fixed.
     pub mount: usize,
     /// The index of the servo to which the body belongs; `None` for chassis and sides.
     pub servo: Option<usize>,
     /// The number of the guide's step that adds the body, from 1; 0 if no step adds it.
     pub step: usize,
-    /// Height by which the guide's exploded picture lifts the body, as a fraction of the picture's full lift.
+    /// Lift of the body in the guide's exploded picture, as a multiple of the standard lift; negative moves it down.
     pub lift: f64,
     /// The index of the body's printed part; `None` for bought bodies.
     pub part: Option<usize>,
     /// The solid's placement in the mount's frame: the columns of a homogeneous 4 x 4 matrix.
-    #[serde(rename = "place")]
     pub matrix: [f64; 16],
     /// The index of the body's solid in [`Model::make_solids`].
     pub solid: usize,
@@ -82,9 +81,9 @@ pub struct StepEntry {
     pub instructions: String,
 }
 
-/// The description of the model, without triangles.
+/// The description of a model, without triangles.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
-pub struct ModelEntry {
+pub struct ModelDescription {
     /// Every body of the robot.
     pub bodies: Vec<BodyEntry>,
     /// Every printed part that the robot has.
@@ -92,16 +91,14 @@ pub struct ModelEntry {
     /// The steps of the guide.
     pub steps: Vec<StepEntry>,
     /// The number of mounts.
-    #[serde(rename = "mounts")]
     pub mount_count: usize,
     /// Distance from the plate's top down to the soles of the feet, mm.
-    pub floor: f64,
+    pub sole_depth: f64,
     /// The number of groups of files, of which each call of [`Model::make_files`] makes one.
-    #[serde(rename = "files")]
     pub file_group_count: usize,
 }
 
-/// A robot's parts.
+/// The model of a robot: bodies, parts and the guide's steps.
 pub struct Model {
     pub(crate) assembly: Assembly,
     parts: Vec<Part>,
@@ -115,7 +112,7 @@ impl Model {
     /// # Errors
     /// Fails if robot.toml is invalid, or if the robot's parts cannot be made.
     pub fn from_toml(toml: &str) -> Result<Self, Refusal> {
-        let robot = Robot::parse(toml).map_err(Refusal::without_clash)?;
+        let robot = Robot::parse(toml).map_err(Refusal::without_pair)?;
         let assembly = Assembly::new(&robot);
         assembly.check_dimensions()?;
         let mut mounts: Vec<Mount> = Vec::new();
@@ -134,14 +131,14 @@ impl Model {
 
     /// Describes the model for the page, without triangles.
     #[must_use]
-    pub fn entry(&self) -> ModelEntry {
+    pub fn describe(&self) -> ModelDescription {
         let mut sole_z: f64 = 0.0;
         let mut next_bought_index = self.needed_parts().count();
         let bodies = self.assembly.bodies().iter().map(|body| {
             sole_z = sole_z.min(body.z()[0]);
             let part = self.needed_parts().position(|part| part.has_body(body));
             let transform = part.map(|part| self.parts[part].transform_to_body(body));
-            let step = self.steps.iter().position(|step| step.adds(body));
+            let step_index = self.steps.iter().position(|step| step.adds(body));
             let solid = part.unwrap_or_else(|| {
                 next_bought_index += 1;
                 next_bought_index - 1
@@ -151,8 +148,8 @@ impl Model {
                 kind: body.kind.word(),
                 mount: self.mount_index(body.mount),
                 servo: body.mount.servo(),
-                step: step.map_or(0, |step| step + 1),
-                lift: step.map_or(0.0, |step| (self.steps[step].lift)(body)),
+                step: step_index.map_or(0, |index| index + 1),
+                lift: step_index.map_or(0.0, |index| (self.steps[index].lift)(body)),
                 part,
                 matrix: to_matrix(transform),
                 solid,
@@ -168,12 +165,12 @@ impl Model {
             title: step.title,
             instructions: step.instructions.clone(),
         };
-        ModelEntry {
+        ModelDescription {
             bodies,
             parts: self.needed_parts().map(make_part_entry).collect(),
             steps: self.steps.iter().map(make_step_entry).collect(),
             mount_count: self.mounts.len(),
-            floor: -sole_z,
+            sole_depth: -sole_z,
             file_group_count: self.ordered_parts().count() + 1,
         }
     }
@@ -197,21 +194,21 @@ impl Model {
         let plans = &self.assembly.layout().legs;
         let placements = self.mounts.iter().map(|&mount| {
             let driven_placement = self.assembly.placement(mount, &pose);
-            let angle_and_points = |servo: usize| {
-                let angle = angles[servo] - FORWARD_TURN_SIGN[servo] * lags[servo];
-                (angle, plans[servo].points_at(angles[servo], angle))
+            let leg_angle_and_points = |servo: usize| {
+                let leg_angle = angles[servo] - FORWARD_TURN_SIGN[servo] * lags[servo];
+                (leg_angle, plans[servo].points_at(angles[servo], leg_angle))
             };
             let Placement { origin, x_axis } = match mount {
                 Mount::Crank(servo) | Mount::Follower(servo) => Placement {
-                    x_axis: Vector::from_angle(angle_and_points(servo).0),
+                    x_axis: Vector::from_angle(leg_angle_and_points(servo).0),
                     ..driven_placement
                 },
                 Mount::Foot(servo) => Placement {
-                    origin: angle_and_points(servo).1.joints[0],
+                    origin: leg_angle_and_points(servo).1.joints[0],
                     ..driven_placement
                 },
                 Mount::Strut(servo) => {
-                    let [from, to] = angle_and_points(servo).1.strut_anchors;
+                    let [from, to] = leg_angle_and_points(servo).1.strut_anchors;
                     let direction = to - from;
                     Placement::new(from, direction * (1.0 / direction.length()))
                 }
@@ -222,7 +219,7 @@ impl Model {
         Some(placements.collect())
     }
 
-    /// Returns all parts in the order of `lizard parts`: the coupon with its rod, and the robot's parts with their
+    /// Returns all parts in the order of `lizard parts`: the test coupon with its rod, and the robot's parts with their
     /// alternatives.
     fn ordered_parts(&self) -> impl Iterator<Item = Part> {
         let coupon = build_coupon(self.assembly.robot().parts());
@@ -230,7 +227,7 @@ impl Model {
     }
 
     /// Makes one group of the files that `lizard parts` writes: the files of one part, or, as the last group, the bill
-    /// of materials and the guide. Empty for a larger `group`.
+    /// of materials and the guide. Returns no files for a larger `group`.
     ///
     /// # Errors
     /// Fails if the layers of a part do not form a closed body, or if a screw cannot be reached.
@@ -243,7 +240,7 @@ impl Model {
             return Ok(Vec::new());
         }
         let pose = robot.lizard().solve(&robot.neutral_pose());
-        let pose = pose.map_err(Refusal::without_clash)?;
+        let pose = pose.map_err(Refusal::without_pair)?;
         let bill = Bill::compute(&self.assembly, &self.parts, &pose);
         Ok(make_documents(&self.assembly, &bill, &pose)?)
     }

@@ -54,8 +54,9 @@ pub struct FoundGait {
     pub comparison: Comparison,
     /// True if the found gait is faster than the gait to beat.
     pub is_better: bool,
-    /// Relative gain in the speed that 95 % of the robots exceed; 0.1 is 10 % faster.
-    pub gain: f64,
+    /// Relative gain in the speed that 95 % of the robots exceed; 0.1 is 10 % faster. `None` if the gait to beat does
+    /// not move 95 % of them towards its goal.
+    pub gain: Option<f64>,
 }
 
 /// A search in progress.
@@ -164,7 +165,7 @@ mod tests {
     fn begin_refused(task: &SearchTask) -> String {
         let (_, twin) = load_paper_robot_and_twin();
         let refusal = FasterSearch::begin(&twin, task).expect_err("the search is refused");
-        refusal.refused
+        refusal.reason
     }
 
     #[test]

@@ -169,7 +169,7 @@ mod tests {
         let with_unknown_key = TriedLengths::try_edits(PAPER_TOML, &[unknown_length], true);
         assert_eq!(with_unknown_key.text, PAPER_TOML);
         let refusal = with_unknown_key.refusal.expect("an unknown key is refused");
-        assert_eq!(refusal.refused, "robot.toml has no number links.l99");
+        assert_eq!(refusal.reason, "robot.toml has no number links.l99");
     }
 
     #[test]

@@ -9,7 +9,7 @@ use tsify::Tsify;
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Tsify)]
 pub struct Refusal {
     /// The message for the user: the problem and its position.
-    pub refused: String,
+    pub reason: String,
     /// The consequence for the robot, without keys and values; `None` if the message names no consequence.
     pub consequence: Option<String>,
     /// Line of the file, counted from 1; `None` if the refusal belongs to no line.
@@ -20,9 +20,9 @@ pub struct Refusal {
 
 impl Refusal {
     /// Creates a refusal that belongs to a key, or to no key if `key` is empty.
-    pub(crate) fn for_key(key: &str, refused: String) -> Self {
+    pub(crate) fn for_key(key: &str, reason: String) -> Self {
         Self {
-            refused,
+            reason,
             consequence: None,
             line: None,
             key: key.to_string(),
@@ -33,7 +33,7 @@ impl Refusal {
     pub(crate) fn for_gait(error: Error) -> Self {
         let subject = error.consequence.as_ref().unwrap_or(&error.key);
         Self {
-            refused: format!("{subject}: {}", error.problem),
+            reason: format!("{subject}: {}", error.problem),
             line: None,
             ..error.into()
         }
@@ -43,7 +43,7 @@ impl Refusal {
 impl From<Error> for Refusal {
     fn from(error: Error) -> Self {
         Self {
-            refused: error.to_string(),
+            reason: error.to_string(),
             consequence: error.consequence,
             line: error.line,
             key: error.key,

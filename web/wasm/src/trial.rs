@@ -15,8 +15,8 @@ use crate::refusal::Refusal;
 
 /// Size of the smallest offered gait, in tenths of a degree of amplitude or hundredths of the drawn size.
 const MIN_SIZE_STEPS: i64 = 5;
-/// Longest offered period, in hundredths of a second.
-const MAX_PERIOD_HUNDREDTHS: i64 = 1000;
+/// Longest period in robot.toml, in hundredths of a second.
+const MAX_PERIOD_HUNDREDTHS: i64 = 6000;
 
 /// An edited gait.
 #[derive(Clone, Debug, PartialEq, Deserialize, Tsify)]

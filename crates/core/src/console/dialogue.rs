@@ -35,7 +35,7 @@ enum PendingLine {
     Answer(AnswerPart),
     /// An unsolicited notice.
     Notice(Notice),
-    /// The hazard because of which the guard holds the robot.
+    /// The hazard that makes the guard hold the robot.
     HoldReason,
     /// The pose report that `watch` requested.
     PoseReport,
@@ -81,7 +81,6 @@ impl Console {
     /// Advances the console by a frame: the timer of `watch`, the time since the last byte, and autobaud. Returns the
     /// new baud rate, or `None` if the rate stays the same.
     pub fn advance_frame(&mut self, control: &Controller) -> Option<BaudRate> {
-        self.watch.count_frame();
         self.silence_ms = self.silence_ms.saturating_add(FRAME_MS);
         let deadman_ms = control.deadman_ms();
         if deadman_ms != 0 && self.silence_ms >= deadman_ms {
@@ -91,6 +90,8 @@ impl Console {
         if self.has_output(control) {
             self.rate_detector.record_unread_bytes();
         }
+        // Counted only now: a report that becomes due in this frame has not delayed the reading of any byte.
+        self.watch.count_frame();
         let rate = self.rate_detector.end_frame()?;
         // The next line end may complete a line that began at the previous rate.
         self.line.push(GARBLED_BYTE);
@@ -131,10 +132,7 @@ impl Console {
         if command.is_ok() && !self.rate_detector.confirm_rate(text.len()) {
             command = Err(LineError::Garbled);
         }
-        let needs_no_robot = matches!(
-            command,
-            Ok(Command::Help | Command::Status | Command::Watch(_))
-        );
+        let needs_no_robot = matches!(command, Ok(Command::Help | Command::Status));
         if robot.is_none() && !needs_no_robot {
             return Err(AnswerPart::Refused(Refusal::NoRobot));
         }

@@ -252,7 +252,7 @@ pub(super) fn print_notice(out: &mut impl Output, notice: Notice, control: &Cont
             let fault = control.safety().fault();
             match control.section_error() {
                 Some(SectionError::OtherFormat) => Text::FaultNoticeRobotFormat,
-                Some(SectionError::Damaged | SectionError::Impossible) => {
+                Some(SectionError::Damaged | SectionError::Harmful) => {
                     Text::FaultNoticeRobotDamaged
                 }
                 _ => fault.map_or(Text::FaultNone, fault_message),

@@ -69,7 +69,7 @@ macro_rules! words {
     };
 }
 
-// Each row: name = word and the arguments of an example, effect.
+// Each row: variant = "word" "arguments of the example", effect.
 words! {
     // No gait's name may begin with one of these words. The list is closed, so that every later version accepts a robot
     // file that an earlier version has accepted.
@@ -135,7 +135,7 @@ impl Word {
     }
 
     /// Prints all words, separated by bars, except yielding words that are also the name of a gait.
-    /// `FIRST_YIELDING_INDEX` is the index of the first yielding word.
+    /// `FIRST_YIELDING_INDEX` is the index of the first yielding word: a parameter, so that tests can make words yield.
     pub(crate) fn print_all<const FIRST_YIELDING_INDEX: usize>(
         out: &mut impl Output,
         robot: &Robot,

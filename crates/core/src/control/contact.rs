@@ -12,7 +12,8 @@ use crate::numbers::gaits::Input;
 /// The bits with the levels of the last three frames, the latest in bit 0; 1 is a closed contact.
 const LEVEL_BITS: u8 = 0b111;
 
-/// The bit that is set once the contact may end the step, after three open frames if the step requires them.
+/// The bit that is set once closing the contact may end the step: from the first frame, or after three open frames if
+/// the contact must first have been open.
 const READY_BIT: u8 = 0b1000;
 
 /// A contact that may end a step, and its levels in the last frames.
@@ -35,6 +36,7 @@ impl Contact {
     pub const fn for_wait(input: Input) -> Self {
         Self {
             input,
+            // As if the contact had been closed before, so that it must first be open.
             history: LEVEL_BITS,
         }
     }

@@ -38,7 +38,7 @@ mod routine;
 const GOOD_SUPPLY_FRAMES: u32 = 1500;
 
 /// Frames after the program's start within which all servos wake: 0.6 s.
-const WAKING_FRAMES: u32 = 30;
+const MAX_WAKING_FRAMES: u32 = 30;
 
 /// The controller of the robot: its motion, its settings, its safety monitor, and the EEPROM operation in progress.
 #[derive(Clone, Debug)]
@@ -70,7 +70,7 @@ pub struct Controller {
     eeprom_operation: Option<EepromOperation>,
     /// The write or invalidation of the rest pose's record, if one is in progress.
     rest_pose_write: Option<RecordWrite>,
-    /// The hazard because of which the guard holds the robot, until the hazard is printed.
+    /// The hazard that makes the guard hold the robot, until the hazard is printed.
     hold_reason: Option<Hazard>,
 }
 
@@ -134,6 +134,7 @@ impl Controller {
         let (first_action, fault) =
             supervisor::first_action(restart.cause, self.suspected_brown_outs, servos_before);
         if let Some(fault) = fault {
+            // Cancels `boot`, as a received byte does.
             self.safety.record_byte();
             self.safety.record_fault(fault);
         }
@@ -188,7 +189,7 @@ impl Controller {
         // A computer that opens the port resets the board and then sends a line. By radio, lines arrive at any time.
         // Therefore a line while the servos wake does not rule out a weak supply.
         let may_be_port_reset = self.is_supply_suspected && self.reset_cause == Cause::External;
-        if may_be_port_reset && self.has_received_command && frames > WAKING_FRAMES {
+        if may_be_port_reset && self.has_received_command && frames > MAX_WAKING_FRAMES {
             self.is_supply_suspected = false;
             self.suspected_brown_outs = self.suspected_brown_outs.saturating_sub(1);
         }
@@ -218,13 +219,13 @@ impl Controller {
         self.has_received_command = true;
     }
 
-    /// Takes the hazard because of which the guard holds the robot. Returns `None` if the guard does not hold the
-    /// robot, or if the hazard was taken before.
+    /// Takes the hazard that makes the guard hold the robot. Returns `None` if the guard does not hold the robot, or if
+    /// the hazard was taken before.
     pub fn take_hold_reason(&mut self) -> Option<Hazard> {
         self.hold_reason.take()
     }
 
-    /// True while the hazard because of which the guard holds the robot waits to be printed.
+    /// True while the hazard that makes the guard hold the robot waits to be printed.
     pub const fn has_hold_reason(&self) -> bool {
         self.hold_reason.is_some()
     }
@@ -333,6 +334,7 @@ impl Controller {
                 self.go_to(&pose)?;
             }
             Order::Center => {
+                // The pose that cancels the trims.
                 let mut pose = self.settings.pose();
                 for sweep in &mut pose.0 {
                     sweep.0 = -sweep.0;
@@ -400,6 +402,7 @@ impl Controller {
     /// Freezes the pose and ends the routine.
     #[inline(never)]
     fn stop(&mut self) {
+        self.safety.clear_notice(Notice::Waiting);
         // If the routine rests, the robot stays at rest, and its pose must survive a loss of power.
         if self.routine.is_under_way() && self.motion.is_resting() {
             return self.rest();

@@ -271,7 +271,7 @@ impl Safety {
         None
     }
 
-    /// Removes a notice that has been printed from the pending notices.
+    /// Removes a notice that has been printed, or is no longer true, from the pending notices.
     pub fn clear_notice(&mut self, notice: Notice) {
         self.notices &= !(1 << notice as u8);
     }

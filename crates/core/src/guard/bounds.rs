@@ -4,18 +4,19 @@
 //! errors of the sines of [`crate::guard::trig`] are measured: a test of that module compares the sines at every angle.
 //! If a test finds an error beyond its bound, the code or this derivation is wrong.
 //!
-//! Lengths of a five-bar (head or tail) are in `U`, two steps of its links, the unit in which the code computes the
-//! distance between the crank tips. `k` is the vector from the left crank tip to the right one, `s = k^2`, `c1` and
-//! `c2` are the cranks, `a` and `b` the couplers, `R = (a + b)^2`, `N = (a - b)^2`. A prime, as in `k'`, marks the
-//! integer result for a true value.
+//! Lengths of a five-bar (head or tail) are in `U`, two steps of its links' scale; the code computes the distance
+//! between the crank tips in this unit. `k` is the vector from the left crank tip to the right one, `s = k^2`, `c1` and
+//! `c2` are the lengths of the cranks, `a` and `b` those of the couplers, `R = (a + b)^2`, `N = (a - b)^2`. Rise and
+//! skew are defined in [`crate::numbers::couplers`], the margins in [`crate::guard::five_bar`]. A prime, as in `k'`,
+//! marks the integer result for a true value.
 //!
 //! **1. Crank tips.** Base and cranks are rounded to whole steps, which changes each by at most 1/4 U. Halving the base
 //! has an error of at most 1/2 U, rounding the sum of the products of at most 1/2 U, and the sine and cosine of a
-//! direction have an error of at most `d`, [`MAX_DIRECTION_ERROR`]. Therefore `k'` is within `e` of `k`:
+//! direction have an error of at most `d`, [`MAX_DIRECTION_ERROR`]. So `k'` is within `e = hypot(e_x, e_y)` of `k`:
 //!
 //! ```text
-//! e_x = 1/4 + 1/2 + 1/2 + (|cos| + |cos|) / 4 + d (c1 + c2)
-//! e_y =             1/2 + (|sin| + |sin|) / 4 + d (c1 + c2)
+//! e_x = 1/4 + 1/2 + 1/2 + (|cos left| + |cos right|) / 4 + d (c1 + c2)
+//! e_y =             1/2 + (|sin left| + |sin right|) / 4 + d (c1 + c2)
 //! ```
 //!
 //! **2. The triangle.** The angle `gamma` between the couplers has the cosine `c = (a^2 + b^2 - s) / 2ab`. If the
@@ -25,8 +26,9 @@
 //! c' - c = (2x (a - b c) + 2y (b - a c) + x^2 + y^2 - 2xyc - z) / 2a'b'
 //! ```
 //!
-//! where `a - b c` is the component of `k` along the coupler, so at most `|k|`. As `sin^2 = 1 - cos^2`, a sine `m`
-//! changes to a sine between the roots of `m^2 - q` and of `m^2 + q`, with `q = |c' - c| (2 |c| + |c' - c|)`.
+//! where `a - b c` is the component of `k` along the left coupler, and `b - a c` along the right one, so both are at
+//! most `|k|`. As `sin^2 = 1 - cos^2`, a sine `m` changes to a sine between the square roots of `m^2 - q` and of
+//! `m^2 + q`, with `q = |c' - c| (2 |c| + |c' - c|)`.
 //!
 //! The angle at a crank tip changes by at most `(|x| + |y| + e) / (a sin(gamma))`. This follows from the derivative of
 //! the triangle's angle with respect to its sides, along a straight path from one triangle to the other; on this path
@@ -38,7 +40,7 @@
 //! error of at most one unit of its result, and each reciprocal an error of less than one of its units.
 //!
 //! **5. A range.** For a set of many pairs of angles, only the range of the distance `|k|` is known, `[near, far]`;
-//! sines and cosines in `e` are at most 1. Every term above then has its largest value: `z`, `|k|` and terms that
+//! sines and cosines in `e` are at most 1. Each term above is taken where it is largest: `z`, `|k|` and terms that
 //! increase with the distance at `far`, terms with the distance in the denominator at `near`. As `|k|` increases, `c`
 //! decreases, so `|c|` is largest at an end of the range. At that end the sine is smallest, and its difference from the
 //! two roots is largest. The largest sine is at an end of the range, too, unless `c` changes its sign within the range.
@@ -64,19 +66,20 @@ const Q10_STEP: f64 = 1.0 / 1024.0;
 /// the largest margin, a sine, at which the value is missing:
 ///
 /// - The table over `R - s` ends at `R / 4096`. The sine there is `sqrt((R - s)(s - N)) / 2ab`, which is below
-///   `sqrt(4ab R / 4096) / 2ab`: at most .05 with couplers of a ratio of 8, the largest possible ratio.
-/// - The table over `s - N` ends at `N / 1024`, where the sine is at most .077.
-/// - The table over `s` ends at `R / 1024`, where the sine is at most .063, because this part is read only if
+///   `sqrt(4ab R / 4096) / 2ab`: at most 0.05 with couplers of a ratio of 8, the largest possible ratio.
+/// - The table over `s - N` ends at `N / 1024`, where the sine is at most 0.077.
+/// - The table over `s` ends at `R / 1024`, where the sine is at most 0.063, because this part is read only if
 ///   `N < R / 2048`.
 ///
-/// Two kinds of values are wrong. A rise above 32, the largest value of an entry, is cut off, so the value is too
-/// small; a step that begins at 32 ends at `17/16 R / 1024`, where the sine is at most .065. For couplers of nearly
-/// equal length, the table over `s` holds the largest rise at all arguments below the peak, so the value is too large
-/// (see [`MAX_OVERSTATED_MARGIN`]).
+/// Two kinds of values exist, but are wrong. A rise above 32, the largest value of an entry, is cut off, so the value
+/// is too small; a step that begins at 32 ends at `17/16 R / 1024`, where the sine is at most 0.065. For couplers of
+/// nearly equal length, the table over `s` holds the largest rise at all arguments below the peak, so the value is too
+/// large (see [`MAX_OVERSTATED_MARGIN`]).
 ///
-/// The true margin is then below a tenth. According to part 2 of the derivation, it is at most the root of `m'^2 + q`.
-/// With the shortest couplers, of 2048 U, and `e` at most 3.1, `q` is at most `7.3 k / ab`: .0071 for stretched
-/// couplers of equal length, where `m'` is .031, and .0031 for folded couplers of a ratio of 8, where `m'` is .077.
+/// Where the tables have no correct value, the true margin is below a tenth: by part 2 of the derivation, it is at most
+/// the square root of `m'^2 + q`. With the shortest couplers, of 2048 U, and `e` at most 3.1, `q` is at most
+/// `7.3 |k| / ab`: 0.0071 for stretched couplers of equal length, where `m'` is 0.031, and 0.0031 for folded couplers
+/// of a ratio of 8, where `m'` is 0.077.
 pub const MIN_KNOWN_MARGIN: f64 = 0.08;
 
 /// The largest type-2 margin, a sine, that results from a value of the tables that is too large (see
@@ -85,8 +88,8 @@ pub const MAX_OVERSTATED_MARGIN: f64 = 0.045;
 
 /// The largest errors of the triangle's shape that is read from the tables of a pair of couplers.
 ///
-/// A table has sixteen steps per octave. Over a step of length `d`, a straight line differs from a function `f` by at
-/// most `d^2 / 8` times the largest second derivative of `f`. As `d` is at most a sixteenth of the argument `t`, the
+/// A table has sixteen steps per octave. Over a step of length `h`, a straight line differs from a function `f` by at
+/// most `h^2 / 8` times the largest second derivative of `f`. As `h` is at most a sixteenth of the argument `t`, the
 /// difference is at most `|t^2 f''| / 2048`. For a product of powers of straight lines, where `n` is an exponent, `p +
 /// q t` a line and `l = q t / (p + q t)`,
 ///
@@ -94,11 +97,11 @@ pub const MAX_OVERSTATED_MARGIN: f64 = 0.045;
 /// t^2 f'' = f ((sum of n l)^2 - sum of n l^2)
 /// ```
 ///
-/// `Product::max_bend_and_value` computes a bound of this over a step, from the ends of the range of each `l`. Below
-/// its peak the function is constant, so it has no bend. The following roundings add to the error: the rounding of the
-/// entries and of the value read, together 1 unit of Q10 (1.5 for the skew, whose entries are rounded to nearest and
-/// whose value is rounded down); the rounding of the position within a step to 16 bits; and the rounding of `R` and `N`
-/// down to whole units, by at most 1/4.
+/// `Product::max_bend_and_value` computes a bound of `|t^2 f''|`, the bend, over a step, from the ends of the range of
+/// each `l`. Below its peak the function of the table over `s` is constant, so it has no bend. The following roundings
+/// add to the error: the rounding of the entries and of the value read, together 1 unit of Q10 (1.5 for the skew, whose
+/// entries are rounded to nearest and whose value is rounded down); the rounding of the position within a step to 16
+/// bits; and the rounding of `R` and `N` down to whole units, by at most 1/4.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShapeError {
     /// The largest error of the rise, dimensionless.
@@ -112,13 +115,14 @@ impl ShapeError {
     /// U^2.
     pub fn compute(left: i16, right: i16, [min_tips_sq, max_tips_sq]: [f64; 2]) -> Self {
         let (a, b) = (f64::from(left) / 2.0, f64::from(right) / 2.0);
+        // R and N of the derivation.
         let reach_sq = (a + b).powi(2).floor();
         let folded_sq = (a - b).powi(2).floor();
         let root = |p: f64, q: f64| Factor { power: 0.5, p, q };
         let inverse = |p: f64, q: f64| Factor { power: -1.0, p, q };
         // A table begins with the octave that contains 1/1024 of the largest argument, so at 1/2048 of that argument or
         // above.
-        let table_span = 2048.0;
+        let argument_ratio = 2048.0;
         let mut rise_error = 0.0f64;
         // `argument_range` is the range of the table's argument for the given distances, `table_range` the range in
         // which the table is read, and `first_argument` the argument at which the function begins.
@@ -136,13 +140,13 @@ impl ShapeError {
                         product.max_bend_and_value(argument_range, first_argument);
                     let error = max_bend / 2048.0 + max_value / 65536.0 + Q10_STEP;
                     // The relative error from rounding R and N down, taken as twice its first-order term.
-                    let end_distances = [
-                        (reach_sq - max_tips_sq).max(reach_sq / 4.0 / table_span),
+                    let limit_distances = [
+                        (reach_sq - max_tips_sq).max(reach_sq / 4.0 / argument_ratio),
                         (min_tips_sq - folded_sq)
-                            .max(folded_sq / table_span)
+                            .max(folded_sq / argument_ratio)
                             .max(1.0),
                     ];
-                    let relative_rounding = 0.25 / end_distances[0] + 0.25 / end_distances[1];
+                    let relative_rounding = 0.25 / limit_distances[0] + 0.25 / limit_distances[1];
                     rise_error = rise_error.max(error + max_value * relative_rounding);
                 }
             };
@@ -155,7 +159,7 @@ impl ShapeError {
             ]),
             [min_tips_sq, max_tips_sq],
             [
-                (2.0 * folded_sq).max(reach_sq / table_span),
+                (2.0 * folded_sq).max(reach_sq / argument_ratio),
                 0.75 * reach_sq,
             ],
             peak_sq,
@@ -167,7 +171,7 @@ impl ShapeError {
                 inverse(reach_sq, -1.0),
             ]),
             [reach_sq - max_tips_sq, reach_sq - min_tips_sq],
-            [reach_sq / 4.0 / table_span, reach_sq / 4.0],
+            [reach_sq / 4.0 / argument_ratio, reach_sq / 4.0],
             0.0,
         );
         include_reading_error(
@@ -177,10 +181,10 @@ impl ShapeError {
                 inverse(folded_sq, 1.0),
             ]),
             [min_tips_sq - folded_sq, max_tips_sq - folded_sq],
-            [folded_sq / table_span, folded_sq],
+            [folded_sq / argument_ratio, folded_sq],
             0.0,
         );
-        let min_argument = min_tips_sq.max(reach_sq / table_span);
+        let min_argument = min_tips_sq.max(reach_sq / argument_ratio);
         let skew = (reach_sq * folded_sq).sqrt() / min_argument;
         // For f = 1 / t, |t^2 f''| is 2 f; a step begins at most a sixteenth below the argument.
         let reading_error = 2.0 * skew * (17.0 / 16.0) / 2048.0 + skew / 65536.0;
@@ -381,11 +385,11 @@ impl EndErrors {
         let type1_error = |coupler: f64| {
             let a = coupler / 2.0;
             let tip_turn = (0.5 + e) / ((a - 0.25) * low_root.max(1e-9)) + line_turn;
-            let (near, far) = (tips_sq_range[0].sqrt().max(1.0), far + e);
-            let component_error = 0.5 + 2f64.sqrt() * MAX_DIRECTION_ERROR * far;
+            let (min_k, max_k) = (tips_sq_range[0].sqrt().max(1.0), far + e);
+            let component_error = 0.5 + 2f64.sqrt() * MAX_DIRECTION_ERROR * max_k;
             let scaled_sine_error = component_error
-                * (2f64.sqrt() * 2.0 * a / near + shape_error.rise + shape_error.skew)
-                + far * shape_error.rise.hypot(shape_error.skew)
+                * (2f64.sqrt() * 2.0 * a / min_k + shape_error.rise + shape_error.skew)
+                + max_k * shape_error.rise.hypot(shape_error.skew)
                 + 2.0;
             tip_turn + scaled_sine_error / (2.0 * a) + 1.01 * coupler / 2f64.powi(27) + Q15_STEP
         };

@@ -1,7 +1,7 @@
 //! The checks of a robot's section beyond its CRC: no number may damage a servo or the board.
 //!
 //! A section with a correct CRC was made by a host that has checked every number and every sample of every gait. The
-//! device therefore checks only the numbers that could damage hardware: a pin of the serial port or the LED, a pulse
+//! chip therefore checks only the numbers that could damage hardware: a pin of the serial port or the LED, a pulse
 //! that a servo does not tolerate, and a neutral pose in which the linkage would jam as soon as the servos wake. Any
 //! other wrong number can only make the robot walk badly: every address of flash is readable, every index is checked
 //! where it is used, and each pulse stays within its servo's travel.
@@ -39,14 +39,14 @@ impl<'a> Robot<'a> {
     /// Checks the section at the beginning of `flash` and returns its robot.
     ///
     /// # Errors
-    /// Fails if the section is not a valid robot.
+    /// Fails if there is no section of a valid robot.
     #[inline(never)]
     pub fn open(flash: Region<'a>) -> Result<Self, SectionError> {
         let length = section::check(flash)?;
         let robot = Self::at(flash.prefix(length));
         match robot.is_harmless() {
             true => Ok(robot),
-            false => Err(SectionError::Impossible),
+            false => Err(SectionError::Harmful),
         }
     }
 
@@ -94,7 +94,7 @@ impl<'a> Robot<'a> {
         user_count
     }
 
-    /// Returns the input of a record of the kind [`Step::UNTIL`]. Returns [`Input::NONE`] if its pin is not usable, or
+    /// Returns the input of a step of the kind [`Step::UNTIL`]. Returns [`Input::NONE`] if its pin is not usable, or
     /// is used by a servo or the rail, which the input's pull-up would disturb.
     pub(crate) fn input(&self, step: &Step) -> Input {
         let input = Input::from_step(step);

@@ -116,8 +116,8 @@ pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Sa
     state
 }
 
-/// Starts writing the settings over the older of the two copies. Returns `None` if the newer copy already holds these
-/// settings.
+/// Starts writing the settings over the older or damaged copy. Returns `None` if the newer copy already holds these
+/// settings and the other copy is not damaged.
 pub fn start_save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<RecordWrite> {
     let copies = Copies::check(memory);
     if copies.has_no_valid_copy() {
@@ -129,7 +129,8 @@ pub fn start_save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Reco
     settings.set_save_number(save_number);
     let is_saved =
         |(index, byte): (usize, &u8)| latest_address.read_byte(memory, index as u16) == *byte;
-    if settings.bytes().iter().enumerate().all(is_saved) {
+    let is_other_damaged = copies.states.contains(&RecordState::Damaged);
+    if !is_other_damaged && settings.bytes().iter().enumerate().all(is_saved) {
         return None;
     }
     settings.set_save_number(save_number.wrapping_add(1));

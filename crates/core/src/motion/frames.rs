@@ -81,7 +81,7 @@ pub struct Motion {
     is_settling: bool,
     /// The state of the servos; `is_resting` is true only in [`State::Resting`].
     servo_state: ServoState,
-    /// The hazard because of which the guard stopped the robot; `None` once another motion has been ordered.
+    /// The hazard that made the guard stop the robot; `None` once another motion has been ordered.
     hazard: Option<Hazard>,
     /// Frames since power-on.
     frame_count: u32,
@@ -205,12 +205,12 @@ impl Motion {
     /// Returns false if there is neither a current nor a next motion.
     #[inline(never)]
     pub fn brake_to_standstill(&mut self) -> bool {
-        let is_moving = self.next_target.is_some()
+        let has_motion = self.next_target.is_some()
             || matches!(self.state, State::Moving { .. } | State::Cycling { .. });
-        if is_moving {
+        if has_motion {
             self.next_target = Some(Target::Standstill);
         }
-        is_moving
+        has_motion
     }
 
     /// True if the robot came to a standstill in the last frame: a counted gait was complete, or

@@ -1,7 +1,6 @@
-//! The numbers of a robot: units, integer arithmetic, types without behaviour, and the section of flash that contains
-//! the numbers.
+//! The numbers of a robot: their units, types and integer arithmetic, and the section of flash that contains them.
 //!
-//! This is the lowest module of the crate: every other module uses it, but it uses no other module.
+//! This is the lowest layer of the crate: every other layer uses it, but it uses no other layer.
 
 pub mod calibration;
 pub mod cells;

@@ -170,7 +170,7 @@ pub enum SectionError {
     /// The section is incomplete or has changed since it was written.
     Damaged,
     /// The section is intact, but a number in it could damage hardware.
-    Impossible,
+    Harmful,
 }
 
 /// The offset of the first byte that the CRC covers.

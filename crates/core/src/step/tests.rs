@@ -21,8 +21,8 @@ fn run_step(robot: &mut RunningRobot) -> bool {
     robot.main.step(&mut robot.board) == StepResult::Worked
 }
 
-/// Runs a robot that stands and has received a line of garbled bytes, as from a sender at another baud rate.
-fn run_robot_with_garbled_line() -> RunningRobot {
+/// Returns a standing robot that has just received a line of garbled bytes, as from a sender at another baud rate.
+fn start_robot_with_garbled_line() -> RunningRobot {
     let mut robot = RunningRobot::power_on(*Sample::asymmetric());
     robot.run_frames(10);
     let bytes = [GARBLED_BYTE, 0x80, GARBLED_BYTE, GARBLED_BYTE, b'\n'];
@@ -96,7 +96,7 @@ fn several_ticks_at_once_get_one_frame_even_if_their_count_wraps() {
 }
 
 #[test]
-fn a_frame_that_waits_to_be_played_is_replaced_only_at_rest() {
+fn a_frame_that_has_not_started_is_replaced_only_at_rest() {
     for is_resting in [false, true] {
         let mut robot = start_robot(0, "");
         robot.run_frames(100);
@@ -137,7 +137,7 @@ fn submitted_pulses_match_the_motion_and_status_shows_the_counters() {
         robot.run_frame();
         assert_eq!(robot.board.submitted_pulses(), motion_alone.advance_frame());
     }
-    robot.board.count_lost_bytes(34);
+    robot.board.add_lost_bytes(34);
     let status = robot.send_line("status");
     assert!(status.contains(" frames=30 late=0 rx_lost=34 "), "{status}");
 }
@@ -165,7 +165,7 @@ fn the_led_shows_the_heartbeat_and_flashes_while_the_guard_holds_the_robot() {
     assert!(first_held_frame > 40);
     let (heartbeat_states, flash_states) = led_states.split_at(first_held_frame - 1);
     // The LED is lit for the first 31 frames from power-on, then dark for 32 frames, and so on.
-    assert!(heartbeat_states[..31].iter().all(|led| *led) && !heartbeat_states[31]);
+    assert!(heartbeat_states[..31].iter().all(|is_lit| *is_lit) && !heartbeat_states[31]);
     let heartbeat_intervals = measure_change_intervals(heartbeat_states);
     assert!(heartbeat_intervals.iter().all(|frames| *frames == 32));
     let flash_intervals = measure_change_intervals(flash_states);
@@ -219,7 +219,7 @@ fn a_slow_memory_delays_the_input_but_no_frame() {
 
 #[test]
 fn a_line_that_began_at_another_rate_is_garbled_and_the_next_line_is_executed() {
-    let mut robot = run_robot_with_garbled_line();
+    let mut robot = start_robot_with_garbled_line();
     robot.board.send(b"bo");
     assert_eq!(robot.board.rate, BaudRate::Fastest);
     robot.run_frames(3);
@@ -240,7 +240,7 @@ fn a_line_that_began_at_another_rate_is_garbled_and_the_next_line_is_executed() 
 
 #[test]
 fn the_rate_does_not_change_while_received_bytes_wait_for_an_answer() {
-    let mut robot = run_robot_with_garbled_line();
+    let mut robot = start_robot_with_garbled_line();
     robot.run_without_reader(10);
     assert_eq!(robot.board.rate, BaudRate::Fastest);
     robot.run_frames(3);
@@ -248,7 +248,16 @@ fn the_rate_does_not_change_while_received_bytes_wait_for_an_answer() {
 }
 
 #[test]
-fn a_late_edge_and_a_stack_in_the_data_are_reported_as_faults() {
+fn a_report_in_every_frame_does_not_prevent_a_change_of_the_rate() {
+    let mut robot = RunningRobot::power_on(*Sample::asymmetric());
+    robot.expect_accepted("watch 1");
+    robot.board.send(&[GARBLED_BYTE; 32]);
+    robot.run_frames(3);
+    assert_eq!(robot.board.rate, BaudRate::Half);
+}
+
+#[test]
+fn a_late_edge_and_a_stack_overflow_are_reported_as_faults() {
     let mut robot = start_robot(0, "");
     robot.run_frames(1);
     robot.board.late_edges = 1;

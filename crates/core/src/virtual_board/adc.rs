@@ -71,8 +71,8 @@ impl Adc {
     }
 }
 
-/// Computes the reading of an ADC whose chip is supplied with `board_mv`, and whose servo rail with `rail_mv`. The
-/// rail is measured through its voltage divider.
+/// Computes the ADC's reading while the chip's supply is `board_mv` and the servo rail is `rail_mv`. The rail is
+/// measured through a voltage divider with the ratio `rail_reference_mv / reference_mv`.
 pub fn compute_reading(supplies: &Supplies, board_mv: u32, rail_mv: u32) -> Reading {
     let board_mv = u64::from(board_mv);
     let convert = |mv: u64| ((1024 * mv + board_mv / 2) / board_mv.max(1)).min(1023) as u16;

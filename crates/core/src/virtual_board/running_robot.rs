@@ -217,9 +217,9 @@ impl RunningRobot {
         self.restart_main();
     }
 
-    /// Switches the power off and on; see [`VirtualBoard::lose_power`].
-    pub fn lose_power(&mut self, torn_byte: Option<u8>) {
-        self.board.lose_power(torn_byte);
+    /// Switches the power off and on; see [`VirtualBoard::cycle_power`].
+    pub fn cycle_power(&mut self, torn_byte: Option<u8>) {
+        self.board.cycle_power(torn_byte);
         self.restart_main();
     }
 

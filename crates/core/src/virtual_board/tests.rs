@@ -75,7 +75,7 @@ fn a_reset_keeps_the_pose_and_a_loss_of_power_does_not() {
     assert_eq!(servo_state_before.expect("it is in the RAM").pose, pose);
     let claim = "bytes that the main loop has not read are lost";
     assert_eq!(robot.board.unread_count(), 0, "{claim}");
-    robot.lose_power(None);
+    robot.cycle_power(None);
     assert_eq!(robot.board.last_restart(), &Restart::NONE);
 }
 
@@ -85,10 +85,10 @@ fn power_lost_during_a_write_changes_only_the_byte_that_is_being_written() {
     board.memory.write(17, 0x35);
     assert_eq!(board.memory.address_in_write(), Some(17));
     let mut board_after_write = board.clone();
-    board.lose_power(Some(0xb7));
+    board.cycle_power(Some(0xb7));
     assert_eq!(board.memory.bytes()[17], 0xb7);
     board_after_write.pass_time(4);
-    board_after_write.lose_power(Some(0xb7));
+    board_after_write.cycle_power(Some(0xb7));
     let byte = board_after_write.memory.bytes()[17];
     assert_eq!(byte, 0x35, "the write had time to end");
     let is_unwritten = |address: &usize| *address != 17;

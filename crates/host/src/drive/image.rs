@@ -57,6 +57,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
         return Ok(io::stdout().lock().write_all(hex.as_bytes())?);
     };
     files::write(&path, hex.as_bytes())?;
+    if files::is_standard_output(&path) {
+        return Ok(());
+    }
     let image_file = ImageFile {
         file: path.display().to_string(),
         firmware: (!args.only_robot).then_some(env!("CARGO_PKG_VERSION")),

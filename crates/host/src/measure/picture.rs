@@ -30,15 +30,15 @@ const MEASURED_COLOUR: &str = SERVO_COLOURS[0];
 /// Colour of predicted values.
 const PREDICTED_COLOUR: &str = GREY;
 /// Half the length of an error bar, in standard errors.
-const ERROR_BAR_STANDARD_ERRORS: f64 = 2.0;
+const ERROR_BAR_HALF_LENGTH: f64 = 2.0;
 
 /// Draws a report as SVG.
 pub(super) fn draw(report: &Report) -> String {
     let mut group = add_title(
         Group::new(),
         PATH_X,
-        "The robot measured",
-        "mean of a cycle in a video, with two standard errors, and the prediction",
+        "The measured robot",
+        "mean over the cycles in a video, with two standard errors, and the prediction",
     );
     group = draw_legend_entry(group, (PATH_X, 92.0), MEASURED_COLOUR, "none", "measured");
     let point = (PATH_X + 150.0, 92.0);
@@ -64,12 +64,12 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
     let predicted = gait.predicted_path.iter();
     let predicted: Vec<_> = predicted.map(|pose| (pose.forward, pose.left)).collect();
     let mean_points = gait.mean_path.iter();
-    let mut points = vec![(0.0, 0.0)];
-    points.extend(mean_points.map(|point| (point.forward.mean, point.left.mean)));
+    let mut measured = vec![(0.0, 0.0)];
+    measured.extend(mean_points.map(|point| (point.forward.mean, point.left.mean)));
     let last_point = (gait.forward.mean, gait.left.mean);
-    points.push(last_point);
+    measured.push(last_point);
     let extent_of = |component: fn(&(f64, f64)) -> f64| {
-        let values = predicted.iter().chain(&points).map(component);
+        let values = predicted.iter().chain(&measured).map(component);
         values.fold([0.0f64; 2], |[min, max], value| {
             [min.min(value), max.max(value)]
         })
@@ -100,7 +100,7 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
     for point in &gait.mean_path {
         let (x, y) = (point.forward.mean, point.left.mean);
         let [error_x, error_y] = [&point.forward, &point.left]
-            .map(|component| ERROR_BAR_STANDARD_ERRORS * component.standard_error);
+            .map(|component| ERROR_BAR_HALF_LENGTH * component.standard_error);
         for (start, end) in [
             ((x - error_x, y), (x + error_x, y)),
             ((x, y - error_y), (x, y + error_y)),
@@ -110,16 +110,16 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
     }
     let start = plot.circle((0.0, 0.0), 5.0, "white");
     group
-        .add(plot.curve(&points, MEASURED_COLOUR, 2.0))
+        .add(plot.curve(&measured, MEASURED_COLOUR, 2.0))
         .add(add_outline(start, MEASURED_COLOUR, 2.0))
         .add(plot.circle(last_point, 5.0, MEASURED_COLOUR))
 }
 
-/// Draws the components of the movement in a cycle as bars.
+/// Draws the components of the displacement per cycle as bars.
 fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
     let components = gait.components();
     let ends = components.iter().flat_map(|component| {
-        let half_length = ERROR_BAR_STANDARD_ERRORS * component.standard_error;
+        let half_length = ERROR_BAR_HALF_LENGTH * component.standard_error;
         let error_ends = [component.mean - half_length, component.mean + half_length];
         error_ends.into_iter().chain(component.predicted)
     });
@@ -147,8 +147,8 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
         if let Some(predicted) = component.predicted {
             group = group.add(draw_bar(0.52, predicted, PREDICTED_COLOUR).set("fill-opacity", 0.6));
         }
-        let error_ends = [-ERROR_BAR_STANDARD_ERRORS, ERROR_BAR_STANDARD_ERRORS]
-            .map(|errors| component.mean + errors * component.standard_error);
+        let half_length = ERROR_BAR_HALF_LENGTH * component.standard_error;
+        let error_ends = [component.mean - half_length, component.mean + half_length];
         let x = interval_x + 0.34;
         let [low, high] = error_ends.map(|end| (x, end));
         group = group.add(plot.line(low, high, "black", 1.5));

@@ -44,6 +44,9 @@ pub fn write_sheet(args: SheetArgs) -> Result<(), Failure> {
         PaperName::Letter => PaperSize::Letter,
     };
     files::write(&args.output, &paper.draw_tag_sheet())?;
+    if files::is_standard_output(&args.output) {
+        return Ok(());
+    }
     let file = args.output.display();
     writeln!(
         io::stdout(),

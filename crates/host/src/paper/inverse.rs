@@ -103,7 +103,7 @@ fn check_solution(
     let angles = [left, right].map(|theta| end.mirror_angle(theta));
     let mut reasons = Vec::new();
     for (servo, angle) in end.servos().into_iter().zip(angles) {
-        reasons.extend(violations::find_travel_violation(robot, servo, angle));
+        reasons.extend(violations::describe_travel_violation(robot, servo, angle));
     }
     let is_behind = solution.assembly_mode == AssemblyMode::Behind;
     if is_behind {
@@ -165,7 +165,7 @@ fn combine_ends(robot: &Robot, [head, tail]: [Option<Vector>; 2]) -> Report {
     }
     if is_complete {
         match robot.lizard().solve(&Pose::from(angles)) {
-            Ok(solution) => reasons.extend(violations::find_pose_violations(robot, &solution)),
+            Ok(solution) => reasons.extend(violations::describe_pose_violations(robot, &solution)),
             Err(infeasible) => reasons.push(infeasible.to_string()),
         }
     }

@@ -80,7 +80,7 @@ impl PoseLine {
                 };
             }
         };
-        let reasons = violations::find_pose_violations(robot, solution);
+        let reasons = violations::describe_pose_violations(robot, solution);
         let (head, tail) = (solution.head_point(), solution.tail_point());
         let passive = solution.passive_joints();
         let slider_state = |phi: f64, s: f64| Some(SliderState { phi, s });
@@ -147,7 +147,7 @@ pub fn format_row(
         round_to_decimals(solution.right.s, 2),
         round_to_decimals(min_margin, 4),
     );
-    let reasons = violations::find_pose_violations(robot, solution);
+    let reasons = violations::describe_pose_violations(robot, solution);
     line + reasons.first().map_or("safe", String::as_str)
 }
 
@@ -211,7 +211,7 @@ margins  (0 is singular, 1 is best)  limits {} {} {}
 ",
         limits.type2, limits.type1, limits.leg
     );
-    let reasons = violations::find_pose_violations(robot, solution);
+    let reasons = violations::describe_pose_violations(robot, solution);
     if reasons.is_empty() {
         let (min_check, min_margin) = margins.min();
         let _ = writeln!(

@@ -140,7 +140,11 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 /// # Errors
 /// Fails as [`write`] does, except that the file may be an input or a robot.
 pub fn write_checked(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let outcome = if is_stream(path) {
+    let outcome = if is_standard_output(path) {
+        // Standard output may be a file with other contents, so it is neither opened again nor replaced.
+        let mut out = io::stdout().lock();
+        out.write_all(bytes).and_then(|()| out.flush())
+    } else if is_stream(path) {
         // Opens the stream without creating or truncating a file.
         File::options()
             .write(true)
@@ -179,6 +183,11 @@ pub fn write_failure(path: &Path, error: &io::Error) -> Failure {
         .split_once(" at path ")
         .map_or(reason.as_str(), |(reason, _)| reason);
     Failure::Operation(format!("cannot write {}: {reason}", path.display()))
+}
+
+/// True if an output goes to standard output, which must then contain no message.
+pub fn is_standard_output(path: &Path) -> bool {
+    path == Path::new("/dev/stdout")
 }
 
 /// Returns the folder that contains a file.

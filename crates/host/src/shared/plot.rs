@@ -21,8 +21,8 @@ pub const BLUES: &[&str] = &[
     "#f7fbff", "#e3eef8", "#d0e1f2", "#b7d4ea", "#9ac7e0", "#7fb8da", "#65a9d2",
 ];
 
-/// The colour of impossible regions.
-pub const IMPOSSIBLE_COLOUR: &str = "#d4d0cb";
+/// The colour of excluded regions.
+pub const EXCLUDED_COLOUR: &str = "#d4d0cb";
 
 /// A rectangle on the page with its own coordinate system.
 #[derive(Clone, Copy)]

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::program::{repo_root, robot_path, run};
+use crate::harness::{repo_root, robot_path, run};
 
 fn release_folder() -> PathBuf {
     repo_root().join("target/avr-atmega328p/release")

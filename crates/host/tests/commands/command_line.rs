@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use crate::program::{
+use crate::harness::{
     assert_contains, expect_refusals, repo_root, run, run_command, run_line_in, scratch_folder,
 };
 

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use lizard_robot::Robot;
 
-use crate::program::{assert_contains, expect_refusals, robot_path, run_line_in};
+use crate::harness::{assert_contains, expect_refusals, robot_path, run_line_in};
 
 /// An image of 20 bytes, as avr-objcopy writes it.
 const HEX: &str = "\

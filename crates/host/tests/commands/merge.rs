@@ -1,7 +1,7 @@
 //! Tests of long computations that are split into parts: independent processes compute the parts, and `lizard merge`
 //! prints the output of a single process. `make parallel-test` repeats this with GNU parallel and longer commands.
 
-use crate::program::{expect_refusals, repo_root, run_line, with_paper};
+use crate::harness::{expect_refusals, repo_root, run_line, with_paper};
 
 /// Computes all parts and returns their output, the last part first.
 fn compute_parts(arguments: &str, part_count: usize) -> String {

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::program::{expect_refusals, new_folder, run, run_line_in};
+use crate::harness::{expect_refusals, new_folder, run, run_line_in};
 
 #[test]
 fn a_mujoco_file_has_servos_feet_and_one_home_pose() {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::process::Command;
 
-use crate::program::{Outcome, assert_contains, read_cases, read_file, run_command, run_line_in};
+use crate::harness::{Outcome, assert_contains, read_cases, read_file, run_command, run_line_in};
 
 #[test]
 fn no_command_overwrites_its_input_or_a_robot_file() {
@@ -92,6 +92,25 @@ fn a_hyphen_as_output_is_refused_and_leaves_no_file() {
         run_line_in(folder.path(), line).expect_refusal_with("- is not an output file");
     }
     assert!(!folder.path().join("-").exists());
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn an_output_to_standard_output_is_appended_to_the_text_before_it() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    for (line, piped_line) in [
+        ("flash image --output /dev/stdout", "flash image"),
+        ("model /dev/stdout", "model /dev/stdout"),
+    ] {
+        let script = format!("echo before > a; exec \"$0\" {line} --robot paper >> a");
+        let mut bash = Command::new("bash");
+        bash.args(["-c", &script, env!("CARGO_BIN_EXE_lizard")]);
+        run_command(bash.current_dir(folder.path()), "").expect_success();
+        let text = fs::read_to_string(folder.path().join("a")).expect("the file is readable");
+        let piped_line = format!("{piped_line} --robot paper");
+        let piped_text = run_line_in(folder.path(), &piped_line).expect_success();
+        assert!(text == format!("before\n{piped_text}"), "{line}: {text}");
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::program::{Outcome, TemporaryRobot, assert_contains, run_line_in, scratch_folder};
+use crate::harness::{Outcome, TemporaryRobot, assert_contains, run_line_in, scratch_folder};
 
 /// Runs `lizard parts` with a folder that does not exist; returns the folder's path.
 fn make_parts(name: &str, options: &str) -> (PathBuf, Outcome) {

@@ -3,7 +3,7 @@
 use lizard_core::virtual_board::RunningRobot;
 use lizard_robot::Robot;
 
-use crate::program::{assert_contains, read_file};
+use crate::harness::{assert_contains, read_file};
 
 /// Returns true if a line matches the page's line, in which a final `...` stands for any text.
 fn matches_page(line: &str, page_line: &str) -> bool {

@@ -1,6 +1,6 @@
 //! Tests of `lizard sim` and `lizard draw`: invalid input, the inputs of a routine, and the drawing in docs/.
 
-use crate::program::{expect_refusals, read_file, robot_path, run, run_line_in, scratch_folder};
+use crate::harness::{expect_refusals, read_file, robot_path, run, run_line_in, scratch_folder};
 
 #[test]
 fn sim_refuses_invalid_input() {

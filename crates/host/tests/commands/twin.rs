@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::program::{TemporaryRobot, read_file, run_line, with_paper};
+use crate::harness::{TemporaryRobot, read_file, run_line, with_paper};
 
 /// Runs a command; returns the printed JSON object whose `key` has this value.
 fn find_object(line: &str, key: &str, value: &str) -> Value {

@@ -110,7 +110,8 @@ fn info_prints_a_boards_firmware_and_settings_and_changes_nothing() {
 fn a_terminal_session_has_line_editing_and_reconnects_to_an_unplugged_board() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let uno = Uno::start(&folder);
-    let mut session = TerminalSession::start(&folder, &format!("console {}", uno.port()));
+    let line = format!("console --record a.jsonl {}", uno.port());
+    let mut session = TerminalSession::start(&folder, &line);
     session.wait_for("# lizard ");
     session.wait_for("no fault");
     // Ctrl-A moves the cursor to the start of the line, where the missing letter is inserted.
@@ -128,6 +129,32 @@ fn a_terminal_session_has_line_editing_and_reconnects_to_an_unplugged_board() {
     assert_eq!(session.wait_for_exit(), Some(0));
     let history = fs::read_to_string(folder.path().join("lizard/history"));
     assert_eq!(history.expect("the history is readable"), "stop\nstand\n");
+    let recording = fs::read_to_string(folder.path().join("a.jsonl"));
+    let recording = recording.expect("the file is readable");
+    let has_banner = recording.contains("\"note\":\"# lizard ");
+    assert!(has_banner, "the second banner is missing: {recording}");
+}
+
+#[test]
+fn the_recording_of_a_script_shows_that_the_port_disappeared() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    let uno = Uno::start(&folder);
+    let line = format!("console --record a.jsonl {}", uno.port());
+    let mut child = lizard_command(&folder, &line)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let read_recording = || fs::read_to_string(folder.path().join("a.jsonl")).unwrap_or_default();
+    TIME_LIMIT.wait_for("a session in the file", || {
+        read_recording().contains("\"begin\":")
+    });
+    drop(uno);
+    // The program's input is still open.
+    assert_eq!(wait_for_exit(&mut child).code(), Some(1));
+    let recording = read_recording();
+    assert!(recording.ends_with("\"gone\":null}\n"), "{recording}");
 }
 
 #[test]
@@ -290,7 +317,8 @@ fn the_link_to_a_simulated_board_replaces_no_other_file_and_ends_with_the_board(
     // A killed run leaves a broken link, which a new run replaces.
     std::os::unix::fs::symlink("/dev/pts/999999", &board_link).expect("the link is created");
     let line = format!("sim --pty {}", board_link.display());
-    let child = lizard_command(&folder, &line).stdout(Stdio::null()).spawn();
+    // The board does not end because nothing can be printed.
+    let child = lizard_command(&folder, &line).stdout(full_device()).spawn();
     let mut child = child.expect("the program starts");
     TIME_LIMIT.wait_for("a port at the end of the link", || board_link.exists());
     send_signal(&child, Signal::TERM);
@@ -315,6 +343,24 @@ fn draw_prints_no_drawing_to_a_terminal_and_merge_reads_no_parts_from_it() {
         assert!(!session.new_text.contains("<svg"), "{line}");
         assert_eq!(session.wait_for_exit(), Some(2), "{line}");
     }
+}
+
+#[test]
+fn a_backup_on_a_full_device_ends_with_code_1() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    let mut command = lizard_command(&folder, "calibrate backup a.toml --sim");
+    let mut child = command
+        .stdout(full_device())
+        .spawn()
+        .expect("the program starts");
+    assert_eq!(wait_for_exit(&mut child).code(), Some(1));
+    assert!(folder.path().join("a.toml").exists());
+}
+
+/// Opens a device to which nothing can be written.
+fn full_device() -> File {
+    let device = File::options().write(true).open("/dev/full");
+    device.expect("the device can be opened")
 }
 
 fn send_signal(child: &Child, signal: Signal) {

@@ -67,11 +67,11 @@ fn random_card(rng: &mut Rng) -> CardPose {
 }
 
 /// Identifies the keys with a model, from the values of the hypothetical robot.toml.
-fn solve_with(
+fn identify_with(
     model: &dyn Fn(&Values) -> Vec<Travel>,
     movements: &[MeasuredMovement],
 ) -> Identification {
-    solve(movements, default_file_values(), model).expect("the fit converges")
+    identify_with_model(movements, default_file_values(), model).expect("the fit converges")
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn changed_keys_are_found_within_two_standard_errors_in_95_percent_and_correct_k
         }
         let card = random_card(&mut rng);
         let movements = measure_robot(&true_values, card, &mut rng);
-        let result = solve_with(&compute_travels, &movements);
+        let result = identify_with(&compute_travels, &movements);
         explained_count += i32::from(result.goodness.is_explained);
         for i in 0..KEY_COUNT {
             let key = &result.keys[i];
@@ -126,22 +126,22 @@ fn changed_keys_are_found_within_two_standard_errors_in_95_percent_and_correct_k
 }
 
 #[test]
-fn at_a_fold_of_the_model_the_error_follows_the_flatter_side() {
+fn at_a_kink_of_the_model_the_error_follows_the_flatter_side() {
     /// Twist below which the foot carries no load and an even shorter foot has no further effect, mm.
-    const FOLD: f64 = -0.5;
-    let folded_model = |values: &Values| {
+    const KINK: f64 = -0.5;
+    let kinked_model = |values: &Values| {
         let mut values = *values;
-        values[TWIST_INDEX] = values[TWIST_INDEX].max(FOLD);
+        values[TWIST_INDEX] = values[TWIST_INDEX].max(KINK);
         compute_travels(&values)
     };
     let mut true_values = default_file_values();
-    true_values[TWIST_INDEX] = FOLD;
+    true_values[TWIST_INDEX] = KINK;
     let movements = measure_exactly(compute_travels(&true_values), CardPose::default());
-    let folded_error = solve_with(&folded_model, &movements).keys[TWIST_INDEX].error;
-    let smooth_error = solve_with(&compute_travels, &movements).keys[TWIST_INDEX].error;
+    let kinked_error = identify_with(&kinked_model, &movements).keys[TWIST_INDEX].error;
+    let smooth_error = identify_with(&compute_travels, &movements).keys[TWIST_INDEX].error;
     assert!(
-        folded_error > 1.2 * smooth_error,
-        "folded model: {folded_error}, smooth model: {smooth_error}"
+        kinked_error > 1.2 * smooth_error,
+        "kinked model: {kinked_error}, smooth model: {smooth_error}"
     );
 }
 
@@ -156,7 +156,7 @@ fn a_key_without_effect_keeps_its_value_and_is_undetermined() {
     (true_values[0], true_values[5]) = (8.0, 1.1);
     let card = random_card(&mut Rng::with_seed(1));
     let movements = measure_exactly(model_without_key_5(&true_values), card);
-    let result = solve_with(&model_without_key_5, &movements);
+    let result = identify_with(&model_without_key_5, &movements);
     let mut expected = vec![Verdict::Unchanged; KEY_COUNT];
     (expected[0], expected[5]) = (Verdict::Changed, Verdict::Undetermined);
     let verdicts: Vec<Verdict> = result.keys.iter().map(|key| key.verdict).collect();
@@ -177,7 +177,7 @@ fn two_keys_with_the_same_effect_are_reported_as_correlated() {
     };
     let mut rng = Rng::with_seed(1);
     let movements = measure_robot(&default_file_values(), CardPose::default(), &mut rng);
-    let result = solve_with(&equal_effect_model, &movements);
+    let result = identify_with(&equal_effect_model, &movements);
     let [(a, b, correlation)] = result.correlated_pairs[..] else {
         panic!("{:?}", result.correlated_pairs);
     };
@@ -190,10 +190,10 @@ fn two_keys_with_the_same_effect_are_reported_as_correlated() {
 fn a_movement_that_no_key_explains_is_reported_and_enlarges_the_errors() {
     let mut rng = Rng::with_seed(2);
     let mut movements = measure_robot(&default_file_values(), CardPose::default(), &mut rng);
-    let good_result = solve_with(&compute_travels, &movements);
+    let good_result = identify_with(&compute_travels, &movements);
     assert!(good_result.goodness.is_explained && good_result.goodness.error_factor == 1.0);
     movements[3].mean[0] += 4.0;
-    let bad_result = solve_with(&compute_travels, &movements);
+    let bad_result = identify_with(&compute_travels, &movements);
     let goodness = bad_result.goodness;
     let is_error_enlarged = !goodness.is_explained && goodness.error_factor > 5.0;
     assert!(is_error_enlarged, "{goodness:?}");
@@ -225,7 +225,7 @@ fn a_negative_play_is_impossible_and_keeps_the_file_value() {
         movement.mean[1] -= play_travel.left - base_travel.left;
         movement.mean[2] -= play_travel.turn - base_travel.turn;
     }
-    let result = solve_with(&compute_travels, &movements);
+    let result = identify_with(&compute_travels, &movements);
     let play_key = &result.keys[PLAY_INDEX];
     assert_eq!(play_key.new_value, 0.0);
     assert!(

@@ -42,7 +42,8 @@ pub struct LciStatistics {
 /// Computes the local conditioning index with the end point at `point` and outward elbows; 0 on the rim of the
 /// workspace and outside it.
 pub fn lci(five_bar: &FiveBar, point: Vector) -> f64 {
-    five_bar.pose_at_point(point).map_or(0.0, |pose| pose.lci())
+    let pose = five_bar.pose_at_point(point);
+    pose.map_or(0.0, |pose| pose.conditioning_index())
 }
 
 impl Performance {

@@ -199,7 +199,7 @@ fn compute_margin_and_lci(five_bar: &FiveBar, neutral: f64, sweep: f64) -> (f64,
             if let Ok(pose) = five_bar.forward(left_angle, 180.0 - neutral + right_fraction * sweep)
             {
                 min_margin = min_margin.min(pose.margin());
-                lci_sum += pose.lci();
+                lci_sum += pose.conditioning_index();
             }
         }
     }

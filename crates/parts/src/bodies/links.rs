@@ -1,6 +1,6 @@
 //! The bodies that a servo turns: its horn, and the link on the horn.
 //!
-//! The link is the crank of head or tail, a slider's arm and the anchor of the leg's strut; one servo moves all three.
+//! The link combines the crank of the head or the tail, a slider's arm, and the anchor of the leg's strut.
 
 use lizard_kinematics::Vector;
 use lizard_robot::Horn;
@@ -22,7 +22,7 @@ pub const HORN_SCREW_LENGTH: f64 = 4.0;
 /// Radius and height of the head of a horn's small screw, mm.
 const HORN_SCREW_HEAD_SIZE: [f64; 2] = [1.5, 1.0];
 
-/// Wall of the ring between strut and link, mm; the spring's coil leaves no room for more.
+/// Wall thickness of the ring between strut and link, mm; the spring's coil leaves no room for more.
 const RING_WALL: f64 = 1.1;
 
 /// Clearance on each side of a horn's arm in its pocket, in multiples of `fit`: horns vary in size.
@@ -34,7 +34,7 @@ pub fn add(builder: &mut AssemblyBuilder) {
         add_horn(builder, servo);
         add_link(builder, servo);
         add_horn_screws(builder, servo);
-        add_anchor(builder, servo);
+        add_anchor_screw_and_ring(builder, servo);
     }
 }
 
@@ -54,6 +54,7 @@ pub fn make_horn_arm(horn: &Horn, margin: f64) -> Vec<Shape> {
     vec![
         Shape::disc(Vector::default(), hub_radius),
         taper,
+        // A larger disc, so that no corner of the taper lies on its edge.
         Shape::disc(end, tip_radius + 0.05),
     ]
 }
@@ -80,36 +81,36 @@ fn add_horn(builder: &mut AssemblyBuilder, servo: usize) {
 fn add_link(builder: &mut AssemblyBuilder, servo: usize) {
     let name = SERVO_NAMES[servo];
     let (parts, stack, layout) = (builder.parts, builder.stack, builder.layout);
-    let hub = Vector::default();
+    let shaft = Vector::default();
     let tip = Vector::new(layout.crank_lengths[servo], 0.0);
-    let arm_tip = layout.arm_tips[servo];
+    let slider_tip = layout.arm_tips[servo];
     let anchor = layout.legs[servo].anchor;
     let half_width = builder.half_bar_width();
     let hub_radius = parts.horn.hub / 2.0 + 2.0 * parts.fit + 1.5 * parts.wall;
-    // Without this brace, the link would break in the corner between crank and arm.
-    let brace = Shape::hull(&[hub, tip * 0.45, arm_tip * 0.45], 0.6 * half_width);
+    // Without this brace, the link would break in the corner between crank and slider's arm.
+    let brace = Shape::hull(&[shaft, tip * 0.45, slider_tip * 0.45], 0.6 * half_width);
     // The half widths of bars that start at the same point differ by 0.01 mm, so that no two bar ends coincide.
     let filled = vec![
-        Shape::disc(hub, hub_radius),
-        Shape::bar(hub, tip, half_width),
-        Shape::bar(hub, arm_tip, half_width - 0.01),
-        Shape::bar(hub, anchor, half_width - 0.02),
+        Shape::disc(shaft, hub_radius),
+        Shape::bar(shaft, tip, half_width),
+        Shape::bar(shaft, slider_tip, half_width - 0.01),
+        Shape::bar(shaft, anchor, half_width - 0.02),
         brace,
         Shape::disc(tip, builder.nut_boss_radius()),
-        Shape::disc(arm_tip, builder.nut_boss_radius()),
+        Shape::disc(slider_tip, builder.nut_boss_radius()),
     ];
-    let horn_hub = Shape::disc(hub, parts.horn.hub / 2.0 + parts.fit);
-    let holes = [builder.clearance_hole(tip), builder.clearance_hole(arm_tip)];
+    let horn_hub = Shape::disc(shaft, parts.horn.hub / 2.0 + parts.fit);
+    let holes = [tip, slider_tip].map(|position| builder.clearance_hole(position));
     let pilot_holes =
         horn_screw_positions(&parts.horn).map(|position| Shape::disc(position, PILOT_RADIUS));
     let pocket = make_horn_arm(&parts.horn, POCKET_FIT_FACTOR * parts.fit);
     let anchor_hole = builder.clearance_hole(anchor);
-    let nut_pockets = [tip, arm_tip].map(|position| builder.nut_pocket(position));
+    let head_pockets = [tip, slider_tip].map(|position| builder.nut_pocket(position));
     let [low, high] = stack.link;
     // Holes and pockets, each with the heights between which it is cut.
     let cuts = [
         (&holes[..], [low, high]),
-        (&nut_pockets, [low, stack.hex_head_face]),
+        (&head_pockets, [low, stack.hex_head_face]),
         (&[horn_hub], [low, stack.horn_pocket[0]]),
         (&pilot_holes, [low, stack.horn_pocket[0]]),
         (&pocket, stack.horn_pocket),
@@ -140,10 +141,10 @@ fn add_horn_screws(builder: &mut AssemblyBuilder, servo: usize) {
     let top = builder.stack.horn_pocket[0] + builder.parts.horn.thickness;
     let [radius, head_height] = HORN_SCREW_HEAD_SIZE;
     for (number, position) in (1..).zip(horn_screw_positions(&builder.parts.horn)) {
-        let build_disc = |radius: f64, z: Span| Prism::solid([Shape::disc(position, radius)], z);
+        let cylinder = |radius: f64, z: Span| Prism::solid([Shape::disc(position, radius)], z);
         let prisms = [
-            build_disc(PILOT_RADIUS, [top - HORN_SCREW_LENGTH, top]),
-            build_disc(radius, [top, top + head_height]),
+            cylinder(PILOT_RADIUS, [top - HORN_SCREW_LENGTH, top]),
+            cylinder(radius, [top, top + head_height]),
         ];
         let name = format!("horn screw {name} {number}");
         let kind = Kind::HornScrew(HORN_SCREW_LENGTH);
@@ -151,20 +152,20 @@ fn add_horn_screws(builder: &mut AssemblyBuilder, servo: usize) {
     }
 }
 
-/// Adds the screw that holds the strut, and the ring that fills the gap below the link.
-fn add_anchor(builder: &mut AssemblyBuilder, servo: usize) {
+/// Adds the screw that holds the strut, and the ring between strut and link.
+fn add_anchor_screw_and_ring(builder: &mut AssemblyBuilder, servo: usize) {
     let name = SERVO_NAMES[servo];
     let (stack, parts) = (builder.stack, builder.parts);
     let position = builder.layout.legs[servo].anchor;
-    let strut = builder.strut_name(servo);
+    let strut_name = builder.strut_name(servo);
     let ring_z = [stack.anchor_head_face, stack.link[0] - HEAD_CLEARANCE];
     // The ring is thin enough to fit beside the spring's coil.
     let ring_disc = Shape::disc(position, parts.screw.diameter / 2.0 + RING_WALL);
     let prism = Prism::new([ring_disc], [builder.clearance_hole(position)], ring_z);
     let mount = Mount::Link(servo);
     let ring = builder.add_body(format!("strut ring {name}"), Kind::Printed, mount, [prism]);
-    ring.allowed_contacts = vec![strut.clone()];
+    ring.allowed_contacts = vec![strut_name.clone()];
     let (name, seat_z) = (format!("anchor {name}"), stack.counterbore[0]);
-    let screw = Screw::new(name, mount, position, seat_z, Down).touching(strut);
+    let screw = Screw::new(name, mount, position, seat_z, Down).touching(strut_name);
     builder.add_bolt(&screw, stack.strut_floor[0] - HEAD_CLEARANCE);
 }

@@ -142,7 +142,7 @@ impl MeshBuilder<'_> {
     }
 
     /// Adds a horizontal face; a face seen from below is triangulated as its mirror image.
-    fn add_flat_face(&mut self, face: &Face, is_below: bool) {
+    fn add_flat_face(&mut self, face: &Face, is_bottom: bool) {
         let mut corners: Vec<usize> = Vec::new();
         let mut hole_starts = Vec::new();
         for edges in &face.loops {
@@ -153,7 +153,7 @@ impl MeshBuilder<'_> {
         }
         let to_position = |&corner: &usize| {
             let [x, y, _] = self.mesh.corners[corner];
-            (corner, Vector::new(if is_below { -x } else { x }, y))
+            (corner, Vector::new(if is_bottom { -x } else { x }, y))
         };
         let positions: Vec<_> = corners.iter().map(to_position).collect();
         let coordinates = positions.iter().flat_map(|(_, point)| [point.x, point.y]);

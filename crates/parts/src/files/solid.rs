@@ -1,9 +1,9 @@
-//! A part's surface: flat faces and walls that share their edges.
+//! A part as a solid: flat faces, walls and slopes that share their edges.
 //!
-//! A stack of layers has walls along the outlines, and flat faces where the next layer does not cover a layer's end.
-//! The outlines of two layers may coincide along a part of their length, so at each height both outlines are cut where
-//! they intersect. Every piece is then one edge, which exactly two faces share. The STEP solid is therefore valid and
-//! the mesh has no gaps.
+//! A stack of layers has walls along the outlines, and flat faces where a layer's top or bottom is not covered by its
+//! neighbour. The outlines of two layers may coincide along a part of their length, so at each height both outlines are
+//! cut where they intersect. Every piece is then one edge, which exactly two faces share. The STEP solid is therefore
+//! valid and the mesh has no gaps.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use lizard_kinematics::Vector;
 use crate::layers::body::Prism;
 use crate::layers::outline::{self, Loop, Outline, SAME_POINT_MM, Segment};
 
-/// A part's surface as points, edges and faces. A `level` is the index of a height.
+/// A part as points, edges and faces. A `level` is the index of a height.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solid {
     /// Points seen from above, mm.
@@ -22,7 +22,7 @@ pub struct Solid {
     pub heights: Vec<f64>,
     /// Lines and arcs between points.
     pub edges: Vec<Edge>,
-    /// Flat faces and walls.
+    /// Flat faces, walls and slopes.
     pub faces: Vec<Face>,
     /// Enclosed volume, mm^3.
     pub volume: f64,
@@ -46,7 +46,7 @@ pub struct Face {
     pub loops: Vec<Vec<(usize, bool)>>,
 }
 
-/// The plane, cylinder or cone under a face.
+/// The plane, cylinder or cone on which a face lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Surface {
     /// A horizontal plane seen from above, by the index of its height.
@@ -76,7 +76,7 @@ struct Piece {
 }
 
 impl Solid {
-    /// Builds the surface of a stack of layers, listed from the lowest to the highest.
+    /// Builds the solid of a stack of layers, listed from the lowest to the highest.
     pub fn from_prisms(prisms: &[Prism]) -> Self {
         let outlines_at = |fraction| {
             let to_outline = |prism: &Prism| Outline::from_prism(&prism.cross_section(fraction));
@@ -130,7 +130,7 @@ struct SolidBuilder {
     rising_edge_indices: BTreeMap<(usize, usize, usize), usize>,
 }
 
-/// Returns the index of a point in a list; adds the point if none is as near as [`SAME_POINT_MM`].
+/// Returns the index of a point in a list; adds the point if no point is within [`SAME_POINT_MM`].
 fn find_or_add(points: &mut Vec<Vector>, point: Vector) -> usize {
     let is_near =
         |listed: &Vector| (*listed - point).length_squared() < SAME_POINT_MM * SAME_POINT_MM;
@@ -161,6 +161,7 @@ impl SolidBuilder {
                     |point| (position_along(side, to, point), find_or_add(points, point));
                 let mut positions: Vec<(f64, usize)> =
                     cuts.into_iter().map(position_and_index).collect();
+                // Rounding must not exchange the side's ends.
                 positions[0].0 = 0.0;
                 positions[1].0 = position_along(side, to, to).max(SAME_POINT_MM);
                 positions.sort_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -241,58 +242,58 @@ impl SolidBuilder {
         outline
     }
 
-    /// Adds the faces that the pieces bound. Loops of a face seen from below run in the opposite direction.
-    fn add_faces(&mut self, mut pieces: Vec<Piece>, surface: Surface, is_below: bool) {
+    /// Adds the faces whose boundaries are these pieces. Loops of a face seen from below run in the opposite direction.
+    fn add_faces(&mut self, mut pieces: Vec<Piece>, surface: Surface, is_bottom: bool) {
         let mut outer_faces: Vec<(f64, Outline, Vec<Vec<Piece>>)> = Vec::new();
         let mut holes = Vec::new();
         while let Some(first_piece) = pieces.pop() {
-            let mut trail = vec![first_piece];
+            let mut piece_loop = vec![first_piece];
             let mut point = first_piece.to;
             while point != first_piece.from
-                && let Some(next_piece) = pieces.iter().position(|piece| piece.from == point)
+                && let Some(index) = pieces.iter().position(|piece| piece.from == point)
             {
-                let next_piece = pieces.swap_remove(next_piece);
+                let next_piece = pieces.swap_remove(index);
                 point = next_piece.to;
-                trail.push(next_piece);
+                piece_loop.push(next_piece);
             }
-            let outline_loop = self.build_loop(&trail);
+            let outline_loop = self.build_loop(&piece_loop);
             let area = outline_loop.area();
             if area > 0.0 {
                 let islands = vec![vec![outline_loop]];
-                outer_faces.push((area, Outline { islands }, vec![trail]));
+                outer_faces.push((area, Outline { islands }, vec![piece_loop]));
             } else {
-                holes.push(trail);
+                holes.push(piece_loop);
             }
         }
         outer_faces.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
         for hole in holes {
-            let inner_point = self.middles[hole[0].middle];
+            let point_on_hole = self.middles[hole[0].middle];
             let mut faces = outer_faces.iter_mut();
-            let face = faces.find(|(_, outline, _)| outline.contains(inner_point));
+            let face = faces.find(|(_, outline, _)| outline.contains(point_on_hole));
             if let Some((_, _, loops)) = face {
                 loops.push(hole);
             }
         }
         for (_, _, loops) in outer_faces {
-            let to_edges = |mut trail: Vec<Piece>| {
-                if is_below {
-                    trail.reverse();
+            let to_edges = |mut piece_loop: Vec<Piece>| {
+                if is_bottom {
+                    piece_loop.reverse();
                 }
-                let to_edge = |piece: Piece| (piece.edge, piece.is_forward != is_below);
-                trail.into_iter().map(to_edge).collect()
+                let to_edge = |piece: Piece| (piece.edge, piece.is_forward != is_bottom);
+                piece_loop.into_iter().map(to_edge).collect()
             };
             let loops = loops.into_iter().map(to_edges).collect();
             self.solid.faces.push(Face { surface, loops });
         }
     }
 
-    fn build_loop(&self, trail: &[Piece]) -> Loop {
+    fn build_loop(&self, piece_loop: &[Piece]) -> Loop {
         let to_segment = |piece: &Piece| {
             let bulge = self.solid.edges[piece.edge].bulge;
             let bulge = if piece.is_forward { bulge } else { -bulge };
             Segment::new(self.solid.points[piece.from], bulge)
         };
-        let sides = trail.iter().map(to_segment).collect();
+        let sides = piece_loop.iter().map(to_segment).collect();
         Loop { sides }
     }
 
@@ -301,26 +302,26 @@ impl SolidBuilder {
         &mut self,
         level: usize,
         [bottom, top]: [&Outline; 2],
-        low: &[Vec<Piece>],
-        high: &[Vec<Piece>],
+        bottom_pieces: &[Vec<Piece>],
+        top_pieces: &[Vec<Piece>],
     ) {
         let sides = collect_sides(bottom).into_iter().zip(collect_sides(top));
-        for ((low, high), ((side, end), (upper_side, upper_end))) in low.iter().zip(high).zip(sides)
-        {
+        let pieces_by_side = bottom_pieces.iter().zip(top_pieces);
+        for ((low, high), ((side, end), (top_side, top_end))) in pieces_by_side.zip(sides) {
             let end_points = |pieces: &[Piece]| Some((pieces.first()?.from, pieces.last()?.to));
-            let (Some((from, to)), Some((high_from, high_to))) =
+            let (Some((low_from, low_to)), Some((high_from, high_to))) =
                 (end_points(low), end_points(high))
             else {
                 continue;
             };
-            let rising_ends = [[to, high_to], [from, high_from]];
+            let rising_ends = [[low_to, high_to], [low_from, high_from]];
             let [up, down] = rising_ends.map(|ends| self.find_or_add_rising_edge(ends, level));
             let low_edges = low.iter().map(|piece| (piece.edge, piece.is_forward));
             let high_pieces = high.iter().rev();
             let high_edges = high_pieces.map(|piece| (piece.edge, !piece.is_forward));
             let edges = low_edges.chain([(up, true)]).chain(high_edges);
-            let surface = match upper_side.arc(upper_end) {
-                Some((_, radius)) if from != high_from => {
+            let surface = match top_side.arc(top_end) {
+                Some((_, radius)) if low_from != high_from => {
                     Surface::Slope(side, end, level - 1, radius)
                 }
                 _ => Surface::Wall(side, end),
@@ -332,11 +333,11 @@ impl SolidBuilder {
 
     /// Returns the edge from a point at the previous height to a point at this height, vertical or along a slope; adds
     /// the edge if it is new.
-    fn find_or_add_rising_edge(&mut self, [low, high]: [usize; 2], level: usize) -> usize {
+    fn find_or_add_rising_edge(&mut self, [from, to]: [usize; 2], level: usize) -> usize {
         let edges = &mut self.solid.edges;
-        let index = self.rising_edge_indices.entry((low, high, level));
+        let index = self.rising_edge_indices.entry((from, to, level));
         *index.or_insert_with(|| {
-            let ends = [(low, level - 1), (high, level)];
+            let ends = [(from, level - 1), (to, level)];
             edges.push(Edge { ends, bulge: 0.0 });
             edges.len() - 1
         })

@@ -5,7 +5,7 @@ use lizard_contact::{Drive, DriveKind, Strut};
 use crate::config::legs::LegPlan;
 use crate::config::parts::Parts;
 use crate::config::strut;
-use crate::file::{ReadResult, Section, suggest};
+use crate::file::{ReadResult, Table, suggest};
 
 /// The keys of all kinds of drive.
 const KEYS: [&str; 4] = ["kind", "play", "force", "rate"];
@@ -18,40 +18,40 @@ const KINDS: [(&str, &[&str]); 2] = [
 /// Reads `[leg.drive]`. The legs are rigid if this table is missing. The servos' neutral angles are in deg, chassis
 /// frame.
 pub(crate) fn read(
-    leg_section: &Section,
+    leg_table: &Table,
     legs: &[LegPlan; 4],
     neutral_angles: [f64; 4],
     parts: &Parts,
 ) -> ReadResult<Drive> {
-    let section = leg_section.open_optional("drive")?;
-    let kind_name = section.text_or("kind", KINDS[0].0)?;
+    let table = leg_table.optional_unchecked_table("drive")?;
+    let kind_name = table.text_or("kind", KINDS[0].0)?;
     if kind_name == "spring" {
         let message = "is \"spring\", which is no longer supported; write \"strut\" with the force and rate of its spring, or \"rigid\"";
-        return Err(section.error("kind", message));
+        return Err(table.error("kind", message));
     }
-    let section = section.require_known_keys(&KEYS)?;
+    let table = table.require_known_keys(&KEYS)?;
     let Some((_, own_keys)) = KINDS.into_iter().find(|(name, _)| *name == kind_name) else {
         let suggestion = suggest(kind_name, &KINDS.map(|(name, _)| name));
-        return Err(section.error("kind", format!("is \"{kind_name}\"; {suggestion}")));
+        return Err(table.error("kind", format!("is \"{kind_name}\"; {suggestion}")));
     };
     let mut all_keys = KINDS.into_iter().flat_map(|(_, keys)| keys);
-    let is_foreign = |key: &&&str| !own_keys.contains(key) && section.has_key(key);
+    let is_foreign = |key: &&&str| !own_keys.contains(key) && table.has_key(key);
     if let Some(foreign_key) = all_keys.find(is_foreign) {
         let message = format!("is not allowed with kind = \"{kind_name}\"");
-        return Err(section.error(foreign_key, message));
+        return Err(table.error(foreign_key, message));
     }
     let kind = match kind_name {
         "strut" => {
             let coil_strut = strut::strut_with_coil(legs, neutral_angles, parts, &parts.spring);
             let (force, rate) = (coil_strut.preload, coil_strut.spring_rate);
             let read_or_derive = |name, derived: f64, (min, max): (f64, f64), unit| {
-                if section.has_key(name) || (min..=max).contains(&derived) {
-                    return section.number_or(name, derived, (min, max), unit);
+                if table.has_key(name) || (min..=max).contains(&derived) {
+                    return table.number_or(name, derived, (min, max), unit);
                 }
                 let message = format!(
                     "is left out; parts.spring makes it {derived:.2} {unit}, but it must be between {min} and {max} {unit}"
                 );
-                Err(section.error(name, message))
+                Err(table.error(name, message))
             };
             DriveKind::Strut(Strut {
                 preload: read_or_derive("force", force, (0.01, 100.0), "N")?,
@@ -61,6 +61,6 @@ pub(crate) fn read(
         }
         _ => DriveKind::Rigid,
     };
-    let play = section.number_or("play", 0.0, (0.0, 20.0), "deg")?;
+    let play = table.number_or("play", 0.0, (0.0, 20.0), "deg")?;
     Ok(Drive { kind, play })
 }

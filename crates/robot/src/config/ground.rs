@@ -3,33 +3,33 @@
 use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, GroundContact, Stance};
 
 use crate::config::servo::LEG_NAMES;
-use crate::file::{ReadResult, Section};
+use crate::file::{ReadResult, Table};
 
 /// Reads `[ground]`, `[body]` and `[feet]`; `feet` and `drive` come from other tables.
-pub(crate) fn read(root: &Section, feet: Feet, drive: Drive) -> ReadResult<GroundContact> {
+pub(crate) fn read(root: &Table, feet: Feet, drive: Drive) -> ReadResult<GroundContact> {
     const RATIO_KEY: &str = "friction_back_over_forward";
-    let section = root.section("ground", &[RATIO_KEY, "friction"])?;
+    let table = root.table("ground", &[RATIO_KEY, "friction"])?;
     let unit = "(a coefficient)";
     Ok(GroundContact {
         feet,
         body: read_body(root, &feet)?,
         stance: read_stance(root)?,
-        friction_coefficient: section.number_or("friction", DEFAULT_FRICTION, (0.05, 5.0), unit)?,
-        friction_ratio: section.number(RATIO_KEY, (0.1, 10.0), "(a ratio)")?,
+        friction_coefficient: table.number_or("friction", DEFAULT_FRICTION, (0.05, 5.0), unit)?,
+        friction_ratio: table.number(RATIO_KEY, (0.1, 10.0), "(a ratio)")?,
         drive,
     })
 }
 
 /// Reads the mass and the centre of mass; an omitted key has its default value. Rejects a centre of mass with which a
 /// foot would leave the floor in the neutral pose.
-fn read_body(root: &Section, feet: &Feet) -> ReadResult<Body> {
+fn read_body(root: &Table, feet: &Feet) -> ReadResult<Body> {
     if !root.has_key("body") {
         return Ok(Body::DEFAULT);
     }
-    let section = root.section("body", &["mass", "centre"])?;
+    let table = root.table("body", &["mass", "centre"])?;
     let body = Body {
-        mass: section.number_or("mass", Body::DEFAULT.mass, (10.0, 10_000.0), "g")?,
-        centre_of_mass: section.numbers_or(
+        mass: table.number_or("mass", Body::DEFAULT.mass, (10.0, 10_000.0), "g")?,
+        centre_of_mass: table.numbers_or(
             "centre",
             Body::DEFAULT.centre_of_mass,
             (-500.0, 500.0),
@@ -43,19 +43,19 @@ fn read_body(root: &Section, feet: &Feet) -> ReadResult<Body> {
             let message = format!(
                 "is so far from the middle that foot {foot} is off the floor in the neutral pose; all four feet must carry load"
             );
-            Err(section.error("centre", message))
+            Err(table.error("centre", message))
         }
         None => Ok(body),
     }
 }
 
 /// Reads `[feet]`; every key is optional.
-fn read_stance(root: &Section) -> ReadResult<Stance> {
+fn read_stance(root: &Table) -> ReadResult<Stance> {
     let default = Stance::DEFAULT;
-    let section = root.optional_section("feet", &["stiffness", "twist", "level"])?;
+    let table = root.optional_table("feet", &["stiffness", "twist", "level"])?;
     Ok(Stance {
-        stiffness: section.number_or("stiffness", default.stiffness, (0.01, 1000.0), "N/mm")?,
-        twist: section.number_or("twist", default.twist, (-20.0, 20.0), "mm")?,
-        twist_error: section.number_or("level", default.twist_error, (0.0, 20.0), "mm")?,
+        stiffness: table.number_or("stiffness", default.stiffness, (0.01, 1000.0), "N/mm")?,
+        twist: table.number_or("twist", default.twist, (-20.0, 20.0), "mm")?,
+        twist_error: table.number_or("level", default.twist_error, (0.0, 20.0), "mm")?,
     })
 }

@@ -10,7 +10,7 @@ use lizard_kinematics::{End, Lizard, Vector};
 
 use crate::config::legs::chassis_offset;
 use crate::config::parts::Parts;
-use crate::file::{Error, ReadResult, Section};
+use crate::file::{Error, ReadResult, Table};
 
 /// The default position of the foot on its coupler, mm, as in [`Parts::foot`]. With the pivots of the paper's robot,
 /// the hips are 55 mm forward and 35 mm to the side.
@@ -36,7 +36,7 @@ pub(crate) struct Hips {
 
 impl Hips {
     /// Reads the hips from `[leg]`.
-    pub fn read(leg: &Section) -> ReadResult<Self> {
+    pub fn read(leg: &Table) -> ReadResult<Self> {
         let read_mm = |name, range| match leg.has_key(name) {
             true => leg.number(name, range, "mm").map(Some),
             false => Ok(None),

@@ -3,7 +3,7 @@
 use lizard_core::numbers::gaits::Input;
 
 use crate::config::servo::{UsedPins, claim_pin, read_pin};
-use crate::file::{ReadResult, Section};
+use crate::file::{ReadResult, Table};
 
 /// The names of the inputs in robot.toml, in the order of the fields of [`Inputs`].
 pub const INPUT_NAMES: [&str; 2] = ["button", "nose"];
@@ -19,15 +19,15 @@ pub struct Inputs {
 
 impl Inputs {
     /// Reads `[input]`; every input is optional.
-    pub(crate) fn read(root: &Section, used_pins: &mut UsedPins) -> ReadResult<Self> {
-        let section = root.optional_section("input", &INPUT_NAMES)?;
+    pub(crate) fn read(root: &Table, used_pins: &mut UsedPins) -> ReadResult<Self> {
+        let table = root.optional_table("input", &INPUT_NAMES)?;
         let mut read_input = |name: &str| -> ReadResult<Option<u8>> {
-            if !section.has_key(name) {
+            if !table.has_key(name) {
                 return Ok(None);
             }
-            let input_section = section.section(name, &["pin"])?;
-            let pin = read_pin(&input_section)?;
-            claim_pin(&input_section, pin, used_pins)?;
+            let input_table = table.table(name, &["pin"])?;
+            let pin = read_pin(&input_table)?;
+            claim_pin(&input_table, pin, used_pins)?;
             Ok(Some(pin))
         };
         let [button, nose] = INPUT_NAMES;

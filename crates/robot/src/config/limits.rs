@@ -4,7 +4,7 @@ use lizard_kinematics::Limits;
 
 use crate::config::scale::MAX_LINK_LENGTH_MM;
 use crate::config::servo::SpeedLimits;
-use crate::file::{ReadResult, Section};
+use crate::file::{ReadResult, Table};
 
 /// Range of a slider's stroke limits, mm.
 const STROKE_RANGE_MM: (f64, f64) = (-MAX_LINK_LENGTH_MM, MAX_LINK_LENGTH_MM);
@@ -12,8 +12,8 @@ const STROKE_RANGE_MM: (f64, f64) = (-MAX_LINK_LENGTH_MM, MAX_LINK_LENGTH_MM);
 const MIN_SPEED_DEG_S: f64 = 10.0;
 
 /// Reads `[limits]`: the smallest margins, the range of the sliders' stroke, and the highest servo speeds.
-pub(crate) fn read(root: &Section) -> ReadResult<(Limits, SpeedLimits)> {
-    let section = root.section(
+pub(crate) fn read(root: &Table) -> ReadResult<(Limits, SpeedLimits)> {
+    let table = root.table(
         "limits",
         &[
             "type2",
@@ -27,15 +27,15 @@ pub(crate) fn read(root: &Section) -> ReadResult<(Limits, SpeedLimits)> {
     )?;
     let limits = Limits {
         // The core's coupler tables end at a margin of 0.1.
-        type2: section.number("type2", (0.1, 0.95), "(a sine)")?,
-        type1: section.number("type1", (0.0, 0.95), "(a sine)")?,
-        leg: section.number("leg", (0.0, 0.95), "(a sine)")?,
-        stroke_min: section.number("stroke_min", STROKE_RANGE_MM, "mm")?,
-        stroke_max: section.number("stroke_max", STROKE_RANGE_MM, "mm")?,
+        type2: table.number("type2", (0.1, 0.95), "(a sine)")?,
+        type1: table.number("type1", (0.0, 0.95), "(a sine)")?,
+        leg: table.number("leg", (0.0, 0.95), "(a sine)")?,
+        stroke_min: table.number("stroke_min", STROKE_RANGE_MM, "mm")?,
+        stroke_max: table.number("stroke_max", STROKE_RANGE_MM, "mm")?,
     };
     let (min, max) = (limits.stroke_min, limits.stroke_max);
-    section.require_less("stroke_min", min, "stroke_max", max)?;
-    let read_speed = |name| section.number(name, (MIN_SPEED_DEG_S, 1000.0), "deg/s");
+    table.require_less("stroke_min", min, "stroke_max", max)?;
+    let read_speed = |name| table.number(name, (MIN_SPEED_DEG_S, 1000.0), "deg/s");
     let speed_limits = SpeedLimits {
         slew: read_speed("slew")?,
         gait_slew: read_speed("gait_slew")?,

@@ -38,7 +38,7 @@ use lizard_contact::{GroundContact, JointFriction};
 use lizard_core::numbers::link_lengths::MIN_COUPLER_STEPS;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 
-use crate::file::{Error, ReadResult, Section};
+use crate::file::{Error, ReadResult, Table};
 use hips::Hips;
 use scale::MAX_LINK_LENGTH_MM;
 
@@ -84,7 +84,7 @@ pub(crate) struct RobotConfig {
 
 impl RobotConfig {
     /// Reads and checks all values and the neutral pose.
-    pub fn read(root: &Section) -> ReadResult<Self> {
+    pub fn read(root: &Table) -> ReadResult<Self> {
         let links = read_links(root)?;
         let (leg, hips, mount_angle) = read_leg(root)?;
         let mut used_pins = servo::UsedPins::new();
@@ -97,7 +97,7 @@ impl RobotConfig {
         let legs = std::array::from_fn(|servo| {
             LegPlan::new(servo, neutral_angles[servo], &lizard, &parts, &feet)
         });
-        let drive = drive::read(&root.open("leg")?, &legs, neutral_angles, &parts)?;
+        let drive = drive::read(&root.unchecked_table("leg")?, &legs, neutral_angles, &parts)?;
         let config = Self {
             supplies: Supplies::read(root, &mut used_pins)?,
             inputs: Inputs::read(root, &mut used_pins)?,
@@ -184,11 +184,11 @@ impl RobotConfig {
 }
 
 /// Reads the links of the body.
-fn read_links(root: &Section) -> ReadResult<Links> {
-    let section = root.section("links", &LINK_NAMES)?;
+fn read_links(root: &Table) -> ReadResult<Links> {
+    let table = root.table("links", &LINK_NAMES)?;
     let mut lengths = [0.0; 20];
     for (length, name) in lengths.iter_mut().zip(LINK_NAMES) {
-        *length = section.number(name, LENGTH_RANGE_MM, "mm")?;
+        *length = table.number(name, LENGTH_RANGE_MM, "mm")?;
     }
     let links = Links::from(lengths);
     let reason = "the chassis is a rectangle, so its two sides are equally long";
@@ -197,7 +197,7 @@ fn read_links(root: &Section) -> ReadResult<Links> {
 }
 
 /// Reads the legs: their links, their hips, and the mount angle, which is the legs' sweep in the neutral pose, deg.
-fn read_leg(root: &Section) -> ReadResult<(Leg, Hips, f64)> {
+fn read_leg(root: &Table) -> ReadResult<(Leg, Hips, f64)> {
     let keys = [
         "ground",
         "crank",
@@ -208,10 +208,10 @@ fn read_leg(root: &Section) -> ReadResult<(Leg, Hips, f64)> {
         "mount",
         "drive",
     ];
-    let section = root.open("leg")?;
-    section.reject_removed_keys(&["spring", "preload"], SPRING_REPLACEMENT)?;
-    let section = section.require_known_keys(&keys)?;
-    let read_length = |name| section.number(name, LENGTH_RANGE_MM, "mm");
+    let table = root.unchecked_table("leg")?;
+    table.reject_removed_keys(&["spring", "preload"], SPRING_REPLACEMENT)?;
+    let table = table.require_known_keys(&keys)?;
+    let read_length = |name| table.number(name, LENGTH_RANGE_MM, "mm");
     let leg = Leg {
         ground: read_length("ground")?,
         crank: read_length("crank")?,
@@ -221,8 +221,8 @@ fn read_leg(root: &Section) -> ReadResult<(Leg, Hips, f64)> {
     let reason = "a leg is a parallelogram, so its opposite links are equally long";
     require_equal("leg.coupler", leg.coupler, "leg.ground", leg.ground, reason)?;
     require_equal("leg.follower", leg.follower, "leg.crank", leg.crank, reason)?;
-    let hips = Hips::read(&section)?;
-    let mount_angle = section.number("mount", (-90.0, 90.0), "deg")?;
+    let hips = Hips::read(&table)?;
+    let mount_angle = table.number("mount", (-90.0, 90.0), "deg")?;
     Ok((leg, hips, mount_angle))
 }
 

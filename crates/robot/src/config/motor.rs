@@ -8,7 +8,7 @@ use lizard_contact::{GRAVITY, JointFriction, Motor};
 use lizard_kinematics::{Lizard, Side};
 
 use crate::config::servo::{ARM_TURN_SIGN, Servo};
-use crate::file::{ReadResult, Section, suggest};
+use crate::file::{ReadResult, Table, suggest};
 
 /// Torque of 1 kg cm, N mm.
 const N_MM_PER_KG_CM: f64 = 10.0 * GRAVITY;
@@ -86,11 +86,10 @@ impl ServoType {
     ];
 
     /// Reads the keys of `[servo]` except its four tables; all are optional.
-    pub(crate) fn read(root: &Section) -> ReadResult<Self> {
-        let section = root.open("servo")?;
-        let base = read_model(&section)?;
-        let read_number =
-            |name, default, range, unit| section.number_or(name, default, range, unit);
+    pub(crate) fn read(root: &Table) -> ReadResult<Self> {
+        let table = root.unchecked_table("servo")?;
+        let base = read_model(&table)?;
+        let read_number = |name, default, range, unit| table.number_or(name, default, range, unit);
         let rated_volts = read_number("at_volts", base.rated_volts, Self::VOLTS_RANGE, "V")?;
         Ok(Self {
             stall_torque_kg_cm: read_number(
@@ -133,9 +132,9 @@ impl ServoType {
 }
 
 /// Finds the servo type that the key `model` names, by default the SG-90; ignores case, hyphens and spaces.
-fn read_model(section: &Section) -> ReadResult<ServoType> {
+fn read_model(table: &Table) -> ReadResult<ServoType> {
     let simplify = |name: &str| name.to_ascii_lowercase().replace(['-', ' '], "");
-    let model_name = section.text_or("model", SG90.model)?;
+    let model_name = table.text_or("model", SG90.model)?;
     let model = ServoType::ALL
         .iter()
         .find(|known| simplify(known.model) == simplify(model_name));
@@ -144,22 +143,22 @@ fn read_model(section: &Section) -> ReadResult<ServoType> {
         let message = format!(
             "is \"{model_name}\"; for a servo that is not listed, set stall_kg_cm and s_per_60_deg from its data sheet; {suggestion}"
         );
-        section.error("model", message)
+        table.error("model", message)
     })
 }
 
 /// Reads `[joints]`; every key is optional. The positions of the sliders' arms come from the links and the servos.
 pub(crate) fn read_joints(
-    root: &Section,
+    root: &Table,
     lizard: &Lizard,
     servos: &[Servo; 4],
 ) -> ReadResult<JointFriction> {
     let links = &lizard.links;
     let arm_lengths = [links.l14, links.l19, links.l16, links.l11];
-    let section = root.optional_section("joints", &["drag", "slider"])?;
+    let table = root.optional_table("joints", &["drag", "slider"])?;
     Ok(JointFriction {
-        pin_torque: section.number_or("drag", 0.0, (0.0, 1000.0), "N mm")?,
-        slider_force: section.number_or("slider", 0.0, (0.0, 20.0), "N")?,
+        pin_torque: table.number_or("drag", 0.0, (0.0, 1000.0), "N mm")?,
+        slider_force: table.number_or("slider", 0.0, (0.0, 20.0), "N")?,
         slider_arms: std::array::from_fn(|i| {
             let (sin, cos) = (servos[i].neutral + ARM_TURN_SIGN[i] * 90.0)
                 .to_radians()

@@ -6,7 +6,7 @@
 //! only through the threshold and the pace of a measured rail. Every key is optional.
 
 use crate::config::coil::Coil;
-use crate::file::{ReadResult, Section};
+use crate::file::{ReadResult, Table};
 
 /// Dimensions of the parts, mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,13 +83,13 @@ macro_rules! dimensions {
         impl $type {
             const DEFAULT: Self = Self { $($key: $default,)* };
 
-            fn read(parts: &Section) -> ReadResult<Self> {
+            fn read(parts: &Table) -> ReadResult<Self> {
                 let default = Self::DEFAULT;
-                let section = parts.optional_section($table, &[$(stringify!($key)),*])?;
+                let table = parts.optional_table($table, &[$(stringify!($key)),*])?;
                 let dimensions = Self {
-                    $($key: section.number_or(stringify!($key), default.$key, LENGTH_RANGE, "mm")?,)*
+                    $($key: table.number_or(stringify!($key), default.$key, LENGTH_RANGE, "mm")?,)*
                 };
-                $($(section.require_less(
+                $($(table.require_less(
                     stringify!($less), dimensions.$less, stringify!($limit), dimensions.$limit
                 )?;)+)?
                 Ok(dimensions)
@@ -122,7 +122,7 @@ dimensions! {
     }
 
     /// A servo's horn with one arm, mm.
-    Horn in "horn" {
+    Horn in "horn" where [tip < hub] {
         /// Diameter of the hub.
         hub: 7.0,
         /// Height of the hub, the arm's thickness included.
@@ -222,9 +222,9 @@ const KEYS: [&str; 20] = [
 ];
 
 /// Reads the spring of the struts. Its lengths have the same range as the other parts' lengths.
-fn read_spring(parts: &Section, default: Coil) -> ReadResult<Coil> {
-    let section = parts.optional_section("spring", &["wire", "outer", "length"])?;
-    let read_mm = |name, default| section.number_or(name, default, LENGTH_RANGE, "mm");
+fn read_spring(parts: &Table, default: Coil) -> ReadResult<Coil> {
+    let table = parts.optional_table("spring", &["wire", "outer", "length"])?;
+    let read_mm = |name, default| table.number_or(name, default, LENGTH_RANGE, "mm");
     Ok(Coil {
         wire_diameter: read_mm("wire", default.wire_diameter)?,
         outer_diameter: read_mm("outer", default.outer_diameter)?,
@@ -237,23 +237,23 @@ const STRUT_REPLACEMENT: &str = "[leg.drive] with kind = \"strut\" or \"rigid\""
 
 impl Parts {
     /// Reads `[parts]`; every key is optional.
-    pub(crate) fn read(root: &Section) -> ReadResult<Self> {
+    pub(crate) fn read(root: &Table) -> ReadResult<Self> {
         let defaults = Self::default();
-        let section = root.open_optional("parts")?;
-        section.reject_removed_keys(&["strut"], STRUT_REPLACEMENT)?;
-        let section = section.require_known_keys(&KEYS)?;
-        let read_mm = |name, default, min, max| section.number_or(name, default, (min, max), "mm");
-        let foot = match section.has_key("foot") {
-            true => Some(section.numbers("foot", OFFSET_RANGE, "mm")?),
+        let table = root.optional_unchecked_table("parts")?;
+        table.reject_removed_keys(&["strut"], STRUT_REPLACEMENT)?;
+        let table = table.require_known_keys(&KEYS)?;
+        let read_mm = |name, default, min, max| table.number_or(name, default, (min, max), "mm");
+        let foot = match table.has_key("foot") {
+            true => Some(table.numbers("foot", OFFSET_RANGE, "mm")?),
             false => None,
         };
-        let pivot = section.numbers_or("pivot", defaults.pivot, OFFSET_RANGE, "mm")?;
+        let pivot = table.numbers_or("pivot", defaults.pivot, OFFSET_RANGE, "mm")?;
         if pivot == [0.0; 2] {
             // The strut joins two parallel arms, one at the shaft and one at the pivot.
             let message = "is on the servo's shaft, so the strut would have no length";
-            return Err(section.error("pivot", message));
+            return Err(table.error("pivot", message));
         }
-        let battery = section.numbers_or("battery", defaults.battery, (1.0, 500.0), "mm")?;
+        let battery = table.numbers_or("battery", defaults.battery, (1.0, 500.0), "mm")?;
         Ok(Self {
             fit: read_mm("fit", defaults.fit, 0.0, 1.0)?,
             wall: read_mm("wall", defaults.wall, 0.4, 10.0)?,
@@ -264,19 +264,19 @@ impl Parts {
             kerf: read_mm("kerf", defaults.kerf, 0.0, 2.0)?,
             pivot,
             foot,
-            anchor: section.polar_or(
+            anchor: table.polar_or(
                 "anchor",
                 defaults.anchor,
                 ANCHOR_DISTANCE_RANGE,
                 ANCHOR_ANGLE_RANGE,
             )?,
             height: read_mm("height", defaults.height, 5.0, 500.0)?,
-            servo: ServoBody::read(&section)?,
-            horn: Horn::read(&section)?,
-            screw: Screw::read(&section)?,
-            pad: Pad::read(&section)?,
+            servo: ServoBody::read(&table)?,
+            horn: Horn::read(&table)?,
+            screw: Screw::read(&table)?,
+            pad: Pad::read(&table)?,
             strip: read_mm("strip", defaults.strip, 0.0, 100.0)?,
-            spring: read_spring(&section, defaults.spring)?,
+            spring: read_spring(&table, defaults.spring)?,
             battery,
             tail: read_mm("tail", defaults.tail, 0.0, 300.0)?,
             head: read_mm("head", defaults.head, 0.0, 300.0)?,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 pub use lizard_contact::FORWARD_TURN_SIGN;
 use lizard_kinematics::{Side, wrap};
 
-use crate::file::{ReadResult, Section, format_number, read_for_each};
+use crate::file::{ReadResult, Table, format_number, read_for_each};
 use crate::units::STEPS_PER_DEGREE;
 
 /// The servos' names.
@@ -104,13 +104,13 @@ pub(crate) fn parse_pin(name: &str) -> Option<u8> {
 }
 
 /// Reads the key `pin`. Its value must be a name that [`parse_pin`] accepts.
-pub(crate) fn read_pin(section: &Section) -> ReadResult<u8> {
-    let text = section.text("pin")?;
+pub(crate) fn read_pin(table: &Table) -> ReadResult<u8> {
+    let text = table.text("pin")?;
     parse_pin(text).ok_or_else(|| {
         let message = format!(
             "is \"{text}\"; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)"
         );
-        section.error("pin", message)
+        table.error("pin", message)
     })
 }
 
@@ -118,11 +118,11 @@ pub(crate) fn read_pin(section: &Section) -> ReadResult<u8> {
 pub(crate) type UsedPins = BTreeMap<u8, String>;
 
 /// Adds the pin that a table names to the pins in use; rejects a pin that an earlier table uses.
-pub(crate) fn claim_pin(section: &Section, pin: u8, used_pins: &mut UsedPins) -> ReadResult<()> {
-    match used_pins.insert(pin, section.key.clone()) {
+pub(crate) fn claim_pin(table: &Table, pin: u8, used_pins: &mut UsedPins) -> ReadResult<()> {
+    match used_pins.insert(pin, table.key.clone()) {
         Some(owner) => {
-            let name = section.text("pin")?;
-            Err(section.error("pin", format!("is \"{name}\", which {owner} already uses")))
+            let name = table.text("pin")?;
+            Err(table.error("pin", format!("is \"{name}\", which {owner} already uses")))
         }
         None => Ok(()),
     }
@@ -151,40 +151,40 @@ const SERVO_KEYS: [&str; 6] = [
 ];
 
 /// Reads `[servo.A1]` to `[servo.A4]`.
-pub(crate) fn read(root: &Section, used_pins: &mut UsedPins) -> ReadResult<[Servo; 4]> {
+pub(crate) fn read(root: &Table, used_pins: &mut UsedPins) -> ReadResult<[Servo; 4]> {
     let keys: Vec<&str> = SERVO_NAMES.into_iter().chain(MOTOR_KEYS).collect();
-    let section = root.section("servo", &keys)?;
+    let table = root.table("servo", &keys)?;
     read_for_each(SERVO_NAMES, |name| {
-        let servo_section = section.section(name, &SERVO_KEYS)?;
-        let servo = read_servo(&servo_section)?;
-        claim_pin(&servo_section, servo.pin, used_pins)?;
+        let servo_table = table.table(name, &SERVO_KEYS)?;
+        let servo = read_servo(&servo_table)?;
+        claim_pin(&servo_table, servo.pin, used_pins)?;
         Ok(servo)
     })
 }
 
 /// Reads the table of one servo.
-fn read_servo(section: &Section) -> ReadResult<Servo> {
-    let read_width = |name| section.number(name, PULSE_RANGE_US, "us");
-    let pin = read_pin(section)?;
-    let us_per_degree = section.number("us_per_degree", (-f64::MAX, f64::MAX), "us")?;
+fn read_servo(table: &Table) -> ReadResult<Servo> {
+    let read_width = |name| table.number(name, PULSE_RANGE_US, "us");
+    let pin = read_pin(table)?;
+    let us_per_degree = table.number("us_per_degree", (-f64::MAX, f64::MAX), "us")?;
     let (min, max) = GAIN_RANGE_US_PER_DEGREE;
     if !(min..=max).contains(&us_per_degree.abs()) {
         let message = format!(
             "is {}; it must be between 1 and 22 us, or between -22 and -1 us if a longer pulse turns the horn clockwise",
             format_number(us_per_degree)
         );
-        return Err(section.error("us_per_degree", message));
+        return Err(table.error("us_per_degree", message));
     }
     let servo = Servo {
         pin,
-        neutral: section.number("neutral", (0.0, 360.0), "deg")?,
+        neutral: table.number("neutral", (0.0, 360.0), "deg")?,
         neutral_us: read_width("neutral_us")?,
         us_per_degree,
         min_us: read_width("min_us")?,
         max_us: read_width("max_us")?,
     };
-    section.require_less("min_us", servo.min_us, "neutral_us", servo.neutral_us)?;
-    section.require_less("neutral_us", servo.neutral_us, "max_us", servo.max_us)?;
+    table.require_less("min_us", servo.min_us, "neutral_us", servo.neutral_us)?;
+    table.require_less("neutral_us", servo.neutral_us, "max_us", servo.max_us)?;
     Ok(servo)
 }
 

@@ -4,7 +4,7 @@
 use lizard_core::numbers::supplies::{Supplies as CoreSupplies, Thresholds};
 
 use crate::config::servo::{UsedPins, claim_pin, parse_pin};
-use crate::file::{Error, ReadResult, Section};
+use crate::file::{Error, ReadResult, Table};
 
 /// The nominal voltage reference of an ATmega328P, V: data sheet, section 29.8.
 const NOMINAL_REFERENCE: f64 = 1.1;
@@ -91,18 +91,18 @@ impl Supplies {
     }
 
     /// Reads `[supply]`; every key is optional.
-    pub(crate) fn read(root: &Section, used_pins: &mut UsedPins) -> ReadResult<Self> {
+    pub(crate) fn read(root: &Table, used_pins: &mut UsedPins) -> ReadResult<Self> {
         let keys = ["reference", "slow", "stop", "rest", "rail"];
-        let section = root.optional_section("supply", &keys)?;
+        let table = root.optional_table("supply", &keys)?;
         Ok(Self {
-            reference_volts: section.number_or(
+            reference_volts: table.number_or(
                 "reference",
                 NOMINAL_REFERENCE,
                 REFERENCE_RANGE,
                 "V",
             )?,
-            board_thresholds: read_thresholds(&section, BOARD_THRESHOLD_RANGE, DEFAULT_THRESHOLDS)?,
-            rail: read_rail(&section, used_pins)?,
+            board_thresholds: read_thresholds(&table, BOARD_THRESHOLD_RANGE, DEFAULT_THRESHOLDS)?,
+            rail: read_rail(&table, used_pins)?,
             slow_pace_percent: DEFAULT_SLOW_PACE_PERCENT,
         })
     }
@@ -152,45 +152,41 @@ pub fn healthy_rail_mv(supplies: &CoreSupplies) -> Option<f64> {
 }
 
 /// Reads `[supply.rail]`; `None` if the table is missing.
-fn read_rail(supply: &Section, used_pins: &mut UsedPins) -> ReadResult<Option<Rail>> {
+fn read_rail(supply: &Table, used_pins: &mut UsedPins) -> ReadResult<Option<Rail>> {
     if !supply.has_key("rail") {
         return Ok(None);
     }
-    let section = supply.section("rail", &["pin", "ratio", "slow", "stop", "rest"])?;
-    let pin_name = section.text("pin")?;
+    let table = supply.table("rail", &["pin", "ratio", "slow", "stop", "rest"])?;
+    let pin_name = table.text("pin")?;
     let Some(pin) = parse_pin(pin_name).filter(|pin| ANALOGUE_PINS.contains(pin)) else {
         let message = format!("is \"{pin_name}\"; it must be one of A0 to A5");
-        return Err(section.error("pin", message));
+        return Err(table.error("pin", message));
     };
-    claim_pin(&section, pin, used_pins)?;
+    claim_pin(&table, pin, used_pins)?;
     // Covers a battery of two lithium cells, 8.4 V, which needs a ratio of at least 2.
-    let divider_ratio = section.number("ratio", (1.0, 6.0), "(rail voltage / pin voltage)")?;
-    let has_derived_slow_threshold = !section.has_key("slow");
+    let divider_ratio = table.number("ratio", (1.0, 6.0), "(rail voltage / pin voltage)")?;
+    let has_derived_slow_threshold = !table.has_key("slow");
     let mut defaults = DEFAULT_THRESHOLDS;
-    if has_derived_slow_threshold && section.has_key("stop") {
+    if has_derived_slow_threshold && table.has_key("stop") {
         // A placeholder until the servos are known.
         defaults[0] = f64::INFINITY;
     }
     Ok(Some(Rail {
         pin,
         divider_ratio,
-        thresholds: read_thresholds(&section, (1.0, MAX_PIN_VOLTS * divider_ratio), defaults)?,
+        thresholds: read_thresholds(&table, (1.0, MAX_PIN_VOLTS * divider_ratio), defaults)?,
         has_derived_slow_threshold,
     }))
 }
 
 /// Reads three voltages, each less than the previous one.
-fn read_thresholds(
-    section: &Section,
-    range: (f64, f64),
-    defaults: [f64; 3],
-) -> ReadResult<[f64; 3]> {
-    let read_voltage = |name, default| section.number_or(name, default, range, "V");
+fn read_thresholds(table: &Table, range: (f64, f64), defaults: [f64; 3]) -> ReadResult<[f64; 3]> {
+    let read_voltage = |name, default| table.number_or(name, default, range, "V");
     let slow = read_voltage("slow", defaults[0])?;
     let stop = read_voltage("stop", defaults[1])?;
     let rest = read_voltage("rest", defaults[2])?;
-    section.require_less("rest", rest, "stop", stop)?;
-    section.require_less("stop", stop, "slow", slow)?;
+    table.require_less("rest", rest, "stop", stop)?;
+    table.require_less("stop", stop, "slow", slow)?;
     Ok([slow, stop, rest])
 }
 

@@ -1,4 +1,4 @@
-//! Reads robot.toml as typed values. A [`Section`] is one table of the file; it rejects unknown keys, and every error
+//! Reads robot.toml as typed values. A [`Table`] is one table of the file; it rejects unknown keys, and every error
 //! contains the full name of its key.
 
 use toml::Spanned;
@@ -24,7 +24,7 @@ pub(crate) fn parse<T>(text: &str, read: impl Fn(&DeTable) -> ReadResult<T>) -> 
     })?;
     let table = document.get_ref();
     read(table).map_err(|error| Error {
-        line: find_key(table, &error.key).map(line_at),
+        line: find_key_offset(table, &error.key).map(line_at),
         ..error
     })
 }
@@ -41,20 +41,20 @@ pub(crate) fn read_for_each<T>(
     Ok([a?, b?, c?, d?])
 }
 
-/// Finds the byte offset of a key. If the key is missing, finds that of the innermost existing table in its name;
-/// `None` if not even the outermost table exists.
-fn find_key(mut table: &DeTable, key: &str) -> Option<usize> {
+/// Finds the byte offset of a key. If the file does not have the key, finds the offset of the innermost table of its
+/// path that exists; `None` if not even the outermost table exists.
+fn find_key_offset(mut table: &DeTable, key: &str) -> Option<usize> {
     let mut rest = key;
     let mut innermost_start = None;
     loop {
-        // A quoted key may contain a dot, so the longest matching key counts.
-        let suffix_after = |known: &str| {
-            let suffix = rest.strip_prefix(known)?;
+        // A quoted key may contain a dot, so the longest matching key is the right one.
+        let suffix_after = |name: &str| {
+            let suffix = rest.strip_prefix(name)?;
             (suffix.is_empty() || suffix.starts_with(['.', '['])).then_some(suffix)
         };
-        let entries = table.iter().filter_map(|(known, value)| {
-            let name = known.get_ref().as_ref();
-            Some((name.len(), known.span().start, suffix_after(name)?, value))
+        let entries = table.iter().filter_map(|(present, value)| {
+            let name = present.get_ref().as_ref();
+            Some((name.len(), present.span().start, suffix_after(name)?, value))
         });
         let Some((_, start, suffix, value)) = entries.max_by_key(|(length, ..)| *length) else {
             return innermost_start;
@@ -69,7 +69,7 @@ fn find_key(mut table: &DeTable, key: &str) -> Option<usize> {
     }
 }
 
-/// A record of one read of a key. The reference for all keys is generated from these records.
+/// A call that reads or allows a key, recorded for the reference of all keys.
 #[cfg(test)]
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum KeyRead {
@@ -77,7 +77,7 @@ pub(crate) enum KeyRead {
     Allowed,
     /// The key is a table, or an array of tables.
     Table,
-    /// The key is a number or numbers, with a range, a unit, and a default if it is optional.
+    /// The key is a number or an array of numbers, with a range, a unit, and a default if it is optional.
     Number {
         range: Range,
         unit: String,
@@ -94,52 +94,53 @@ thread_local! {
 }
 
 /// One table of the file.
-pub(crate) struct Section<'a> {
-    /// Full key of the table, such as `servo.A1`; empty for the file itself.
+pub(crate) struct Table<'a> {
+    /// Full name of the table, such as `servo.A1`; empty for the file itself.
     pub key: String,
     /// The contents of the table; `None` if an optional table is missing.
-    table: Option<&'a DeTable<'a>>,
+    contents: Option<&'a DeTable<'a>>,
 }
 
-impl<'a> Section<'a> {
+impl<'a> Table<'a> {
     /// Opens the file's root table, which may have only the keys `allowed`.
     pub fn root(table: &'a DeTable<'a>, allowed: &[&str]) -> ReadResult<Self> {
         Self {
             key: String::new(),
-            table: Some(table),
+            contents: Some(table),
         }
         .require_known_keys(allowed)
     }
 
     /// Opens the table `name`, which must exist and may have only the keys `allowed`.
-    pub fn section(&self, name: &str, allowed: &[&str]) -> ReadResult<Self> {
-        self.open(name)?.require_known_keys(allowed)
+    pub fn table(&self, name: &str, allowed: &[&str]) -> ReadResult<Self> {
+        self.unchecked_table(name)?.require_known_keys(allowed)
     }
 
     /// Opens the table `name`, which may have any keys.
-    pub fn open(&self, name: &str) -> ReadResult<Self> {
+    pub fn unchecked_table(&self, name: &str) -> ReadResult<Self> {
         #[cfg(test)]
         self.record_read(name, KeyRead::Table);
         Ok(Self {
             key: self.full_key(name),
-            table: Some(self.read_value(name, "a table", DeValue::as_table)?),
+            contents: Some(self.read_value(name, "a table", DeValue::as_table)?),
         })
     }
 
     /// Opens the table `name`, which may have any keys. A missing table counts as an empty table.
-    pub fn open_optional(&self, name: &str) -> ReadResult<Self> {
+    pub fn optional_unchecked_table(&self, name: &str) -> ReadResult<Self> {
         if self.has_key(name) {
-            return self.open(name);
+            return self.unchecked_table(name);
         }
         Ok(Self {
             key: self.full_key(name),
-            table: None,
+            contents: None,
         })
     }
 
     /// Opens the table `name`, which may have only the keys `allowed`. A missing table counts as an empty table.
-    pub fn optional_section(&self, name: &str, allowed: &[&str]) -> ReadResult<Self> {
-        self.open_optional(name)?.require_known_keys(allowed)
+    pub fn optional_table(&self, name: &str, allowed: &[&str]) -> ReadResult<Self> {
+        self.optional_unchecked_table(name)?
+            .require_known_keys(allowed)
     }
 
     /// Returns the table if all its keys are in `allowed`, otherwise an error.
@@ -172,7 +173,7 @@ impl<'a> Section<'a> {
 
     /// The table's keys in the order of the file.
     pub fn key_names(&self) -> Vec<&'a str> {
-        let keys = self.table.into_iter().flat_map(|table| table.keys());
+        let keys = self.contents.into_iter().flat_map(|table| table.keys());
         let mut keys: Vec<_> = keys.collect();
         keys.sort_by_key(|key| key.span().start);
         keys.into_iter().map(|key| key.get_ref().as_ref()).collect()
@@ -180,7 +181,7 @@ impl<'a> Section<'a> {
 
     /// True if the table has this key.
     pub fn has_key(&self, name: &str) -> bool {
-        self.table.is_some_and(|table| table.contains_key(name))
+        self.contents.is_some_and(|table| table.contains_key(name))
     }
 
     /// The full name of a key in this table.
@@ -261,7 +262,7 @@ impl<'a> Section<'a> {
         Ok(numbers)
     }
 
-    /// Reads an array of numbers as [`Section::numbers`] does; returns `default` if the key is missing.
+    /// Reads an array of numbers as [`Table::numbers`] does; returns `default` if the key is missing.
     pub fn numbers_or<const N: usize>(
         &self,
         name: &str,
@@ -306,25 +307,25 @@ impl<'a> Section<'a> {
     }
 
     /// Reads an array of tables that may have only the keys `allowed`. The array is empty if the key is missing.
-    pub fn sections(&self, name: &str, allowed: &[&str]) -> ReadResult<Vec<Section<'a>>> {
+    pub fn tables(&self, name: &str, allowed: &[&str]) -> ReadResult<Vec<Table<'a>>> {
         #[cfg(test)]
         self.record_read(name, KeyRead::Table);
         if !self.has_key(name) {
             return Ok(Vec::new());
         }
         let items = self.read_value(name, "an array of tables", DeValue::as_array)?;
-        let read_section = |(i, item): (usize, &'a Spanned<DeValue<'a>>)| {
+        let read_table = |(i, item): (usize, &'a Spanned<DeValue<'a>>)| {
             let name = format!("{name}[{i}]");
             match item.get_ref() {
-                DeValue::Table(table) => Section {
+                DeValue::Table(table) => Table {
                     key: self.full_key(&name),
-                    table: Some(table),
+                    contents: Some(table),
                 }
                 .require_known_keys(allowed),
                 value => Err(self.type_error(&name, value, "a table")),
             }
         };
-        items.iter().enumerate().map(read_section).collect()
+        items.iter().enumerate().map(read_table).collect()
     }
 
     #[cfg(test)]
@@ -350,7 +351,7 @@ impl<'a> Section<'a> {
         expected_type: &str,
         convert: impl FnOnce(&'a DeValue<'a>) -> Option<T>,
     ) -> ReadResult<T> {
-        let Some(value) = self.table.and_then(|table| table.get(name)) else {
+        let Some(value) = self.contents.and_then(|table| table.get(name)) else {
             return Err(self.error(name, format!("is missing; it must be {expected_type}")));
         };
         let value = value.get_ref();

@@ -10,7 +10,7 @@ use lizard_kinematics::End;
 
 use crate::config::RobotConfig;
 use crate::config::servo::LEG_NAMES;
-use crate::file::{Error, ReadResult, Section, read_for_each, suggest};
+use crate::file::{Error, ReadResult, Table, read_for_each, suggest};
 use crate::gaits::gait::{Gait, Stride};
 use crate::gaits::path::{Harmonic, Path};
 use crate::gaits::path_leg::PathLeg;
@@ -39,25 +39,25 @@ const WAVEFORM_NAMES: [&str; 3] = ["still", "wave", "held"];
 const REFERENCE_KEYS: [&str; 3] = ["reverse", "mirror", "like"];
 
 /// Reads the gaits in the order of the file and resolves their references.
-pub(crate) fn read_gaits(root: &Section, config: &RobotConfig) -> ReadResult<Vec<Gait>> {
-    let section = root.open("gait")?;
-    let names = section.key_names();
+pub(crate) fn read_gaits(root: &Table, config: &RobotConfig) -> ReadResult<Vec<Gait>> {
+    let table = root.unchecked_table("gait")?;
+    let names = table.key_names();
     for name in &names {
-        check_name(name, "gait").map_err(|problem| section.error(name, problem))?;
+        check_name(name, "gait").map_err(|problem| table.error(name, problem))?;
     }
     if names.len() > MAX_GAITS {
         let count = names.len();
         let message = format!("has {count} gaits; the firmware supports at most {MAX_GAITS}");
         return Err(Error::new("gait", message));
     }
-    check_boot_keys(&section, &names)?;
+    check_boot_keys(&table, &names)?;
     if names.first() != Some(&"stand") {
         let message =
             "the first gait must be stand, the neutral pose that the robot takes at power-on";
         return Err(Error::with_own_subject("gait", message));
     }
     let mut reader = GaitReader {
-        section,
+        table,
         names: &names,
         config,
         gaits: HashMap::new(),
@@ -75,7 +75,7 @@ pub(crate) fn read_gaits(root: &Section, config: &RobotConfig) -> ReadResult<Vec
 
 /// Rejects gaits or routines that the EEPROM cannot distinguish: it stores the gait or routine of `boot` as a number
 /// computed from the name.
-pub(super) fn check_boot_keys(section: &Section, names: &[&str]) -> ReadResult<()> {
+pub(super) fn check_boot_keys(table: &Table, names: &[&str]) -> ReadResult<()> {
     let mut names_by_key = HashMap::new();
     for name in names {
         let to_console = |byte: u8| if byte == b'-' { b' ' } else { byte };
@@ -84,7 +84,7 @@ pub(super) fn check_boot_keys(section: &Section, names: &[&str]) -> ReadResult<(
             let message = format!(
                 "cannot be used together with {other_name}: the EEPROM stores both names as the same number (for `boot`); rename one of them"
             );
-            return Err(section.error(name, message));
+            return Err(table.error(name, message));
         }
     }
     Ok(())
@@ -119,7 +119,7 @@ pub(super) fn check_name(name: &str, noun: &str) -> Result<(), String> {
 /// Reads gaits by name, each together with the gait to which it refers.
 struct GaitReader<'a> {
     /// The table `gait`.
-    section: Section<'a>,
+    table: Table<'a>,
     /// The names of all gaits, in the order of the file.
     names: &'a [&'a str],
     config: &'a RobotConfig,
@@ -141,7 +141,7 @@ impl GaitReader<'_> {
 
     /// Reads the definition of a gait that has not been read before.
     fn read_definition(&mut self, name: &str, referrers: &[&str]) -> ReadResult<Gait> {
-        let table = self.section.section(name, &GAIT_KEYS)?;
+        let table = self.table.table(name, &GAIT_KEYS)?;
         let strides = match definition_key(&table)? {
             "waveform" => read_waveform(&table)?,
             "head or tail" => read_path(name, &table, self.config)?,
@@ -161,7 +161,7 @@ impl GaitReader<'_> {
     fn read_derived(
         &mut self,
         name: &str,
-        table: &Section,
+        table: &Table,
         reference: &'static str,
         referrers: &[&str],
     ) -> ReadResult<Gait> {
@@ -192,7 +192,7 @@ impl GaitReader<'_> {
 }
 
 /// Returns the only key that defines a gait; the keys `head` and `tail` of a path count as one.
-fn definition_key(table: &Section) -> ReadResult<&'static str> {
+fn definition_key(table: &Table) -> ReadResult<&'static str> {
     let has_path = table.has_key("head") || table.has_key("tail");
     let mut definitions: Vec<&'static str> = REFERENCE_KEYS
         .into_iter()
@@ -208,7 +208,7 @@ fn definition_key(table: &Section) -> ReadResult<&'static str> {
 }
 
 /// Rejects keys outside `allowed`, which are meaningless together with `partner`.
-fn reject_keys_outside(table: &Section, allowed: &[&str], partner: &str) -> ReadResult<()> {
+fn reject_keys_outside(table: &Table, allowed: &[&str], partner: &str) -> ReadResult<()> {
     let mut names = table.key_names().into_iter();
     match names.find(|name| !allowed.contains(name)) {
         Some(name) => Err(table.error(name, format!("is not allowed with {partner}"))),
@@ -217,7 +217,7 @@ fn reject_keys_outside(table: &Section, allowed: &[&str], partner: &str) -> Read
 }
 
 /// Reads the strides of a gait that a waveform defines.
-fn read_waveform(table: &Section) -> ReadResult<[Stride; 4]> {
+fn read_waveform(table: &Table) -> ReadResult<[Stride; 4]> {
     let waveform_name = table.text("waveform")?;
     let partner = format!("waveform = \"{waveform_name}\"");
     match waveform_name {
@@ -232,11 +232,11 @@ fn read_waveform(table: &Section) -> ReadResult<[Stride; 4]> {
                 duty: table.number("duty", (0.05, 0.95), "of the cycle")?,
             };
             let amplitude = read_amplitude(table)?;
-            let section = table.section("start", &LEG_NAMES)?;
+            let starts = table.table("start", &LEG_NAMES)?;
             read_for_each(LEG_NAMES, |leg| {
                 Ok(Stride {
                     waveform: waveform.clone(),
-                    start: section.number(leg, (0.0, 1.0), "of the cycle")?,
+                    start: starts.number(leg, (0.0, 1.0), "of the cycle")?,
                     amplitude,
                 })
             })
@@ -260,23 +260,23 @@ fn read_waveform(table: &Section) -> ReadResult<[Stride; 4]> {
 }
 
 /// Reads the strides of a gait that the paths of head and tail define.
-fn read_path(name: &str, table: &Section, config: &RobotConfig) -> ReadResult<[Stride; 4]> {
+fn read_path(name: &str, table: &Table, config: &RobotConfig) -> ReadResult<[Stride; 4]> {
     reject_keys_outside(table, &["period", "head", "tail", "gain"], "a path")?;
     let mut strides = [Stride::STILL; 4];
     for end in End::ALL {
         if !table.has_key(end.name()) {
             continue;
         }
-        let section = table.section(end.name(), &["centre", "x", "y"])?;
+        let end_table = table.table(end.name(), &["centre", "x", "y"])?;
         let path = Path {
-            centre: section.numbers("centre", (-255.0, 255.0), "mm")?,
-            x: read_harmonics(&section, "x")?,
-            y: read_harmonics(&section, "y")?,
+            centre: end_table.numbers("centre", (-255.0, 255.0), "mm")?,
+            x: read_harmonics(&end_table, "x")?,
+            y: read_harmonics(&end_table, "y")?,
         };
         let legs = PathLeg::for_both_servos(config.lizard, config.neutral_angles(), end, &path)
             .map_err(|problem| {
                 let consequence = format!("in \"{name}\" the {end} would not reach its path");
-                Error::with_consequence(section.key.clone(), consequence, problem)
+                Error::with_consequence(end_table.key.clone(), consequence, problem)
             })?;
         for (servo, leg) in legs {
             strides[servo] = Stride {
@@ -290,20 +290,20 @@ fn read_path(name: &str, table: &Section, config: &RobotConfig) -> ReadResult<[S
 }
 
 /// Reads the largest sweep, deg.
-fn read_amplitude(table: &Section) -> ReadResult<f64> {
+fn read_amplitude(table: &Table) -> ReadResult<f64> {
     table.number("amplitude", (0.0, 90.0), "deg")
 }
 
 /// Reads the legs' gains, in servo order; 1 for a leg without a gain.
-fn read_gains(table: &Section) -> ReadResult<[f64; 4]> {
-    let section = table.optional_section("gain", &LEG_NAMES)?;
+fn read_gains(table: &Table) -> ReadResult<[f64; 4]> {
+    let gains = table.optional_table("gain", &LEG_NAMES)?;
     read_for_each(LEG_NAMES, |leg| {
-        section.number_or(leg, 1.0, (-4.0, 4.0), "(a factor)")
+        gains.number_or(leg, 1.0, (-4.0, 4.0), "(a factor)")
     })
 }
 
 /// Reads the order of the swings. Returns each leg's position in this order, 0 to 3, in servo order.
-fn read_order(table: &Section) -> ReadResult<[usize; 4]> {
+fn read_order(table: &Table) -> ReadResult<[usize; 4]> {
     let legs = table.strings("order")?;
     let order_error = || table.error("order", "must list each of LF, RF, RH, LH exactly once");
     if legs.len() != LEG_NAMES.len() {
@@ -316,9 +316,9 @@ fn read_order(table: &Section) -> ReadResult<[usize; 4]> {
 }
 
 /// Reads the harmonics of one coordinate of a path.
-fn read_harmonics(section: &Section, name: &str) -> ReadResult<Vec<Harmonic>> {
-    let harmonics = section.sections(name, &["k", "amplitude", "shift"])?;
-    let read_harmonic = |harmonic: Section| {
+fn read_harmonics(table: &Table, name: &str) -> ReadResult<Vec<Harmonic>> {
+    let harmonics = table.tables(name, &["k", "amplitude", "shift"])?;
+    let read_harmonic = |harmonic: Table| {
         let order = harmonic.number("k", (1.0, 16.0), "periods in a cycle")?;
         if order.fract() != 0.0 {
             return Err(harmonic.error("k", format!("is {order}; it must be a whole number")));

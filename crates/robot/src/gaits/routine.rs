@@ -5,7 +5,7 @@ use lizard_core::console::command::MAX_CYCLES;
 use lizard_core::numbers::gaits::{Gait as GaitRecord, MAX_GAITS, Step};
 
 use crate::config::{INPUT_NAMES, Inputs};
-use crate::file::{Error, ReadResult, Section, suggest};
+use crate::file::{Error, ReadResult, Table, suggest};
 use crate::gaits::define::{check_boot_keys, check_name};
 use crate::gaits::to_command;
 use crate::units::FRAMES_PER_SECOND;
@@ -84,20 +84,20 @@ impl Routine {
 
 /// Reads the routines of a robot with these gaits and inputs, in the order of the file.
 pub(crate) fn read_routines(
-    root: &Section,
+    root: &Table,
     gaits: &[&str],
     inputs: &Inputs,
 ) -> ReadResult<Vec<Routine>> {
-    let section = root.open_optional("routine")?;
-    let names = section.key_names();
+    let table = root.optional_unchecked_table("routine")?;
+    let names = table.key_names();
     for name in &names {
-        check_name(name, "routine").map_err(|problem| section.error(name, problem))?;
+        check_name(name, "routine").map_err(|problem| table.error(name, problem))?;
         if gaits.contains(name) {
-            return Err(section.error(name, "has the name of a gait; choose another name"));
+            return Err(table.error(name, "has the name of a gait; choose another name"));
         }
     }
     let all_names: Vec<&str> = gaits.iter().chain(&names).copied().collect();
-    check_boot_keys(&section, &all_names)?;
+    check_boot_keys(&table, &all_names)?;
     if all_names.len() > MAX_GAITS {
         let count = all_names.len();
         let message = format!(
@@ -110,7 +110,7 @@ pub(crate) fn read_routines(
         routines: &names,
         inputs,
     };
-    let read_named_routine = |name: &&str| read_routine(&section, name, &known);
+    let read_named_routine = |name: &&str| read_routine(&table, name, &known);
     names.iter().map(read_named_routine).collect()
 }
 
@@ -122,8 +122,8 @@ struct KnownNames<'a> {
 }
 
 /// Reads the routine with this name.
-fn read_routine(section: &Section, name: &str, known: &KnownNames) -> ReadResult<Routine> {
-    let table = section.section(name, &["steps", "repeat", "repeat_from"])?;
+fn read_routine(routines: &Table, name: &str, known: &KnownNames) -> ReadResult<Routine> {
+    let table = routines.table(name, &["steps", "repeat", "repeat_from"])?;
     let step_texts = table.strings("steps")?;
     if step_texts.is_empty() || step_texts.len() > MAX_STEPS {
         let count = step_texts.len();
@@ -155,7 +155,7 @@ fn read_routine(section: &Section, name: &str, known: &KnownNames) -> ReadResult
 }
 
 /// Reads the number of rounds; 0 if the routine repeats for ever.
-fn read_round_count(table: &Section) -> ReadResult<u16> {
+fn read_round_count(table: &Table) -> ReadResult<u16> {
     if table.text("repeat").is_ok_and(|text| text == FOR_EVER) {
         return Ok(0);
     }

@@ -5,19 +5,19 @@ use lizard_kinematics::{Solution, wrap};
 use crate::config::servo::SERVO_NAMES;
 use crate::robot::Robot;
 
-/// Returns a message for each violation by a solved pose; an empty list if the pose is safe.
-pub fn find_pose_violations(robot: &Robot, solution: &Solution) -> Vec<String> {
+/// Describes each violation by a solved pose in a message; an empty list if the pose is safe.
+pub fn describe_pose_violations(robot: &Robot, solution: &Solution) -> Vec<String> {
     let limit_violations = robot.limits().violations(solution);
     let angles = <[f64; 4]>::from(solution.pose);
-    let travel_violations = (0..4).filter_map(|i| find_travel_violation(robot, i, angles[i]));
+    let travel_violations = (0..4).filter_map(|i| describe_travel_violation(robot, i, angles[i]));
     limit_violations
         .map(|violation| violation.to_string())
         .chain(travel_violations)
         .collect()
 }
 
-/// Returns a message if the servo with this index cannot reach an angle (deg, chassis frame), `None` if it can.
-pub fn find_travel_violation(robot: &Robot, index: usize, angle: f64) -> Option<String> {
+/// Describes in a message that the servo with this index cannot reach an angle (deg, chassis frame); `None` if it can.
+pub fn describe_travel_violation(robot: &Robot, index: usize, angle: f64) -> Option<String> {
     let servo = &robot.servos()[index];
     (!servo.reaches(angle)).then(|| {
         let neutral = servo.neutral;

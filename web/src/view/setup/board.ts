@@ -14,7 +14,7 @@ export function formatRobotName({ file, toml, original }: Session): string {
 export function describeBoard(session: Session): string {
   const { link, banner } = session;
   if (banner === undefined) return `The ${link.name} has not identified itself yet.`;
-  if (banner === null && session.isReal && !session.hasBootLoader) return `The ${link.name} answers neither like this firmware nor like a boot loader. Check that the port is right, and that the board is a UNO.`;
+  if (banner === null && session.isBoardReal && !session.hasBootLoader) return `The ${link.name} answers neither like this firmware nor like a boot loader. Check that the port is right, and that the board is a UNO.`;
   if (banner === null) return `The ${link.name} is a UNO according to its boot loader, without this firmware.`;
   if (banner === 'unknown') return `The ${link.name} has this firmware. Press its reset button to see its robot.`;
   if (session.hasThisRobot) return `The ${link.name} has this firmware and this robot, ${formatRobotName(session)}.`;
@@ -27,7 +27,7 @@ export const boardStep: Step = {
   title: 'Connect the board',
   needsRobot: false,
   makeElements({ session, connect, goTo }) {
-    if (session.isReal) {
+    if (session.isBoardReal) {
       return [
         paragraph(describeBoard(session)),
         row(button(session.isFirmwareAnswering ? 'Continue' : 'Write the firmware', () => goTo('Firmware'), true), button('Disconnect', connect)),
@@ -40,7 +40,7 @@ export const boardStep: Step = {
         'Close other programs that use the port, such as a console.',
       ),
       hasSerial() ? row(button('Choose its port…', connect, true)) : warning(NO_SERIAL_MESSAGE),
-      note(findBluetoothProblem() ?? 'A board that already has this firmware can also be connected through a Bluetooth LE module: press Bluetooth… in this room.'),
+      note(findBluetoothProblem() ?? 'A board that already has this firmware can also be connected through a Bluetooth LE module: press “Bluetooth…” in this room.'),
       note('Without a board, you can try every step with the simulated board.'),
     ];
   },

@@ -8,8 +8,8 @@ export const SERVO_POSITIONS = ['front left', 'front right', 'back right', 'back
 /** Formats a servo's name with its position, such as `A1, front left`. */
 export const formatServo = (servo: number): string => `A${servo + 1}, ${SERVO_POSITIONS[servo]}`;
 
-/** The servo that the drawing highlights. */
-export interface SelectedServo {
+/** The servo that the drawing highlights, and its arrow. */
+export interface Highlight {
   servo: number;
   /** The rotation that the arrow shows, deg counter-clockwise; null for no arrow. */
   turnDeg: number | null;
@@ -43,8 +43,8 @@ function makeTurn(shaft: Point, crankLength: number, neutral: number, turnDeg: n
   return [makeLine('ghost', shaft, pointAt(shaft, crankLength, neutral + turnDeg)), arc, head];
 }
 
-/** Makes the drawing of the robot; `selected` is the highlighted servo, null for none. */
-export function makeDrawing({ servos, plate }: Description, { shafts, tips }: Scene, selected: SelectedServo | null): SVGElement {
+/** Makes the drawing of the robot; without a highlight, all servos look alike. */
+export function makeDrawing({ servos, plate }: Description, { shafts, tips }: Scene, highlight: Highlight | null): SVGElement {
   const shortening = Math.max(...shafts.map(([, y]) => Math.abs(y))) - HALF_LENGTH_MM;
   const shorten = ([x, y]: Point): Point => [x, -Math.sign(y) * (Math.abs(y) - shortening)];
   const shaftPoints = shafts.map(shorten) as Four<Point>;
@@ -53,11 +53,11 @@ export function makeDrawing({ servos, plate }: Description, { shafts, tips }: Sc
   const viewHalfWidth = Math.max(...shaftPoints.map(([x]) => Math.abs(x))) + crankLength + 58;
   const viewHalfHeight = Math.max(HALF_LENGTH_MM + crankLength, halfLength) + 8;
   const angles = servos.map(({ neutral }, n) => `${formatServo(n)}: ${neutral.toFixed(1)}°`).join('; ');
-  const arrowText = selected?.turnDeg ? ` An arrow shows A${selected.servo + 1} turning ${selected.turnDeg > 0 ? 'counter-clockwise' : 'clockwise'}.` : '';
+  const arrowText = highlight?.turnDeg ? ` An arrow shows A${highlight.servo + 1} turning ${highlight.turnDeg > 0 ? 'counter-clockwise' : 'clockwise'}.` : '';
   const servoGroups = shaftPoints.map((shaft, n) => {
     const { neutral, pin } = servos[n];
-    const isSelected = selected?.servo === n;
-    const turn = isSelected && selected.turnDeg !== null ? makeTurn(shaft, crankLength, neutral, selected.turnDeg) : [];
+    const isHighlighted = highlight?.servo === n;
+    const turn = isHighlighted && highlight.turnDeg !== null ? makeTurn(shaft, crankLength, neutral, highlight.turnDeg) : [];
     // The text is beyond the crank, where it does not overlap the arrow.
     const isLeft = shaft[0] < 0;
     const x = (isLeft ? -1 : 1) * (Math.abs(shaft[0]) + crankLength + 6);
@@ -65,7 +65,7 @@ export function makeDrawing({ servos, plate }: Description, { shafts, tips }: Sc
     const side = isLeft ? 'left' : 'right';
     return makeSvg(
       'g',
-      { class: `servo a${n + 1}${selected && !isSelected ? ' other' : ''}` },
+      { class: `servo a${n + 1}${highlight && !isHighlighted ? ' other' : ''}` },
       makeLine('zero', shaft, pointAt(shaft, crankLength * 0.6, 0)),
       makeLine('crank', shaft, pointAt(shaft, crankLength, neutral)),
       ...turn,

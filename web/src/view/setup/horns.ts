@@ -6,7 +6,7 @@ export const hornsStep: Step = {
   name: 'Horns',
   title: 'Fit the horns',
   needsRobot: true,
-  selectedServo: () => null,
+  highlight: () => null,
   makeElements({ perform }) {
     const rest = () => perform((calibrator) => calibrator.rest(), 'The pulses have ended. Switch on the servos\' supply now.');
     const centerServos = () =>

@@ -12,11 +12,11 @@ export const limitsStep: Step = {
   title: 'Limit the servos’ travel',
   needsRobot: true,
   isPerServo: true,
-  selectedServo: ({ servo }) => ({ servo, turnDeg: null }),
+  highlight: ({ servo }) => ({ servo, turnDeg: null }),
   makeElements(dialog) {
-    const { calibrator, servo, session, turn } = dialog;
+    const { calibrator, servo, session, turnInStep } = dialog;
     const limit = calibrator?.calibration.servos[servo].limit ?? null;
-    const currentAngle = turn?.degrees ?? session.description.servos[servo].neutral;
+    const currentAngle = turnInStep?.commandedDegrees ?? session.description.servos[servo].neutral;
     const [from, to] = limit ?? [0, 0];
     const makeBox = (label: string, value: number, action: (value: number) => void) => numberBox(label, value, '0.01', action);
     return [
@@ -43,11 +43,11 @@ export const limitsStep: Step = {
   },
 };
 
-function turnServo(dialog: SetupDialog, degrees: number): void {
+function turnServo(dialog: SetupDialog, commandedDegrees: number): void {
   const { servo, run } = dialog;
   run(async (calibrator) => {
-    const angle = await calibrator.moveServo(servo, degrees);
-    dialog.lastTurn = { step: limitsStep, servo, degrees };
+    const angle = await calibrator.moveServo(servo, commandedDegrees);
+    dialog.lastTurn = { step: limitsStep, servo, commandedDegrees };
     return `A${servo + 1} points to ${angle.toFixed(2)}°.`;
   });
 }

@@ -10,14 +10,14 @@ export const scaleStep: Step = {
   title: 'Measure the servos’ rotation',
   needsRobot: true,
   isPerServo: true,
-  selectedServo: ({ servo, turn }) => ({ servo, turnDeg: turn?.degrees ?? null }),
+  highlight: ({ servo, turnInStep }) => ({ servo, turnDeg: turnInStep?.commandedDegrees ?? null }),
   makeElements(dialog) {
-    const { calibrator, servo, turn } = dialog;
+    const { calibrator, servo, turnInStep } = dialog;
     const currentScale = calibrator?.calibration.servos[servo].scale;
     return [
-      paragraph(`Mark the direction of the crank of ${formatServo(servo)}, turn the servo, and measure the angle.`),
-      row(button(`Turn A${servo + 1}`, () => turnServo(dialog), !turn)),
-      ...(turn ? [row(numberBox('Measured angle, degrees', null, '0.1', (measuredDegrees) => setMeasuredTurn(dialog, turn, measuredDegrees)))] : []),
+      paragraph(`Mark the direction of the crank of ${formatServo(servo)}, turn the servo, and measure the angle by which it turns.`),
+      row(button(`Turn A${servo + 1}`, () => turnServo(dialog), !turnInStep)),
+      ...(turnInStep ? [row(numberBox('Measured angle, degrees', null, '0.1', (measuredDegrees) => setMeasuredTurn(dialog, turnInStep, measuredDegrees)))] : []),
       paragraph(`Scale: ${currentScale === undefined ? '–' : `${currentScale.toFixed(2)} µs per degree`}`),
       note('Most servos have about 10 µs per degree. Without a protractor, skip this step.'),
     ];
@@ -27,13 +27,13 @@ export const scaleStep: Step = {
 function turnServo(dialog: SetupDialog): void {
   const { servo, run } = dialog;
   run(async (calibrator) => {
-    const degrees = await calibrator.turnToMeasureScale(servo);
-    dialog.lastTurn = { step: scaleStep, servo, degrees };
-    return `A${servo + 1} received the command to turn by ${Math.abs(degrees)}°. Measure its angle.`;
+    const commandedDegrees = await calibrator.turnToMeasureScale(servo);
+    dialog.lastTurn = { step: scaleStep, servo, commandedDegrees };
+    return `A${servo + 1} received the command to turn by ${Math.abs(commandedDegrees)}°. Measure the angle by which it turned.`;
   });
 }
 
-function setMeasuredTurn(dialog: SetupDialog, { servo, degrees: commandedDegrees }: Turn, measuredDegrees: number): void {
+function setMeasuredTurn(dialog: SetupDialog, { servo, commandedDegrees }: Turn, measuredDegrees: number): void {
   dialog.run(async (calibrator) => {
     if (measuredDegrees <= 0) return 'The measured angle must be more than 0 degrees.';
     dialog.lastTurn = null;

@@ -16,14 +16,14 @@ export const signsStep: Step = {
   title: 'Check the signs',
   needsRobot: true,
   isPerServo: true,
-  selectedServo: ({ servo, turn }) => ({ servo, turnDeg: turn?.degrees ?? 10 }),
+  highlight: ({ servo, turnInStep }) => ({ servo, turnDeg: turnInStep?.commandedDegrees ?? 10 }),
   makeElements(dialog) {
-    const { servo, turn } = dialog;
+    const { servo, turnInStep } = dialog;
     const name = `A${servo + 1}`;
     return [
       paragraph(`${formatServo(servo)}: only this servo turns, by 10°. Look from above.`),
-      row(button(turn ? `Turn ${name} again` : `Turn ${name}`, () => turnServo(dialog), !turn)),
-      ...(turn ? makeQuestion(dialog, turn) : []),
+      row(button(turnInStep ? `Turn ${name} again` : `Turn ${name}`, () => turnServo(dialog), !turnInStep)),
+      ...(turnInStep ? makeQuestion(dialog, turnInStep) : []),
       note('Do not skip this step: with a wrong sign, the robot would treat an unsafe pose as safe.'),
     ];
   },
@@ -55,9 +55,9 @@ function makeQuestion(dialog: SetupDialog, turn: Turn): Node[] {
 function turnServo(dialog: SetupDialog): void {
   const { servo, run } = dialog;
   run(async (calibrator) => {
-    const degrees = await calibrator.turnToCheckSign(servo);
-    dialog.lastTurn = { step: signsStep, servo, degrees };
-    return `A${servo + 1} received the command to turn by ${Math.abs(degrees)}° ${degrees > 0 ? 'counter-clockwise' : 'clockwise'}.`;
+    const commandedDegrees = await calibrator.turnToCheckSign(servo);
+    dialog.lastTurn = { step: signsStep, servo, commandedDegrees };
+    return `A${servo + 1} received the command to turn by ${Math.abs(commandedDegrees)}° ${commandedDegrees > 0 ? 'counter-clockwise' : 'clockwise'}.`;
   });
 }
 

@@ -1,13 +1,13 @@
 // The interface of a step of the first connection.
 import type { SetupDialog } from '../setup';
-import type { SelectedServo } from './drawing';
+import type { Highlight } from './drawing';
 
 /** The last turn of a servo in a step. */
 export interface Turn {
   step: Step;
   servo: number;
   /** The commanded rotation, deg counter-clockwise; in the step Limits, the commanded angle. */
-  degrees: number;
+  commandedDegrees: number;
   /** The fault that the user observed in the step Signs: another servo turned, or no servo turned. */
   fault?: 'other' | 'none';
 }
@@ -22,6 +22,6 @@ export interface Step {
   /** True if the step concerns one servo at a time, which the user selects. */
   readonly isPerServo?: boolean;
   makeElements(dialog: SetupDialog): Node[];
-  /** Returns the highlighted servo of the drawing, null for none; a step without this method has no drawing. */
-  selectedServo?(dialog: SetupDialog): SelectedServo | null;
+  /** Returns what the drawing highlights, null for nothing; a step without this method has no drawing. */
+  highlight?(dialog: SetupDialog): Highlight | null;
 }

@@ -11,7 +11,7 @@ export const trimsStep: Step = {
   title: 'Straighten the cranks',
   needsRobot: true,
   isPerServo: true,
-  selectedServo: ({ servo }) => ({ servo, turnDeg: null }),
+  highlight: ({ servo }) => ({ servo, turnDeg: null }),
   makeElements({ calibrator, servo, run, stand, markDone, session }) {
     const trim = calibrator?.calibration.servos[servo].trim;
     const neutral = session.description.servos[servo].neutral.toFixed(1);

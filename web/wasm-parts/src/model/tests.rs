@@ -74,11 +74,11 @@ fn list_corners(solids: &[Triangles]) -> Vec<Vec<[f32; 3]>> {
 #[test]
 fn every_solid_has_the_height_of_its_body_and_no_corner_outside_the_body() {
     let model = make_model("strut");
-    let (entry, solids) = (model.entry(), model.make_solids());
+    let (description, solids) = (model.describe(), model.make_solids());
     let solids = list_corners(&solids.expect("every solid is closed"));
-    let largest_solid_index = entry.bodies.iter().map(|body| body.solid).max();
+    let largest_solid_index = description.bodies.iter().map(|body| body.solid).max();
     assert_eq!(largest_solid_index, Some(solids.len() - 1));
-    for (body_entry, body) in entry.bodies.iter().zip(model.assembly.bodies()) {
+    for (body_entry, body) in description.bodies.iter().zip(model.assembly.bodies()) {
         let matrix = body_entry.matrix;
         let z = solids[body_entry.solid].iter().map(|corner| {
             let [x, y, z] = corner.map(f64::from);
@@ -113,25 +113,29 @@ fn every_solid_has_the_height_of_its_body_and_no_corner_outside_the_body() {
 #[test]
 fn every_body_has_a_step_and_every_part_has_one_body_per_piece() {
     let model = make_model("strut");
-    let entry = model.entry();
-    assert_eq!(entry.steps.len(), 15);
-    let mut steps = entry.bodies.iter().map(|body| body.step);
+    let description = model.describe();
+    assert_eq!(description.steps.len(), 15);
+    let mut steps = description.bodies.iter().map(|body| body.step);
     assert!(steps.all(|step| (1..=14).contains(&step)));
-    let counts = entry.parts.iter().enumerate().map(|(index, part)| {
-        let bodies = entry.bodies.iter().filter(|body| body.part == Some(index));
+    let counts = description.parts.iter().enumerate().map(|(index, part)| {
+        let bodies = description
+            .bodies
+            .iter()
+            .filter(|body| body.part == Some(index));
         (part, bodies.count())
     });
     for (part, count) in counts {
         assert_eq!(part.count, count, "{}", part.name);
     }
-    assert!(entry.floor > 20.0, "{} mm", entry.floor);
+    let sole_depth = description.sole_depth;
+    assert!(sole_depth > 20.0, "{sole_depth} mm");
 }
 
 #[test]
 fn the_refusal_of_impossible_parts_names_the_key_and_the_value() {
     let toml = format!("{PAPER}\n[parts]\nheight = 10.0");
     let refusal = Model::from_toml(&toml).err().expect("the robot is refused");
-    let message = refusal.refused;
+    let message = refusal.reason;
     assert!(message.starts_with("parts.height "), "{message}");
     assert!(message.ends_with(" 10 mm"), "{message}");
     assert!(Model::from_toml("[links]").is_err());

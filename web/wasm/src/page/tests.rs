@@ -12,7 +12,7 @@ fn the_previous_robot_stays_after_a_refused_robot() {
     page.read(PAPER_TOML).expect("paper.toml is valid");
     let result = page.read("[links]");
     let error = result.expect_err("a robot without links is refused");
-    assert!(error.refused.starts_with("robot.toml"), "{error:?}");
+    assert!(error.reason.starts_with("robot.toml"), "{error:?}");
     assert!(page.follow_pulses([24_000; 4]).is_some());
 }
 

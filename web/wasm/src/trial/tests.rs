@@ -1,5 +1,7 @@
 //! Tests of edited gaits: conversion to bars, trial, refusal and tables.
 
+use lizard_twin::ServoModel;
+
 use super::*;
 use crate::paper::{PAPER_TOML, load_paper_robot, load_paper_robot_and_twin};
 
@@ -98,6 +100,22 @@ fn a_refusal_offers_the_nearest_valid_values() {
         assert!(is_valid_with(value), "{parameter} {value}");
         assert!(!is_valid_with(value + step), "{parameter} {value}");
     }
+}
+
+#[test]
+fn slow_servos_are_offered_a_long_period() {
+    let (stand, _) = PAPER_TOML
+        .split_once("[gait.walk]")
+        .expect("the robot walks");
+    let slow_toml = stand.replace("gait_slew = 310.0", "gait_slew = 10.0");
+    let slow_robot = Robot::parse(&slow_toml).expect("the standing robot is valid");
+    let twin = Twin::new(&slow_robot, ServoModel::Ideal);
+    let walk = get_bars(&load_paper_robot(), "walk");
+    let refused_trial = try_bars(&walk, &twin).expect_err("the gait is too fast");
+    let mut alternatives = refused_trial.alternatives.iter();
+    let offer = alternatives.find(|alternative| alternative.parameter == "period");
+    let period = offer.expect("a longer period is offered").value;
+    assert!((20.0..30.0).contains(&period), "{period} s");
 }
 
 #[test]

@@ -82,6 +82,8 @@ impl Controller {
     /// Starts the next step, or ends the routine after its last round.
     #[inline(never)]
     fn start_next_step(&mut self) {
+        // The previous step's line, if it is not printed yet, is no longer true and would name the next step's input.
+        self.safety.clear_notice(Notice::Waiting);
         let robot = *self.motion.robot();
         let gait = robot.gait(self.routine.id);
         // A routine stores these numbers in place of the channels' offsets.

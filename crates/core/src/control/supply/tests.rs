@@ -4,7 +4,7 @@ use std::vec::Vec;
 
 use proptest::prelude::*;
 
-use super::Level::{Rest, Slow, Stop};
+use super::Level::{Good, Rest, Slow, Stop};
 use super::*;
 use crate::sample::thresholds;
 
@@ -31,13 +31,13 @@ fn compute_reading(board_volts: f64, rail_volts: f64) -> Reading {
 
 /// Adds readings of a board without a measured rail until the level changes. Returns the number of frames and the new
 /// level, or `None` if the level has not changed after 200 frames.
-fn measure_board_until_change(supply: &mut Supply, volts: f64) -> Option<(usize, Level)> {
-    measure_until_change(supply, compute_reading(volts, 0.0), &SUPPLIES)
+fn add_board_readings_until_change(supply: &mut Supply, volts: f64) -> Option<(usize, Level)> {
+    add_readings_until_change(supply, compute_reading(volts, 0.0), &SUPPLIES)
 }
 
 /// Adds the same reading until the level changes. Returns the number of frames and the new level, or `None` if the
 /// level has not changed after 200 frames.
-fn measure_until_change(
+fn add_readings_until_change(
     supply: &mut Supply,
     reading: Reading,
     supplies: &Supplies,
@@ -76,23 +76,23 @@ proptest! {
     #[test]
     fn voltage_comparisons_agree_with_floating_point(reference in 100u16..1023, threshold_mv in 0u16..9000) {
         let voltage = Voltage::for_board(Reading { reference, rail: 0 }, &SUPPLIES);
-        let exact = 1024.0 * 1100.0 / f64::from(reference);
-        prop_assert_eq!(voltage.is_below(threshold_mv), exact < f64::from(threshold_mv));
+        let exact_mv = 1024.0 * 1100.0 / f64::from(reference);
+        prop_assert_eq!(voltage.is_below(threshold_mv), exact_mv < f64::from(threshold_mv));
     }
 }
 
 #[test]
 fn a_falling_supply_reaches_each_level_after_six_frames() {
     let mut supply = Supply::default();
-    assert_eq!(measure_board_until_change(&mut supply, 5.0), None);
+    assert_eq!(add_board_readings_until_change(&mut supply, 5.0), None);
     for (volts, level) in [(4.45, Slow), (4.25, Stop), (4.05, Rest)] {
-        let change = measure_board_until_change(&mut supply, volts);
+        let change = add_board_readings_until_change(&mut supply, volts);
         assert_eq!(change, Some((6, level)));
     }
     let mut supply = Supply::default();
-    let change = measure_board_until_change(&mut supply, 3.9);
+    let change = add_board_readings_until_change(&mut supply, 3.9);
     // A fall through all levels also takes six frames.
-    assert_eq!(change, Some((6, Level::Rest)));
+    assert_eq!(change, Some((6, Rest)));
 }
 
 #[test]
@@ -119,13 +119,13 @@ fn six_low_readings_lower_the_level_only_as_far_as_the_highest_of_them() {
 fn fifty_high_readings_raise_the_level_only_as_far_as_the_lowest_of_them() {
     for outlier_frame in 0..50 {
         let mut supply = Supply::default();
-        measure_board_until_change(&mut supply, 4.2);
+        add_board_readings_until_change(&mut supply, 4.2);
         for frame in 0..50 {
             let volts = if frame == outlier_frame { 4.5 } else { 5.0 };
             supply.add_reading(compute_reading(volts, 0.0), &SUPPLIES);
         }
         let level = supply.level();
-        assert_eq!(level, Level::Slow, "4.5 V in frame {outlier_frame}");
+        assert_eq!(level, Slow, "4.5 V in frame {outlier_frame}");
     }
 }
 
@@ -137,21 +137,21 @@ fn a_short_dip_does_not_change_the_level() {
             assert!(!supply.add_reading(compute_reading(volts, 0.0), &SUPPLIES));
         }
     }
-    assert_eq!(supply.level(), Level::Good);
+    assert_eq!(supply.level(), Good);
 }
 
 #[test]
 fn the_level_improves_one_second_after_the_voltage_exceeds_the_threshold_plus_hysteresis() {
     let mut supply = Supply::default();
-    measure_board_until_change(&mut supply, 4.2);
-    assert_eq!(supply.level(), Level::Stop);
+    add_board_readings_until_change(&mut supply, 4.2);
+    assert_eq!(supply.level(), Stop);
     // Between the threshold and 0.15 V above the threshold, the level does not change.
-    assert_eq!(measure_board_until_change(&mut supply, 4.40), None);
-    let slow_change = measure_board_until_change(&mut supply, 4.5);
-    assert_eq!(slow_change, Some((50, Level::Slow)));
-    assert_eq!(measure_board_until_change(&mut supply, 4.6), None);
-    let good_change = measure_board_until_change(&mut supply, 4.7);
-    assert_eq!(good_change, Some((50, Level::Good)));
+    assert_eq!(add_board_readings_until_change(&mut supply, 4.40), None);
+    let slow_change = add_board_readings_until_change(&mut supply, 4.5);
+    assert_eq!(slow_change, Some((50, Slow)));
+    assert_eq!(add_board_readings_until_change(&mut supply, 4.6), None);
+    let good_change = add_board_readings_until_change(&mut supply, 4.7);
+    assert_eq!(good_change, Some((50, Good)));
 }
 
 #[test]
@@ -164,21 +164,21 @@ fn a_supply_that_oscillates_around_a_threshold_changes_its_level_only_once() {
             levels.push(supply.level());
         }
     }
-    assert_eq!(levels, [Level::Slow]);
+    assert_eq!(levels, [Slow]);
 }
 
 #[test]
 fn the_supply_with_the_lower_level_determines_the_level_and_is_reported() {
     let supplies = SUPPLIES_WITH_RAIL;
     for (board_volts, rail_volts, level, limiting_volts) in [
-        (5.0, 6.6, Level::Good, 5.0),
-        (5.0, 6.3, Level::Slow, 6.3),
-        (4.25, 6.3, Level::Stop, 4.25),
-        (4.45, 5.0, Level::Rest, 5.0),
+        (5.0, 6.6, Good, 5.0),
+        (5.0, 6.3, Slow, 6.3),
+        (4.25, 6.3, Stop, 4.25),
+        (4.45, 5.0, Rest, 5.0),
     ] {
         let mut supply = Supply::default();
         let reading = compute_reading(board_volts, rail_volts);
-        measure_until_change(&mut supply, reading, &supplies);
+        add_readings_until_change(&mut supply, reading, &supplies);
         assert_eq!(supply.level(), level);
         let reported_volts = f64::from(supply.limiting_voltage(&supplies).centivolts()) / 100.0;
         let case = std::format!("reported {reported_volts} V for {limiting_volts} V");
@@ -189,6 +189,6 @@ fn the_supply_with_the_lower_level_determines_the_level_and_is_reported() {
 #[test]
 fn an_unmeasured_supply_is_not_low() {
     let mut supply = Supply::default();
-    let change = measure_until_change(&mut supply, Reading::default(), &SUPPLIES_WITH_RAIL);
+    let change = add_readings_until_change(&mut supply, Reading::default(), &SUPPLIES_WITH_RAIL);
     assert_eq!(change, None);
 }

@@ -13,7 +13,7 @@ fn is_accepted_after(change: impl FnOnce(&mut Content)) -> bool {
     match Robot::open(Region::new(&content.section_bytes())) {
         Ok(_) => true,
         Err(error) => {
-            assert_eq!(error, SectionError::Impossible);
+            assert_eq!(error, SectionError::Harmful);
             false
         }
     }

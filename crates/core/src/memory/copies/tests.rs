@@ -130,6 +130,20 @@ fn a_save_after_a_power_cut_is_complete() {
     }
 }
 
+#[test]
+fn a_save_of_unchanged_settings_replaces_a_damaged_copy() {
+    let (robot, mut eeprom) = robot_with_blank_memory();
+    let settings = make_settings(&robot, 2);
+    save_settings(&make_settings(&robot, 1), &mut eeprom);
+    save_settings(&settings, &mut eeprom);
+    let mut damaged_eeprom = with_flipped_bit(&eeprom, 8);
+    let (_, state) = load_settings(&robot, &damaged_eeprom);
+    assert_eq!(state, SavedState::OneCopy);
+    let saved_settings = save_settings(&settings, &mut damaged_eeprom);
+    let loaded = load_settings(&robot, &damaged_eeprom);
+    assert_eq!(loaded, (saved_settings, SavedState::Latest));
+}
+
 fn with_flipped_bit(eeprom: &Eeprom, bit: usize) -> Eeprom {
     let mut bytes = *eeprom.bytes();
     bytes[bit / 8] ^= 1 << (bit % 8);

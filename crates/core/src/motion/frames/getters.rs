@@ -39,7 +39,7 @@ impl Motion {
         self.frame_count
     }
 
-    /// The hazard because of which the guard stopped the robot; `None` if the guard has not stopped the robot, or once
+    /// The hazard that made the guard stop the robot; `None` if the guard has not stopped the robot, or once
     /// another motion has been ordered.
     pub const fn hazard(&self) -> Option<Hazard> {
         self.hazard

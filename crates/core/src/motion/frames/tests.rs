@@ -59,7 +59,7 @@ impl Motion {
         self.go_to(&pose).expect("the pose is safe");
     }
 
-    fn is_moving(&self) -> bool {
+    fn is_in_move(&self) -> bool {
         matches!(self.state, State::Moving { .. })
     }
 
@@ -143,7 +143,7 @@ fn from_a_held_pose_the_next_frame_begins_the_move_to_a_gait_or_a_pose() {
             motion.go_to_sweeps(SWEEPS);
         }
         motion.advance_frame();
-        assert!(motion.is_moving());
+        assert!(motion.is_in_move());
         assert_ne!(motion.pose(), &held_pose);
     }
 }
@@ -170,8 +170,8 @@ fn a_move_that_arrives_at_another_or_the_stopped_gait_starts_at_phase_0_and_acce
             let id = motion.robot.gait_id(name);
             let gait = motion.robot.gait(id);
             motion.advance_frame();
-            assert!(motion.is_moving());
-            while motion.is_moving() {
+            assert!(motion.is_in_move());
+            while motion.is_in_move() {
                 assert_eq!(motion.phase(), 0);
                 motion.advance_frame();
             }
@@ -202,7 +202,7 @@ fn a_move_brakes_on_its_line_before_it_turns_to_another_pose() {
         while pace > 0 {
             motion.advance_frame();
             pace = pace.saturating_sub(147);
-            assert!(motion.is_moving() && motion.next_target.is_some());
+            assert!(motion.is_in_move() && motion.next_target.is_some());
             assert_eq!(motion.pace(), pace);
             // The pose is still on the line if every servo has covered the same fraction of its distance.
             let fraction_of = |n: usize| f64::from(motion.pose().0[n].0) / f64::from(FAR_SWEEPS[n]);
@@ -222,7 +222,7 @@ fn a_move_to_a_gait_continues_when_that_gait_is_ordered_again() {
     motion.run(TRANSITION_FRAMES);
     motion.start("sway");
     motion.run(4);
-    assert!(motion.is_moving());
+    assert!(motion.is_in_move());
     let mut repeated_motion = motion.clone();
     repeated_motion.start("sway");
     assert_same_motion(repeated_motion, motion);
@@ -255,7 +255,7 @@ fn a_gait_brakes_along_its_cycle_before_the_move_to_another_gait_begins() {
         assert_eq!(motion.gait_name(), Some("swing"), "{claim}");
     }
     motion.advance_frame();
-    assert!(motion.is_moving());
+    assert!(motion.is_in_move());
     motion.run(TRANSITION_FRAMES);
     assert!(motion.is_cycling());
     assert_eq!(motion.gait_name(), Some("swing"));
@@ -281,7 +281,7 @@ fn a_gait_that_is_ordered_again_while_it_brakes_for_another_motion_restarts() {
     motion.run(2);
     motion.start("sway");
     motion.run(6);
-    assert!(motion.is_moving());
+    assert!(motion.is_in_move());
     motion.run(TRANSITION_FRAMES);
     assert_eq!(motion.gait_name(), Some("sway"));
 }

@@ -32,10 +32,12 @@ pub fn format(comparison: &Comparison) -> String {
     }
     text += "#\n";
     if comparison.is_better() {
+        let gain = comparison.gain();
+        let gain = gain.map(|gain| format!("{:.0} % ", 100.0 * gain));
         _ = writeln!(
             text,
-            "# {tuned} is faster than {gait} on {faster_count} of {robot_count} robots; its 5 % quantile is {:.0} % higher.",
-            100.0 * comparison.gain()
+            "# {tuned} is faster than {gait} on {faster_count} of {robot_count} robots; its 5 % quantile is {}higher.",
+            gain.unwrap_or_default()
         );
     } else {
         _ = writeln!(

@@ -1,6 +1,7 @@
 //! `lizard calibrate backup` and `lizard calibrate restore`: keep a calibration in a file.
 
-use std::io::{Read, Write};
+use std::error::Error;
+use std::io::{self, Read, Write};
 use std::path::PathBuf;
 
 use lizard_calibrate::{SendError, read_settings, replace_settings, send_command, send_settings};
@@ -46,12 +47,15 @@ pub fn backup(args: BackupArgs) -> Result<(), Failure> {
     let calibration = block_on(read_settings(&mut board.link))
         .map_err(|error| board.to_failure(LinkError::from(error)))?;
     files::write(&args.file, calibration.to_toml().as_bytes())?;
-    println!(
+    if files::is_standard_output(&args.file) {
+        return Ok(());
+    }
+    Ok(writeln!(
+        io::stdout(),
         "saved the calibration of {} to {}",
         board.name,
         args.file.display()
-    );
-    Ok(())
+    )?)
 }
 
 /// Runs `lizard calibrate restore`.
@@ -66,34 +70,43 @@ pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
     let (mut board, _) = finder.connect()?;
     send_calibration(&calibration, &mut board.link)
         .map_err(|error| Failure::Operation(format!("{}: {error}", args.file.display())))?;
-    println!(
+    Ok(writeln!(
+        io::stdout(),
         "{} has accepted and saved the calibration from {}",
         board.name,
         args.file.display()
-    );
-    Ok(())
+    )?)
 }
 
-/// Sends a calibration to a robot, reads it back and saves it; if saving fails, restores the robot's old settings.
+/// Sends a calibration to a robot, reads it back and saves it; if the robot refuses to save, restores its old settings.
 ///
 /// # Errors
-/// Fails if the robot refuses the calibration or reports a different one, or if the connection breaks.
+/// Fails if the robot refuses the calibration or reports a different one, or if the connection breaks. The message says
+/// what the robot has saved.
 pub fn send_calibration<P: Read + Write>(
     calibration: &Calibration,
     link: &mut Link<P>,
-) -> Result<(), SendError<LinkError>> {
+) -> Result<(), Box<dyn Error>> {
     let old_settings = block_on(read_settings(link)).map_err(SendError::Refused)?;
     block_on(replace_settings(link, &old_settings, calibration))?;
-    if let Err(error) = block_on(send_command(link, "save")) {
-        block_on(send_settings(link, &old_settings)).map_err(SendError::Mixed)?;
-        return Err(SendError::Refused(error));
+    match block_on(send_command(link, "save")) {
+        Ok(_) => Ok(()),
+        Err(error) if error.is_refusal() => {
+            block_on(send_settings(link, &old_settings)).map_err(SendError::Mixed)?;
+            Err(SendError::Refused(error).into())
+        }
+        Err(error) => {
+            let advice = "the robot may have saved the calibration: restore it once more";
+            Err(format!("{error}; {advice}").into())
+        }
     }
-    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_double::{connect_paper_robot, read_calibration};
+    use super::super::test_double::{
+        connect_paper_robot, connect_paper_robot_until, read_calibration,
+    };
     use super::*;
 
     #[test]
@@ -108,6 +121,15 @@ mod tests {
         link.command("factory").expect("the line is accepted");
         link.command("load").expect("a calibration was saved");
         assert!(read_calibration(&mut link).is_equivalent_to(&saved));
+    }
+
+    #[test]
+    fn a_robot_that_does_not_answer_save_may_have_saved() {
+        let mut link = connect_paper_robot_until("save");
+        let calibration = read_calibration(&mut link);
+        let error = send_calibration(&calibration, &mut link).expect_err("the port is gone");
+        let expected = "; the robot may have saved the calibration: restore it once more";
+        assert!(error.to_string().ends_with(expected), "{error}");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Connecting to a board: from the command's arguments to the board's first line.
 
+use std::cell::OnceCell;
 use std::path::PathBuf;
 
 use serialport::SerialPort;
@@ -36,6 +37,9 @@ pub struct BoardFinder {
     port: Option<String>,
     /// The subcommand with the arguments before the port, for messages.
     command: &'static str,
+    /// The USB chip of the port that was chosen first. While that board is unplugged, the port of another chip is not
+    /// its port.
+    chip: OnceCell<[u16; 2]>,
     simulated_board: Option<SimulatedBoard>,
 }
 
@@ -67,6 +71,7 @@ impl ConnectionArgs {
         Ok(BoardFinder {
             port: self.port,
             command,
+            chip: OnceCell::new(),
             simulated_board: None,
         })
     }
@@ -92,6 +97,7 @@ fn simulate_board(
     Ok(BoardFinder {
         port: Some(board.path().display().to_string()),
         command,
+        chip: OnceCell::new(),
         simulated_board: Some(board),
     })
 }
@@ -120,8 +126,11 @@ impl BoardFinder {
             }
             Some(port) => (port.clone(), port.clone()),
             None => {
-                let port = usb_ports::choose(&usb_ports::list(), self.command)
+                let mut ports = usb_ports::list();
+                usb_ports::retain_chip(&mut ports, self.chip.get());
+                let port = usb_ports::choose(&ports, self.command)
                     .map_err(|error| Failure::Operation(error.to_string()))?;
+                self.chip.get_or_init(|| port.chip());
                 // The product name comes from the board and may contain control characters.
                 (port.name.clone(), escape_controls(&port.to_string()))
             }

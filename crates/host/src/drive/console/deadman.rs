@@ -35,6 +35,9 @@ pub(super) struct Deadman {
     own_ms: Option<u16>,
     /// True while `deadman` has its value for driving, or is about to get it.
     pub(super) is_overridden: bool,
+    /// True from the start of a gait or a routine to its end. A routine may rest in between; the robot then wakes by
+    /// itself.
+    pub(super) is_under_way: bool,
 }
 
 impl Deadman {
@@ -45,10 +48,22 @@ impl Deadman {
     ) -> (&'static [DeadmanLine], &'static [DeadmanLine]) {
         let line = line.to_ascii_lowercase();
         let word = line.split_whitespace().next().unwrap_or_default();
-        if matches!(word, "cal" | "save") && self.is_overridden {
+        match word {
             // `cal` shows the setting and `save` stores it; both therefore need the robot's own value. The driving
             // value is set again afterwards, because the robot may have started to walk since its last status.
-            return (&[DeadmanLine::RestoreForOneLine], &[DeadmanLine::Set]);
+            "cal" | "save" if self.is_overridden => {
+                return (&[DeadmanLine::RestoreForOneLine], &[DeadmanLine::Set]);
+            }
+            // These lines replace the value for driving. If `load` is refused, the robot keeps its own value.
+            "deadman" if self.is_overridden => return (&[], &[DeadmanLine::Set]),
+            "load" | "factory" if self.is_overridden => {
+                return (
+                    &[DeadmanLine::RestoreForOneLine],
+                    &[DeadmanLine::Read, DeadmanLine::Set],
+                );
+            }
+            "load" | "factory" => self.own_ms = None,
+            _ => {}
         }
         // Only a gait or a routine makes the robot walk; their names are not among the console's words.
         if word == "stand" || Word::find(word.as_bytes()).is_some() || self.is_overridden {
@@ -61,20 +76,29 @@ impl Deadman {
         }
     }
 
-    /// Returns the text of the line to send; [`DeadmanLine::Restore`] also marks the setting as restored.
-    pub(super) fn apply_line(&mut self, deadman_line: DeadmanLine) -> String {
-        let own_ms = self.own_ms.unwrap_or(0);
-        let ms = match deadman_line {
-            DeadmanLine::Read => return "cal".to_owned(),
-            DeadmanLine::Set if own_ms == 0 => DRIVING_DEADMAN_MS,
-            DeadmanLine::Set => own_ms.min(DRIVING_DEADMAN_MS),
-            DeadmanLine::RestoreForOneLine => own_ms,
-            DeadmanLine::Restore => {
-                self.is_overridden = false;
-                own_ms
+    /// Returns the text of the line to send; [`DeadmanLine::Restore`] also marks the setting as restored. `None` if the
+    /// robot's own setting is unknown, because the program ends, or the user stops the robot, before the robot has
+    /// reported it: the setting has not been replaced then.
+    pub(super) fn apply_line(&mut self, deadman_line: DeadmanLine) -> Option<String> {
+        match deadman_line {
+            DeadmanLine::Read => {
+                self.own_ms = None;
+                return Some("cal".to_owned());
             }
+            DeadmanLine::Restore => self.is_overridden = false,
+            DeadmanLine::Set | DeadmanLine::RestoreForOneLine => {}
+        }
+        let ms = match (deadman_line, self.own_ms?) {
+            (DeadmanLine::Set, 0) => DRIVING_DEADMAN_MS,
+            (DeadmanLine::Set, own_ms) => own_ms.min(DRIVING_DEADMAN_MS),
+            (_, own_ms) => own_ms,
         };
-        format!("deadman {ms}")
+        Some(format!("deadman {ms}"))
+    }
+
+    /// True if the robot has not reported its own setting, or if the line with the setting was lost.
+    pub(super) fn is_unknown(&self) -> bool {
+        self.own_ms.is_none()
     }
 
     /// Parses a line of the answer to `cal`; returns false if the line cannot belong to that answer.
@@ -90,13 +114,13 @@ impl Deadman {
             .any(|start| line.starts_with(start))
     }
 
-    /// Updates the record of the robot's own setting after the robot has accepted a user's line.
+    /// Records the effect of a user's line that the robot has accepted.
     pub(super) fn record_accepted_line(&mut self, line: &str) {
         let line = line.to_ascii_lowercase();
         match line.split_whitespace().collect::<Vec<_>>()[..] {
             ["deadman", ms] => self.own_ms = ms.parse().ok(),
-            ["load" | "factory"] => self.own_ms = None,
-            _ => {}
+            [word, ..] => self.is_under_way |= Word::find(word.as_bytes()).is_none(),
+            [] => {}
         }
     }
 }

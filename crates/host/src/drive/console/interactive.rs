@@ -99,26 +99,31 @@ impl Dialogue {
         board: &mut Connection,
         mut show: impl FnMut(&str) -> io::Result<()>,
     ) -> Result<(), DialogueError> {
-        if let Some(line) = self.session.take_next_line(self.clock.now()) {
-            board.link.send(&line)?;
-        }
+        let line = self.session.take_next_line(self.clock.now());
+        let sent = line.map_or(Ok(()), |line| board.link.send(&line));
+        self.record_events()?;
+        sent?;
         // Reads at most 51 lines, because no keys are handled in the meantime.
         for timeout in std::iter::once(ROBOT_READ_TIMEOUT).chain([Duration::ZERO; 50]) {
             let Some(line) = board.link.read_line(timeout)? else {
                 break;
             };
-            if let Some(line) = self.session.receive(&line) {
+            let shown_line = self.session.receive(&line);
+            // The port may fail at the next line.
+            self.record_events()?;
+            if let Some(line) = shown_line {
                 show(&line)?;
             }
         }
-        let overdue_message = self.session.time_out_request(self.clock.now());
-        for event in self.session.take_events() {
-            self.record(event)?;
-        }
-        if let Some(message) = overdue_message {
+        if let Some(message) = self.session.time_out_request(self.clock.now()) {
             show(&message)?;
         }
         Ok(())
+    }
+
+    fn record_events(&mut self) -> Result<(), Failure> {
+        let events = self.session.take_events();
+        events.into_iter().try_for_each(|event| self.record(event))
     }
 
     fn record(&mut self, event: Event) -> Result<(), Failure> {
@@ -161,6 +166,9 @@ impl Dialogue {
                 }
             }
             let outcome = self.exchange_lines(&mut board, |line| writeln!(out, "{line}"));
+            if matches!(outcome, Err(DialogueError::Link(LinkError::Gone))) {
+                self.record(Event::Gone)?;
+            }
             outcome.map_err(|error| board.to_failure(error))?;
         }
         if self.session.is_driven() {
@@ -209,13 +217,16 @@ impl Dialogue {
             let prefix = if self.recorder.is_some() { "REC  " } else { "" };
             screen.draw(&format!("{prefix}{status}"), &prompt)?;
         }
-        if let (Some(board), Some(line)) = (&mut board, self.session.restore_deadman()) {
+        // After a failure, the `deadman` for driving stays set, so that the robot stops by itself.
+        let has_quit = fatal_failure.is_none();
+        if has_quit && let (Some(board), Some(line)) = (&mut board, self.session.restore_deadman())
+        {
             let _ = board.link.ask(&line);
         }
         drop(screen);
         history::save(prompt.history());
-        let is_moving = self.session.status().is_some_and(Status::is_moving);
-        if is_moving && board.is_some() && !finder.is_simulated() {
+        let is_walking = self.session.status().is_some_and(Status::is_walking);
+        if has_quit && is_walking && board.is_some() && !finder.is_simulated() {
             // The terminal may be closed; a failed message is not an error.
             let _ = writeln!(io::stdout(), "the robot continues its gait");
         }
@@ -271,6 +282,9 @@ impl Dialogue {
         };
         match board.link.wait_for_robot() {
             Ok(banner) => {
+                if let Some(banner) = &banner {
+                    self.record(Event::Note(banner.clone()))?;
+                }
                 let banner = banner.unwrap_or_default();
                 screen.print(&format!("{} is connected again: {banner}", board.name))?;
                 let is_recorded = self.recorder.is_some();

@@ -240,8 +240,12 @@ fn to_link_error(error: io::Error) -> LinkError {
 
 /// True if an operating system error means that the board was unplugged.
 pub(crate) fn is_port_gone(error: &io::Error) -> bool {
-    // EIO, ENXIO and ENODEV: Linux returns them for a USB port whose board was unplugged.
-    matches!(error.raw_os_error(), Some(5 | 6 | 19))
+    // Linux returns EIO, ENXIO or ENODEV for a USB port whose board was unplugged. Windows returns ERROR_ACCESS_DENIED,
+    // ERROR_INVALID_HANDLE, ERROR_BAD_COMMAND, ERROR_GEN_FAILURE, ERROR_NO_SUCH_DEVICE, ERROR_OPERATION_ABORTED or
+    // ERROR_DEVICE_NOT_CONNECTED.
+    let code = error.raw_os_error();
+    matches!(code, Some(5 | 6 | 19))
+        || cfg!(windows) && matches!(code, Some(22 | 31 | 433 | 995 | 1167))
         || matches!(
             error.kind(),
             ErrorKind::BrokenPipe

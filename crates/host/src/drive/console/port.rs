@@ -87,6 +87,8 @@ pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     result.map_err(|error| match error.kind() {
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => PortError::Forbidden(name.to_owned()),
         ErrorKind::Io(io::ErrorKind::NotFound) => missing_port_error(name),
+        // Windows reports a missing port and a busy port by the same error.
+        ErrorKind::NoDevice if cfg!(windows) && !is_listed(name) => missing_port_error(name),
         ErrorKind::NoDevice => busy_error("another program".to_owned()),
         _ if cfg!(unix) && is_not_terminal(name) => PortError::NotAPort(name.to_owned()),
         _ => PortError::Other {
@@ -107,6 +109,14 @@ pub(in crate::drive) fn may_open(name: &str) -> bool {
 #[cfg(not(target_os = "linux"))]
 pub(in crate::drive) fn may_open(_: &str) -> bool {
     true
+}
+
+/// True if Windows lists a port of this name. Upper and lower case are equivalent.
+fn is_listed(name: &str) -> bool {
+    let name = name.trim_start_matches(r"\\.\");
+    let ports = serialport::available_ports().unwrap_or_default();
+    let mut ports = ports.iter();
+    ports.any(|port| port.port_name.eq_ignore_ascii_case(name))
 }
 
 fn missing_port_error(name: &str) -> PortError {

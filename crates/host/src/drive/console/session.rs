@@ -146,9 +146,14 @@ impl Session {
 
     /// Queues a user's line.
     pub fn queue(&mut self, line: &str) {
-        if line.split_whitespace().next() == Some("watch") {
+        let word = line.split_whitespace().next();
+        if word.is_some_and(|word| word.eq_ignore_ascii_case("watch")) {
             self.watches_poses = false;
         }
+        // The line may start a gait, so `deadman` stays set until the next status.
+        let is_restore =
+            |request: &Request| matches!(request, Request::Deadman(DeadmanLine::Restore));
+        self.queue.retain(|request| !is_restore(request));
         let (before, after) = match &mut self.deadman {
             Some(deadman) => deadman.plan_lines(line),
             None => (&[][..], &[][..]),
@@ -162,9 +167,9 @@ impl Session {
     /// Returns the line that restores the robot's own `deadman` before the program ends, so that the robot continues
     /// its gait; `None` if `deadman` is not set.
     pub fn restore_deadman(&mut self) -> Option<String> {
-        let deadman = self.deadman.as_mut()?;
-        let is_overridden = deadman.is_overridden;
-        is_overridden.then(|| deadman.apply_line(DeadmanLine::Restore))
+        let deadman = self.deadman.as_mut();
+        let overridden = deadman.filter(|deadman| deadman.is_overridden)?;
+        overridden.apply_line(DeadmanLine::Restore)
     }
 
     /// Makes the next `status` due at once; queued lines still come first.
@@ -226,15 +231,20 @@ impl Session {
             }
             Request::Status => "status".to_owned(),
             Request::Watch => "watch 1".to_owned(),
-            Request::Deadman(line) => self.deadman.as_mut()?.apply_line(*line),
+            Request::Deadman(line) => self.deadman.as_mut()?.apply_line(*line)?,
         };
         self.pending_request = Some((request, now));
         Some(line)
     }
 
-    /// Drops the queued lines, because the robot has not confirmed its `deadman` and would keep walking out of range.
-    /// Returns the message to the user.
-    fn drop_queued_lines(&mut self) -> String {
+    /// Handles a line about `deadman` that the robot has not confirmed; returns the message to the user.
+    /// [`DeadmanLine::Restore`] will be sent again. After any other line, drops the queued lines, because the robot
+    /// would keep walking out of range.
+    fn handle_unconfirmed_deadman(&mut self, deadman_line: DeadmanLine) -> String {
+        if let (DeadmanLine::Restore, Some(deadman)) = (deadman_line, &mut self.deadman) {
+            deadman.is_overridden = true;
+            return "(the robot has not confirmed its own `deadman` setting)".to_owned();
+        }
         for request in std::mem::take(&mut self.queue) {
             if let Request::Line(line) = request {
                 self.user_line_count += 1;
@@ -249,8 +259,12 @@ impl Session {
 
     /// Queues the line that restores the robot's own `deadman` if the robot neither walks nor is about to walk.
     fn end_driving(&mut self) {
-        let is_walking = self.status.as_ref().is_some_and(Status::is_moving);
-        if self.is_driven() && !is_walking && self.queue.is_empty() {
+        let (Some(deadman), Some(status)) = (&mut self.deadman, &self.status) else {
+            return;
+        };
+        let is_resting = status.gait == "rest" && status.fault.is_none();
+        deadman.is_under_way = status.is_walking() || deadman.is_under_way && is_resting;
+        if deadman.is_overridden && !deadman.is_under_way && self.queue.is_empty() {
             let restore = Request::Deadman(DeadmanLine::Restore);
             self.queue.push_back(restore);
         }
@@ -259,6 +273,9 @@ impl Session {
     /// Handles a line from the robot; returns the text to show to the user, if any.
     pub fn receive(&mut self, line: &str) -> Option<String> {
         let visible_line = Some(line.to_owned());
+        if let Some(deadman) = &mut self.deadman {
+            deadman.is_under_way &= !matches!(line, "# done" | "ok rest" | "ok stop");
+        }
         let is_stop_refused = self.unanswered_stop.is_some() && is_stop_refusal(line);
         if (line == "ok stop" || is_stop_refused) && !self.is_stop_pending() {
             let is_visible = self.handle_stop_answer(line);
@@ -274,9 +291,17 @@ impl Session {
             self.events.push(Event::from_note(line));
             if line.starts_with(BANNER_START) {
                 // The board was reset and will not answer the request.
-                self.pending_request = None;
+                if let Some((Request::Line(sent_line), _)) = self.pending_request.take() {
+                    self.record_failure(sent_line, "no answer");
+                }
                 self.is_watch_due = self.watches_poses;
                 self.deadman = self.deadman.take().map(|_| Deadman::default());
+                // The queued lines about `deadman` belong to the time before the reset.
+                for request in std::mem::take(&mut self.queue) {
+                    if let Request::Line(queued_line) = request {
+                        self.queue(&queued_line);
+                    }
+                }
             }
             return visible_line.filter(|_| !(self.watches_poses && line.starts_with("# t=")));
         }
@@ -290,8 +315,14 @@ impl Session {
                 self.end_driving();
                 return None;
             }
-            Some((Request::Deadman(_), _)) if line.starts_with("err ") => {
-                return Some(self.drop_queued_lines());
+            Some((Request::Deadman(deadman_line), _)) if line.starts_with("err ") => {
+                let message = self.handle_unconfirmed_deadman(deadman_line);
+                return Some(format!("{line} {message}"));
+            }
+            Some((Request::Deadman(DeadmanLine::Read), _))
+                if self.deadman.as_ref().is_some_and(Deadman::is_unknown) =>
+            {
+                return Some(self.handle_unconfirmed_deadman(DeadmanLine::Read));
             }
             Some((Request::Deadman(_) | Request::Watch, _)) => return None,
             Some((Request::Line(sent_line), _)) if line.starts_with("err ") => {
@@ -310,7 +341,8 @@ impl Session {
 
     /// True if a `stop` that was sent as a normal line, for example from a script, is unanswered.
     fn is_stop_pending(&self) -> bool {
-        matches!(&self.pending_request, Some((Request::Line(line), _)) if line == "stop")
+        let is_stop = |line: &str| line.eq_ignore_ascii_case("stop");
+        matches!(&self.pending_request, Some((Request::Line(line), _)) if is_stop(line))
     }
 
     /// Handles an answer to `stop`; returns false if no `stop` is unanswered.
@@ -350,7 +382,7 @@ impl Session {
                 self.record_failure(line, "no answer");
                 message
             }
-            Request::Deadman(_) => self.drop_queued_lines(),
+            Request::Deadman(deadman_line) => self.handle_unconfirmed_deadman(deadman_line),
             Request::Status | Request::Watch if self.is_silent => return None,
             Request::Status | Request::Watch => {
                 self.is_silent = true;

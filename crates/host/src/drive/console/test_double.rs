@@ -17,7 +17,9 @@ pub struct ConsoleDouble {
     /// The robot's unread output.
     output: VecDeque<u8>,
     /// All text that the link has sent to the robot.
-    pub sent_text: String,
+    sent_text: String,
+    /// The line after which the board is unplugged.
+    last_line: &'static str,
 }
 
 /// The robot.toml of the paper's robot.
@@ -25,8 +27,13 @@ pub const PAPER_TOML: &str = include_str!("../../../../../robots/paper.toml");
 
 /// Connects to the paper's robot and reads its banner.
 pub fn connect_paper_robot() -> Link<ConsoleDouble> {
+    connect_paper_robot_until("unplug")
+}
+
+/// Connects as [`connect_paper_robot`] does, to a board that is unplugged when it gets the line `last_line`.
+pub fn connect_paper_robot_until(last_line: &'static str) -> Link<ConsoleDouble> {
     let robot = Robot::parse(PAPER_TOML).expect("the robot.toml is valid");
-    let mut link = Link::new(ConsoleDouble::power_on(&robot));
+    let mut link = Link::new(ConsoleDouble::power_on(&robot, last_line));
     link.wait_for_robot().expect("the robot sends a banner");
     link
 }
@@ -37,11 +44,12 @@ pub fn read_calibration(link: &mut Link<ConsoleDouble>) -> Calibration {
 }
 
 impl ConsoleDouble {
-    fn power_on(robot: &Robot) -> Self {
+    fn power_on(robot: &Robot, last_line: &'static str) -> Self {
         Self {
             running_robot: RunningRobot::power_on(*robot.firmware()),
             output: VecDeque::new(),
             sent_text: String::new(),
+            last_line,
         }
     }
 
@@ -56,6 +64,9 @@ impl ConsoleDouble {
 
 impl Read for ConsoleDouble {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.sent_text.lines().next_back() == Some(self.last_line) {
+            return Err(ErrorKind::BrokenPipe.into());
+        }
         if self.output.is_empty() {
             self.running_robot.run_frame();
             self.collect_output();

@@ -68,7 +68,17 @@ fn to_usb_port(port: SerialPortInfo) -> Option<UsbPort> {
     })
 }
 
+/// Removes the ports with another chip than `chip`, unless this is `None`.
+pub(super) fn retain_chip(ports: &mut Vec<UsbPort>, chip: Option<&[u16; 2]>) {
+    ports.retain(|port| chip.is_none_or(|chip| port.chip() == *chip));
+}
+
 impl UsbPort {
+    /// The USB chip's vendor ID and product ID.
+    pub fn chip(&self) -> [u16; 2] {
+        [self.vendor_id, self.product_id]
+    }
+
     /// True if the chip has one of Arduino's vendor IDs.
     pub fn has_arduino_vendor_id(&self) -> bool {
         ARDUINO_VENDOR_IDS.contains(&self.vendor_id)
@@ -142,6 +152,16 @@ mod tests {
         ] {
             assert_eq!(choose_from(ports), Ok(format!("/dev/{chosen}")));
         }
+    }
+
+    #[test]
+    fn the_port_of_another_chip_does_not_replace_an_unplugged_board() {
+        let [uno, adapter] = [port("ttyACM0", 0x2341), port("ttyUSB0", 0x0403)];
+        let mut ports = vec![adapter.clone()];
+        retain_chip(&mut ports, None);
+        assert_eq!(ports, [adapter]);
+        retain_chip(&mut ports, Some(&uno.chip()));
+        assert!(ports.is_empty(), "{ports:?}");
     }
 
     #[test]

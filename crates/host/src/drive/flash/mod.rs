@@ -7,7 +7,7 @@ pub mod image_source;
 mod serial_board;
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use lizard_robot::RobotIdentity;
@@ -129,7 +129,11 @@ fn choose_port(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
 fn may_be_nano(ports: &[UsbPort], name: &str) -> bool {
     // The name may be a symbolic link, for example in /dev/serial/by-id.
     let target = std::fs::canonicalize(name).unwrap_or_else(|_| name.into());
-    let port = ports.iter().find(|port| target == Path::new(&port.name));
+    // macOS has two names for a port, of which the list contains one, and Windows ignores the case.
+    let target = target.to_string_lossy().replace("/dev/tty.", "/dev/cu.");
+    let target = target.trim_start_matches(r"\\.\");
+    let mut ports = ports.iter();
+    let port = ports.find(|port| target.eq_ignore_ascii_case(&port.name));
     port.is_some_and(|port| !port.has_arduino_vendor_id())
 }
 
@@ -141,9 +145,10 @@ fn write_image(
     target: Target,
     prints_json: bool,
 ) -> Result<(SerialBoard, PageCounts), Failure> {
-    // A closed standard output does not stop the upload.
+    // Closed standard streams do not stop the upload.
+    let print_error = |line: &str| _ = writeln!(io::stderr(), "{line}");
     let print_line = |line: &str| match prints_json {
-        true => eprintln!("{line}"),
+        true => print_error(line),
         false => _ = writeln!(io::stdout(), "{line}"),
     };
     let bar = create_progress_bar(0, "{msg} {wide_bar} {percent} %");
@@ -157,9 +162,13 @@ fn write_image(
             next_kind,
         } => bar.suspend(|| match (tried_kind.baud(), next_kind.baud()) {
             (old_baud, new_baud) if old_baud != new_baud => {
-                eprintln!("lizard: no answer at {old_baud} baud; retrying at {new_baud} baud");
+                print_error(&format!(
+                    "lizard: no answer at {old_baud} baud; retrying at {new_baud} baud"
+                ));
             }
-            _ => eprintln!("lizard: {error}; resetting the board for another attempt"),
+            _ => print_error(&format!(
+                "lizard: {error}; resetting the board for another attempt"
+            )),
         }),
         Event::Progress(step, done_count, total) => {
             bar.set_message(match step {
@@ -236,6 +245,13 @@ mod tests {
         assert!(!may_be_nano(&ports, "/dev/ttyACM7"));
         assert!(may_be_nano(&ports, "/dev/ttyUSB7"));
         assert!(!may_be_nano(&ports, "/dev/pts/7"), "it is not a USB port");
+        for (listed_name, name) in [
+            ("COM7", "com7"),
+            ("COM7", r"\\.\COM7"),
+            ("/dev/cu.usbserial-7", "/dev/tty.usbserial-7"),
+        ] {
+            assert!(may_be_nano(&[port(listed_name, 0x1a86)], name), "{name}");
+        }
     }
 
     #[test]

@@ -103,7 +103,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     files::write(&args.file, text.as_bytes())?;
     // A stream such as /dev/stdout must contain only the model, without the message.
-    if !args.file.is_file() {
+    if files::is_standard_output(&args.file) || !args.file.is_file() {
         return Ok(());
     }
     let mut out = io::stdout().lock();

@@ -3,11 +3,12 @@
 mod performance;
 mod reach;
 mod singularity;
-mod stroke;
+mod slider_travel;
 mod workspace;
 
+use std::fs;
+use std::io::{self, Write};
 use std::path::PathBuf;
-use std::{fs, io};
 
 use lizard_robot::Robot;
 use serde::Serialize;
@@ -76,7 +77,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         json::write_line(&mut io::stdout().lock(), &chart_files)?;
     } else {
         for file in chart_files.iter().flat_map(|chart| &chart.files) {
-            println!("{}", file.display());
+            writeln!(io::stdout(), "{}", file.display())?;
         }
     }
     Ok(())
@@ -94,7 +95,7 @@ pub fn draw_charts(robot: &Robot) -> Vec<(&'static str, String)> {
             performance::draw_performance(&points, GRID_STEP),
         ),
         ("singularity", singularity::draw_singularities(robot)),
-        ("stroke", stroke::draw_stroke(robot)),
+        ("stroke", slider_travel::draw_slider_travel(robot)),
     ]
 }
 

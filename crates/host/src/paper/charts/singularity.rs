@@ -5,7 +5,7 @@ use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
 use super::square_plot;
-use crate::shared::plot::{Axis, BLUES, ColourScale, IMPOSSIBLE_COLOUR, Plot, draw_legend_entry};
+use crate::shared::plot::{Axis, BLUES, ColourScale, EXCLUDED_COLOUR, Plot, draw_legend_entry};
 use crate::shared::shapes::{
     DARK, add_outline, add_title, circle, cross, rectangle, render_svg, text_start,
 };
@@ -58,7 +58,7 @@ pub fn draw_singularities(robot: &Robot) -> String {
     for (plot, cell_count) in [(&left_plot, 360), (&right_plot, 200)] {
         group = plot.draw_map(group, (cell_count, cell_count), |x, y| {
             let margin = compute_min_margin(robot, x, y);
-            Some(margin.map_or(IMPOSSIBLE_COLOUR, |margin| scale.colour(margin)))
+            Some(margin.map_or(EXCLUDED_COLOUR, |margin| scale.colour(margin)))
         });
     }
     group = draw_singular_curves(group, &left_plot, robot);
@@ -103,13 +103,13 @@ pub fn draw_singularities(robot: &Robot) -> String {
         group = draw_legend_entry(group, (930.0, y), colour, "", label);
     }
     let legend_text = |text: &str, x: f64, y: f64| text_start(text, (x, y), 15.0);
-    let impossible_label = "below the robot's limits, or cranks crossed";
+    let excluded_label = "below the robot's limits, or cranks crossed";
     let margins_note = "Margins: type 2, type 1 and front legs.";
     group = group
         .add(cross((947.0, 696.0), 7.0, DARK, 3.0))
         .add(legend_text("crank tips coincide (type 2)", 974.0, 701.0))
-        .add(rectangle((930.0, 716.0), (34.0, 18.0), IMPOSSIBLE_COLOUR))
-        .add(legend_text(impossible_label, 974.0, 730.0))
+        .add(rectangle((930.0, 716.0), (34.0, 18.0), EXCLUDED_COLOUR))
+        .add(legend_text(excluded_label, 974.0, 730.0))
         .add(legend_text(margins_note, 930.0, 762.0));
     group = add_title(
         group,

@@ -6,7 +6,7 @@ use lizard_robot::Robot;
 use svg::node::element::{Circle, Group};
 
 use super::square_plot;
-use crate::shared::plot::{Axis, ColourScale, IMPOSSIBLE_COLOUR, Plot, VIRIDIS, draw_legend_entry};
+use crate::shared::plot::{Axis, ColourScale, EXCLUDED_COLOUR, Plot, VIRIDIS, draw_legend_entry};
 use crate::shared::shapes::{DARK, GREY, add_outline, add_title, render_svg, text_start};
 
 /// Width and height of the page, px.
@@ -94,7 +94,7 @@ pub fn draw_conditioning(robot: &Robot) -> String {
             .contains(point)
             .then(|| match five_bar.pose_at_point(point) {
                 Ok(pose) if y >= 0.0 && pose.gap.x > 0.0 => scale.colour(lci(&five_bar, point)),
-                _ => IMPOSSIBLE_COLOUR,
+                _ => EXCLUDED_COLOUR,
             })
     });
     let performance = Performance::compute(&five_bar, 64);

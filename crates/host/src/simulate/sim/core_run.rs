@@ -76,17 +76,18 @@ pub struct CoreOutput {
     pub text: String,
 }
 
-/// Runs a robot's core on a recording: `received` are the bytes that reached the UNO, `contacts` are the contacts that
-/// closed and opened, `first_pulse_cycle` is the cycle of A1's first pulse, and `frame_count` is the number of frames
-/// from this pulse on. The result is exact except for the effects of the lines that [`find_undetermined_lines`] returns.
+/// Runs a robot's core on a recording: `received` are the bytes that reached the UNO, `contact_changes` are the changes
+/// of the robot's contacts, `first_pulse_cycle` is the cycle of A1's first pulse, and `frame_count` is the number of
+/// frames from this pulse on. The result is exact except for the effects of the lines that [`find_undetermined_lines`]
+/// returns.
 pub fn play(
     robot: Robot<'static>,
     received: &[SerialByte],
-    contacts: &[ContactChange],
+    contact_changes: &[ContactChange],
     first_pulse_cycle: u64,
     frame_count: usize,
 ) -> CoreOutput {
-    let mut contacts = contacts.iter().peekable();
+    let mut changes = contact_changes.iter().peekable();
     let silent_count = count_frames_before_waking(robot);
     let mut run = power_on(robot);
     let mut received = received.iter().peekable();
@@ -111,7 +112,7 @@ pub fn play(
                 break;
             }
         }
-        while let Some(change) = contacts.next_if(|change| change.ms * CYCLES_PER_MS < tick_cycle) {
+        while let Some(change) = changes.next_if(|change| change.ms * CYCLES_PER_MS < tick_cycle) {
             let bit = 1 << change.pin;
             if change.is_closed {
                 run.board.closed_pins |= bit;

@@ -43,9 +43,9 @@ use session::{DialogueLine, Event, Recording};
 
 /// Run the firmware on a simulated Arduino UNO
 ///
-/// By default, plays boot, the first moving gait, the gait that turns most, stop and rest.
-/// Prints the dialogue, a table of the servos and the predicted displacement, and draws
-/// servo angles and footfalls. Time is simulated: ten minutes take a few seconds.
+/// By default, the robot starts, performs its first moving gait and the gait that turns most,
+/// stops and rests. Prints the dialogue, a table of the servos and the predicted displacement,
+/// and draws servo angles and footfalls. Time is simulated: ten minutes take a few seconds.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// The firmware, an ELF that contains this robot [default: the built-in firmware]
@@ -57,7 +57,7 @@ pub struct Args {
     /// Play a file with lines of the form `<ms since power-on> <command>`
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
-    /// Simulated time in seconds [default: 12, or a second after the script]
+    /// Simulated time in seconds [default: 12, or until a second after the script's last line]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     duration: Option<f64>,
     /// Press a robot's input for 0.2 s, or for a time span, in seconds since power-on:
@@ -82,8 +82,7 @@ pub struct Args {
     #[arg(long, value_name = "LINK", num_args = 0..=1,
           conflicts_with_all = ["gait", "script", "duration", "all", "json", "svg"])]
     pty: Option<Option<PathBuf>>,
-    /// With --pty: a new board with this boot loader (ELF) and no firmware, so that `make
-    /// flash` can write it
+    /// With --pty: a new board with this boot loader (ELF) and no firmware, to try `lizard flash`
     #[cfg(target_os = "linux")]
     #[arg(long, value_name = "FILE", requires = "pty", conflicts_with = "elf")]
     boot_loader: Option<PathBuf>,
@@ -93,7 +92,7 @@ pub struct Args {
     #[arg(long, value_name = "BAUD", requires = "pty", conflicts_with = "boot_loader",
           value_parser = whole_number_parser::<u32>(300, 1_000_000))]
     radio: Option<u32>,
-    /// With --radio: the seed of the random numbers; the same seed gives the same transmission
+    /// With --radio: the seed of the random numbers; the same seed disturbs the same packets
     #[cfg(target_os = "linux")]
     #[arg(long, value_name = "N", requires = "radio", default_value_t = 0,
           value_parser = whole_number_parser(0, u64::MAX))]
@@ -112,7 +111,7 @@ enum FidelityArg {
     Stock,
 }
 
-/// Longest run, s: a day.
+/// Longest simulated time, s: a day.
 const MAX_SECONDS: f64 = 86_400.0;
 
 /// Parses a time in seconds, which must be greater than 0 and at most [`MAX_SECONDS`].
@@ -135,7 +134,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         FidelityArg::Stock => (Fidelity::Stock, "stock"),
     };
     let robot = args.robot.load()?;
-    let contacts = press::list_contact_changes(&args.press, &robot)?;
+    let contact_changes = press::list_contact_changes(&args.press, &robot)?;
     #[cfg(target_os = "linux")]
     if let Some(link) = &args.pty {
         let mut uno = match &args.boot_loader {
@@ -154,11 +153,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
                 ..RadioLink::default()
             })
         });
-        return served::serve_until_interrupted(uno, link.as_deref(), radio, &contacts);
+        return served::serve_until_interrupted(uno, link.as_deref(), radio, &contact_changes);
     }
     let mut script = choose_script(&args, &robot)?;
     files::check_replaceable(&args.svg)?;
-    script.contacts = contacts;
+    script.contact_changes = contact_changes;
     let Firmware { name, image } =
         firmware::select_firmware(args.elf.as_deref(), &args.robot, &robot)?;
     let mut uno = Uno::with_image(image, fidelity);
@@ -166,7 +165,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
     let spinner = create_spinner("analysing every frame");
     let spans = spans::list_command_spans(&script, &recording.answers);
-    let commanded_widths = compute_core_widths(&robot, &recording, &script.contacts);
+    let commanded_widths = compute_commanded_widths(&robot, &recording, &script.contact_changes);
     let run = Run::new(&robot, &recording.frames);
     let picture = timeline::draw(run, &spans, &timeline::SIMULATED_CAPTION);
     files::write(&args.svg, picture.as_bytes())?;
@@ -184,7 +183,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         ram: RamUse::measure(&uno),
         overruns: uno.overrun_count(),
         resets: uno.watchdog_resets(),
-        ended: describe_end(&recording.state),
+        ended: describe_firmware_state(&recording.state),
         svg: args.svg.display().to_string(),
         dialogue,
         frames: run,
@@ -202,7 +201,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
 }
 
-/// Plays the script. Prints the dialogue as it happens; with `--json`, returns its lines instead.
+/// Plays the script. Prints the dialogue as it happens; with `--json`, returns the dialogue's lines instead.
 fn record(
     uno: &mut Uno,
     robot: &Robot,
@@ -256,32 +255,32 @@ pub(crate) fn play_with_progress(
     Ok(recording)
 }
 
-/// Computes the pulse widths, in cycles, that the firmware's core requests in each frame; `None` unless the firmware's
+/// Computes the pulse widths, in cycles, that the firmware's core commands in each frame; `None` unless the firmware's
 /// banner shows that the firmware and this program have the same core and tables.
-fn compute_core_widths(
+fn compute_commanded_widths(
     robot: &Robot,
     recording: &Recording,
-    contacts: &[ContactChange],
+    contact_changes: &[ContactChange],
 ) -> Option<Vec<[u16; 4]>> {
     let log = &recording.frames;
     let output = core_run::play(
         *robot.firmware(),
         &recording.received_by_uno,
-        contacts,
+        contact_changes,
         log.first_start,
         log.widths.len(),
     );
-    let is_same_source = recording.banner.as_deref()? == output.text.lines().next()?;
-    is_same_source.then_some(output.widths)
+    let has_same_core = recording.banner.as_deref()? == output.text.lines().next()?;
+    has_same_core.then_some(output.widths)
 }
 
-/// Describes the final state of the firmware.
-fn describe_end(state: &State) -> String {
+/// Describes a state of the firmware.
+fn describe_firmware_state(state: &State) -> String {
     match state {
         State::Alive => "the firmware is alive".to_owned(),
         State::Halted => "the firmware sleeps with interrupts off, forever".to_owned(),
         State::Crashed { pc, message } => {
-            // simavr uses this message for an unknown reason.
+            // simavr gives only the name of its function.
             let reason = match message.as_str() {
                 "avr_sadly_crashed" => "no such instruction or address",
                 known_reason => known_reason,

@@ -9,14 +9,14 @@ use super::press::ContactChange;
 pub struct Step {
     /// Milliseconds since power-on.
     pub ms: u64,
-    /// The command line without its line end.
+    /// The command line without its line end, in lower case: the robot does not distinguish upper and lower case.
     pub command: String,
 }
 
 impl Step {
     /// Creates a step with a command at `ms` milliseconds since power-on.
     pub fn new(ms: u64, command: impl Into<String>) -> Self {
-        let command = command.into();
+        let command = command.into().to_ascii_lowercase();
         Self { ms, command }
     }
 }
@@ -27,7 +27,7 @@ pub struct Script {
     /// The commands in order of time.
     pub steps: Vec<Step>,
     /// The changes of the robot's contacts, in order of time.
-    pub contacts: Vec<ContactChange>,
+    pub contact_changes: Vec<ContactChange>,
     /// The end of the run, ms since power-on.
     pub end_ms: u64,
 }
@@ -41,11 +41,11 @@ impl Script {
     /// Shortest allowed length of a built-in script, ms.
     pub const MIN_MS: u64 = STAND_MS + CLOSING_MS + 1000;
 
-    /// Creates a script without contacts.
+    /// Creates a script without changes of contacts.
     pub fn new(steps: Vec<Step>, end_ms: u64) -> Self {
         Self {
             steps,
-            contacts: Vec::new(),
+            contact_changes: Vec::new(),
             end_ms,
         }
     }

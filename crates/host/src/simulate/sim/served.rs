@@ -1,4 +1,4 @@
-//! Serves the simulated UNO to other programs at a serial port of this machine.
+//! Serves the simulated UNO to other programs at a pseudo terminal, which they open as a serial port.
 
 use std::fs;
 use std::io::{self, Write};
@@ -26,7 +26,7 @@ pub(super) fn new_board(boot_loader: &Path, fidelity: Fidelity) -> Result<Uno, F
     Ok(Uno::with_boot_loader(image, fidelity))
 }
 
-/// Serves the UNO by cable or radio until a signal ends the program, and closes and opens its contacts at their times.
+/// Serves the UNO by cable or radio until a signal ends the program, and changes its contacts as scheduled.
 /// `link` becomes a symbolic link to the port, because the port's name differs from run to run; the link is removed at
 /// the end.
 ///
@@ -37,14 +37,14 @@ pub(super) fn serve_until_interrupted(
     mut uno: Uno,
     link: Option<&Path>,
     radio: Option<Radio>,
-    contacts: &[ContactChange],
+    contact_changes: &[ContactChange],
 ) -> Result<(), Failure> {
     let mut port = Port::new()
         .map_err(|error| Failure::Operation(format!("cannot open a pseudo terminal: {error}")))?;
     let reset_note = match radio {
         Some(radio) => {
             port = port.with_radio(radio);
-            "opening the port does not reset it"
+            "opening the port does not reset the UNO"
         }
         None => "opening the port resets the UNO",
     };
@@ -57,45 +57,46 @@ pub(super) fn serve_until_interrupted(
         }
         None => port.path().to_owned(),
     };
-    let mut out = io::stdout();
-    writeln!(out, "the simulated UNO is at {}", port_name.display())?;
-    writeln!(out, "{reset_note}; Ctrl-C ends this program")?;
+    // A closed standard output does not end the board.
+    let print_line = |line: &str| _ = writeln!(io::stdout(), "{line}");
+    print_line(&format!("the simulated UNO is at {}", port_name.display()));
+    print_line(&format!("{reset_note}; Ctrl-C ends this program"));
     let mut printed_state = State::Alive;
-    let mut contacts = contacts.iter().peekable();
+    let mut changes = contact_changes.iter().peekable();
     loop {
-        while let Some(change) = contacts.next_if(|change| change.ms as f64 <= uno.ms()) {
+        while let Some(change) = changes.next_if(|change| change.ms as f64 <= uno.ms()) {
             change.apply(&mut uno);
         }
-        let wait_ms = contacts
+        let wait_ms = changes
             .peek()
             .map_or(f64::MAX, |change| change.ms as f64 - uno.ms());
         let wait = Duration::from_secs_f64(wait_ms.clamp(1.0, 1_000.0) / 1_000.0);
         port.serve(&mut uno, wait)
             .map_err(|error| Failure::Operation(format!("the pseudo terminal: {error}")))?;
+        // Nobody reads these records, which would otherwise grow.
         uno.take_edges();
         uno.take_marks();
         if *uno.state() != printed_state {
             printed_state = uno.state().clone();
-            let description = describe_state(&printed_state, uno.flash(), &port_name);
-            writeln!(out, "{description}")?;
+            print_line(&describe_state(&printed_state, uno.flash(), &port_name));
         }
     }
 }
 
 /// Describes a new state of the chip. A new board has nothing in flash at the firmware's address, so the chip stops
 /// when the boot loader jumps there.
-fn describe_state(state: &State, flash: &[u8], port: &Path) -> String {
+fn describe_state(state: &State, flash: &[u8], port_name: &Path) -> String {
     match state {
         State::Crashed { .. } if flash.starts_with(&[0xff, 0xff]) => format!(
             "this board has no firmware yet; `lizard flash {}` writes it",
-            port.display()
+            port_name.display()
         ),
-        _ => super::describe_end(state),
+        _ => super::describe_firmware_state(state),
     }
 }
 
 /// Starts a thread that removes the link when a signal such as Ctrl-C ends the program, unless the link points to
-/// another file by then. The signal then has its default effect.
+/// another file by then. Afterwards the signal has its default effect.
 fn remove_link_on_signal(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
     let mut signals = Signals::new([SIGINT, SIGTERM, SIGHUP]).map_err(|error| {
         Failure::Operation(format!("cannot install the handler for Ctrl-C: {error}"))

@@ -82,14 +82,14 @@ pub fn play(
     };
     let mut frame_reader = FrameReader::new(servo_pins(robot));
     let mut steps = script.steps.iter().peekable();
-    let mut contacts = script.contacts.iter().peekable();
+    let mut changes = script.contact_changes.iter().peekable();
     let mut ms = 0;
     while ms < script.end_ms && *uno.state() == State::Alive {
         let slice_end_ms = (ms + FRAME_CYCLES / CYCLES_PER_MS).min(script.end_ms);
         loop {
             let next_command_ms = steps.peek().map_or(slice_end_ms, |step| step.ms);
             if let Some(change) =
-                contacts.next_if(|change| change.ms < slice_end_ms.min(next_command_ms))
+                changes.next_if(|change| change.ms < slice_end_ms.min(next_command_ms))
             {
                 uno.run_until_cycle(change.ms * CYCLES_PER_MS);
                 change.apply(uno);

@@ -61,7 +61,7 @@ mod tests {
 
     #[test]
     fn a_refused_command_and_a_command_without_motion_have_no_span() {
-        let script = Script::parse("1000 walk\n2000 pose 0 0 0 0\n3000 watch 5\n4000 rest")
+        let script = Script::parse("1000 Walk\n2000 pose 0 0 0 0\n3000 WATCH 5\n4000 rest")
             .expect("the script is valid");
         let answers = ["ok walk", "err 4 beyond travel", "ok watch 5", "ok rest"];
         let spans = list_command_spans(&script, &answers.map(|answer| Some(answer.to_owned())));

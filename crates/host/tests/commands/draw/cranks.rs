@@ -5,7 +5,7 @@ use lizard_robot::servo::SERVO_NAMES;
 
 use super::drawing::Point;
 use super::robot_files::{draw_robot, paper_toml, read_neutral_angle, read_robot_files};
-use crate::program::read_length;
+use crate::harness::read_length;
 
 #[test]
 fn each_crank_is_drawn_and_labelled_at_its_neutral_angle() {

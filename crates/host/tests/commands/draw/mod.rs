@@ -8,7 +8,7 @@ mod wires;
 use lizard_host::draw::{draw_cranks, draw_top_view, draw_wiring};
 use lizard_robot::Robot;
 
-use crate::program::read_file;
+use crate::harness::read_file;
 use drawing::Drawing;
 use robot_files::{paper_toml, read_robot_files};
 

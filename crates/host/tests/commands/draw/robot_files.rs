@@ -2,7 +2,7 @@
 
 use lizard_robot::Robot;
 
-use crate::program::{read_file, read_value, repo_root};
+use crate::harness::{read_file, read_value, repo_root};
 
 use super::drawing::Drawing;
 

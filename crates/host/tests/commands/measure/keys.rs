@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use crate::program::{Outcome, read_file, robot_path, run, scratch_folder};
+use crate::harness::{Outcome, read_file, robot_path, run, scratch_folder};
 
 /// Formats a gait's movement per cycle as `lizard measure --json` does; all errors are 0.05.
 fn format_gait(gait: &str, movement: [f64; 3]) -> Value {

@@ -14,7 +14,7 @@ use lizard_studio::render::{Pose, Studio};
 use lizard_studio::walk::{Variation, Walk, WalkSeries, paper_gait, true_displacement};
 use serde_json::Value;
 
-use crate::program::{
+use crate::harness::{
     Outcome, TemporaryRobot, assert_contains, expect_refusals, new_folder, read_file, robot_path,
     run_command, run_line, scratch_folder,
 };
@@ -129,7 +129,7 @@ fn a_video_of_a_walk_agrees_with_the_prediction_and_is_refused_as_another_gait()
     assert!(cycles >= 3.0 && (period - 1.0).abs() < 0.01);
     let each_cycle = object["each"].as_array().expect("the value is an array");
     assert_eq!(each_cycle.len(), cycles as usize);
-    let engine_results = read_file("tools/physics/figures.json");
+    let engine_results = read_file("tools/physics/walks.json");
     let engine_results: Value = serde_json::from_str(&engine_results).expect("the file is JSON");
     let mujoco = &engine_results["paper"]["walk"]["rigid, level"]["mujoco"];
     assert_eq!(&object["mujoco"], mujoco);

@@ -10,7 +10,7 @@ use lizard_studio::servo::Servo;
 use lizard_video::Frame;
 use serde_json::Value;
 
-use crate::program::{assert_contains, new_folder, read_file, read_value, run_line_in};
+use crate::harness::{assert_contains, new_folder, read_file, read_value, run_line_in};
 
 /// Returns a function that writes a frame as a JPEG file that is named after its time.
 fn frame_writer(folder: &Path) -> impl FnMut(f64, &Frame) {

@@ -4,7 +4,7 @@ use std::fs;
 
 use lizard_video::{Frame, read_tags, sheet};
 
-use crate::program::{assert_contains, run_line_in, scratch_folder};
+use crate::harness::{assert_contains, run_line_in, scratch_folder};
 
 /// Resolution of the rasterised page, pixels per mm.
 const PIXELS_PER_MM: f64 = 3.0;

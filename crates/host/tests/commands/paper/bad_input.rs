@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::HEADER;
-use crate::program::{
+use crate::harness::{
     assert_contains, expect_refusals, read_cases, repo_root, run_command, run_line, scratch_folder,
     with_paper,
 };
@@ -122,6 +122,20 @@ fn an_impossible_request_ends_with_code_1() {
         assert_eq!(outcome.code, Some(1), "{args}: {}", outcome.stderr);
         assert_contains(&outcome.stderr, message);
     }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_device_is_an_error() {
+    let script = format!(
+        "'{}' draw charts '{}' > /dev/full",
+        env!("CARGO_BIN_EXE_lizard"),
+        scratch_folder().join("charts-on-a-full-device").display()
+    );
+    let mut bash = std::process::Command::new("bash");
+    let outcome = run_command(bash.args(["-c", &script]), "");
+    assert_eq!(outcome.code, Some(1), "{}", outcome.stderr);
+    assert_contains(&outcome.stderr, "No space left");
 }
 
 #[cfg(unix)]

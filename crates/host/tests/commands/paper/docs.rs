@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use lizard_paper::errata::{SAMPLE_COUNT, evaluate_equations, format_markdown};
 
-use crate::program::{
+use crate::harness::{
     assert_contains, new_folder, read_file, read_length, repo_root, robot_path, run_line,
     run_line_in, scratch_folder, with_paper,
 };

@@ -4,7 +4,7 @@ use lizard_kinematics::{Vector, wrap};
 use serde_json::Value;
 
 use super::HEADER;
-use crate::program::{TemporaryRobot, assert_contains, run_line, with_paper};
+use crate::harness::{TemporaryRobot, assert_contains, run_line, with_paper};
 
 fn solve_rows(input: &str) -> Vec<Value> {
     run_line(&with_paper("pose --json"), input).expect_json_lines()

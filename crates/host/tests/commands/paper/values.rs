@@ -4,7 +4,7 @@ use lizard_robot::Robot;
 use serde_json::Value;
 
 use super::HEADER;
-use crate::program::{assert_contains, robot_path, run_line, with_paper};
+use crate::harness::{assert_contains, robot_path, run_line, with_paper};
 
 /// Runs a command with the paper's robot, and parses its output as JSON.
 fn run_paper_json(args: &str) -> Value {
@@ -191,7 +191,8 @@ fn the_conditioning_of_the_papers_gesture_look_is_at_least_0_7() {
     let look = robot.gait("look").expect("the robot has the gesture");
     for i in 0..1000 {
         let pose = look.pose(f64::from(i) / 1000.0);
-        let lci = robot.lizard().solve(&pose).unwrap().head.lci();
+        let head = robot.lizard().solve(&pose).unwrap().head;
+        let lci = head.conditioning_index();
         assert!(lci >= 0.7, "conditioning {lci}");
     }
 }

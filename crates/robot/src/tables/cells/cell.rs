@@ -6,11 +6,11 @@ use std::f64::consts::TAU;
 use lizard_core::numbers::units::STEPS_PER_TURN;
 use lizard_kinematics::Vector;
 
-/// Largest number of divisions of a cell into four before it counts as undetermined. The excess width of a bound over a
-/// cell is roughly proportional to the cell's size, so each division proves cells that are half as far from a limit.
+/// Largest number of successive divisions of a cell into four. A bound over a cell is too wide by an amount roughly
+/// proportional to the cell's size, so each division halves the distance from a limit at which a cell can be proven.
 const MAX_DIVISIONS: u32 = 4;
 
-/// Allowance for floating-point errors, both of a sine and of a length in mm. It is far larger than these errors.
+/// Allowance for floating-point errors, in a sine (no unit) and in a length (mm). It is far larger than these errors.
 pub(super) const ROUNDING_ALLOWANCE: f64 = 1e-9;
 
 /// A range of one servo's angles in the chassis frame, in 1/65536 turn.
@@ -20,7 +20,7 @@ pub(super) struct Span {
     pub max: f64,
 }
 
-/// The ranges of two servos' angles: first the servo of a map's rows, then the servo of its columns.
+/// The ranges of two servos' angles: first the servo of the rows of a map of cells, then the servo of its columns.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell(pub [Span; 2]);
 
@@ -35,7 +35,7 @@ pub(super) enum Verdict {
     Undetermined,
 }
 
-/// The verdicts on a single pose that clears a limit by these fractions of the error bound, for tests.
+/// The verdicts on a single pose at these distances from a limit, as fractions of the error bound; for tests.
 #[cfg(test)]
 pub(super) const VERDICTS_BY_CLEARANCE: [(f64, Verdict); 4] = [
     (1.01, Verdict::Proven),

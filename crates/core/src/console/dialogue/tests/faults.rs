@@ -44,7 +44,7 @@ fn boot_is_not_executed_while_the_guard_holds_the_robot() {
 #[test]
 fn without_a_robot_commands_that_need_one_are_refused_with_code_10() {
     let mut dialogue = Dialogue::with_flash(Region::new(&[]), VirtualBoard::default());
-    for line in ["stand", "pose 90 90 270 270", "cal", "walk 3"] {
+    for line in ["stand", "pose 90 90 270 270", "cal", "walk 3", "watch 1"] {
         assert_eq!(dialogue.send_line(line), "err 10 no robot in the flash");
     }
     assert_eq!(dialogue.status_value("fault"), "robot");
@@ -113,9 +113,9 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     let mut dialogue = wake_and_run("sway", 150);
     let full_advance = measure_phase_advance(&mut dialogue, 10);
     let printed_lines = dialogue.run_at_supply(4_400, 40);
-    let level = format!("V, low: no saving, speed at most {SLOW_PACE}");
+    let line_end = format!("V, low: no saving, speed at most {SLOW_PACE}");
     let line = &printed_lines[0];
-    let is_expected = line.starts_with("# supply: 4.") && line.ends_with(&level);
+    let is_expected = line.starts_with("# supply: 4.") && line.ends_with(&line_end);
     assert!(is_expected, "{printed_lines:?}");
     let slow_advance = measure_phase_advance(&mut dialogue, 10);
     let slow_ratio = f64::from(slow_advance) / f64::from(full_advance);
@@ -136,7 +136,7 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     dialogue.expect_accepted("stand");
 }
 
-/// Returns the state of servos that hold a pose with robot.toml's calibration.
+/// Returns the state of servos that hold a pose with the calibration of the asymmetric sample robot.
 fn held_servo_state(sweeps: [i16; 4]) -> ServoState {
     let pose = Pose(sweeps.map(crate::numbers::units::Sweep));
     ServoState {
@@ -152,11 +152,12 @@ fn restart_asymmetric_robot(memory: &Eeprom, restart: Restart) -> Dialogue {
     Dialogue::with_memory(*Sample::asymmetric(), memory.clone(), restart)
 }
 
-/// Returns the restart after `count` consecutive hangs; `servo_state` is the state before the last hang.
-fn restart_after_hang(count: u8, servo_state: ServoState) -> Restart {
+/// Returns the restart after a hang, which is reset number `reset_count` since power-on; `servo_state` is the state
+/// before the hang.
+fn restart_after_hang(reset_count: u8, servo_state: ServoState) -> Restart {
     Restart {
         cause: Cause::Watchdog,
-        reset_count: count,
+        reset_count,
         servo_state_before: Some(servo_state),
         ..Restart::NONE
     }
@@ -205,10 +206,10 @@ fn after_a_reset_in_a_pose_outside_the_saved_limits_the_robot_rests() {
     let dialogue = wake_and_send(&["limit 1 115 160", "save"]);
     // A1 at its neutral 132.37 deg plus 30 deg is safe, but beyond the saved limit of 160 deg.
     let restart = restart_after_hang(1, held_servo_state([5461, 0, 0, 0]));
-    for (memory, activity) in [(&Eeprom::blank(), "stop"), (&dialogue.board.memory, "rest")] {
+    for (memory, gait) in [(&Eeprom::blank(), "stop"), (&dialogue.board.memory, "rest")] {
         let mut restarted_dialogue = restart_asymmetric_robot(memory, restart);
         restarted_dialogue.run_frames(10);
-        assert_eq!(restarted_dialogue.status_value("gait"), activity);
+        assert_eq!(restarted_dialogue.status_value("gait"), gait);
     }
 }
 
@@ -273,7 +274,7 @@ fn servos_still_wake_one_at_a_time_after_a_reset_during_waking() {
 }
 
 #[test]
-fn a_resting_robot_rests_after_a_reset_until_boot_which_a_hang_cancels() {
+fn a_resting_robot_rests_after_a_reset_until_boot_and_a_hang_cancels_boot() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
         let mut dialogue = wake_and_run("pose 140 50 311 224.5", 150);
         dialogue.send_and_run("rest", 5);
@@ -295,7 +296,7 @@ fn a_resting_robot_rests_after_a_reset_until_boot_which_a_hang_cancels() {
 }
 
 #[test]
-fn a_rest_pose_whose_write_a_reset_interrupts_is_written_after_the_reset() {
+fn a_reset_that_interrupts_the_write_of_a_rest_pose_does_not_lose_the_pose() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
         let mut dialogue = wake_and_run("pose 140 50 311 224.5", 150);
         dialogue.board.memory.write_delay = 4;
@@ -303,6 +304,7 @@ fn a_rest_pose_whose_write_a_reset_interrupts_is_written_after_the_reset() {
         dialogue.board.send(b"rest\r");
         dialogue.run_frame();
         dialogue.reset(cause);
+        // The record of the rest pose has no mark yet.
         assert_eq!(dialogue.board.memory.bytes()[128], 0xff, "{cause:?}");
         dialogue.run_frames(100);
         let pose = dialogue.power_on_copy().status_value("pose");
@@ -344,7 +346,7 @@ fn after_three_consecutive_brown_outs_or_button_resets_the_robot_rests_until_sta
 }
 
 #[test]
-fn resets_followed_by_a_line_do_not_count_as_a_weak_supply() {
+fn resets_followed_by_a_line_do_not_count_as_brown_outs() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.board.has_boot_loader = true;
     for _ in 0..20 {

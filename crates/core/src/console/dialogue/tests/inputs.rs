@@ -174,6 +174,23 @@ fn a_press_before_the_wait_for_it_has_no_effect() {
 }
 
 #[test]
+fn a_wait_that_has_ended_before_its_line_could_be_printed_is_not_reported() {
+    let stand = (FRAMES, "stand", 10);
+    let short_walk = [stand, (UNTIL, "nose", 0), (FRAMES, "sway", 5)];
+    let steps = [&short_walk[..], &[(FRAMES, "back", 100)]].concat();
+    let mut dialogue = start_patrol(1, &steps);
+    dialogue.run_without_reader(30);
+    assert!(dialogue.run_frames(1).is_empty());
+    let steps = [&[stand][..], &WAIT_FOR_BUTTON_AND_GO_BACK].concat();
+    let mut dialogue = start_patrol(1, &steps);
+    dialogue.run_without_reader(20);
+    dialogue.board.late_edges = 1;
+    dialogue.run_without_reader(1);
+    let expected_lines = ["# fault: a pulse was late, stopped"];
+    assert_eq!(dialogue.run_frames(1), expected_lines);
+}
+
+#[test]
 fn a_wait_after_a_rest_sends_no_pulse_until_a_press_wakes_the_servos() {
     let steps = [&[(REST, "stand", 10)][..], &WAIT_FOR_BUTTON_AND_GO_BACK].concat();
     let mut dialogue = start_patrol(1, &steps);

@@ -52,7 +52,7 @@ fn record_snapshots() -> Vec<Dialogue> {
 fn assert_rest_pose_is_saved(mut dialogue: Dialogue, event: &str) {
     let pose = *dialogue.motion().pose();
     if dialogue.motion().is_resting() {
-        dialogue.lose_power(None);
+        dialogue.cycle_power(None);
         dialogue.run_frames(1);
         assert_eq!(*dialogue.motion().pose(), pose, "{event}");
     }

@@ -6,7 +6,7 @@ use super::*;
 fn status_reports_each_value_under_its_key() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.board.late_edges = 7;
-    dialogue.board.count_lost_bytes(65_535);
+    dialogue.board.add_lost_bytes(65_535);
     dialogue.run_frames(1);
     dialogue.send_line("speed 42");
     dialogue.send_and_run("sway left", 200);
@@ -62,7 +62,7 @@ fn the_longest_possible_status_fits_into_an_output_line() {
     assert_eq!(name.len(), crate::numbers::gaits::MAX_NAME_BYTES);
     let mut dialogue = wake_robot(Sample::asymmetric().with_gait(name));
     dialogue.board.late_edges = u16::MAX;
-    dialogue.board.count_lost_bytes(u16::MAX);
+    dialogue.board.add_lost_bytes(u16::MAX);
     dialogue.expect_accepted(name);
     let line = dialogue.send_line("status");
     let values = parse_pairs(line.strip_prefix("ok ").expect("the line is a status"));

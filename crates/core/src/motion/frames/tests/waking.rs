@@ -29,7 +29,7 @@ fn a_gait_or_a_pose_first_wakes_the_servos_in_the_rest_pose() {
             assert_eq!(motion.pose(), &pose_before);
         }
         assert_eq!(motion.advance_frame(), motion.held_pulses());
-        assert!(motion.is_moving());
+        assert!(motion.is_in_move());
         motion.run(TRANSITION_FRAMES);
         if is_pose {
             assert_eq!(motion.pose(), &Pose(SWEEPS.map(Sweep)));

@@ -156,7 +156,8 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         if self.is_walking {
             // The line also prevents `deadman` from ending the gait.
             let reply = self.robot.console().ask("status")?;
-            self.is_walking = Status::parse(&reply.answer).is_some_and(|status| status.is_moving());
+            self.is_walking =
+                Status::parse(&reply.answer).is_some_and(|status| status.is_walking());
         }
         Ok(())
     }

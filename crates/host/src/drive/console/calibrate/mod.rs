@@ -45,6 +45,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let (mut board, _) = finder.connect()?;
     let result = Guide::new(&mut board.link).map_err(DialogueError::from);
     let result = result.and_then(|mut guide| run_guide(&mut guide));
+    if result.is_err() {
+        // The robot may be walking, and would walk on.
+        let _ = board.link.send("stop");
+    }
     match result {
         Ok(is_saved) => {
             // The terminal may be gone; a message that cannot be written is not an error.

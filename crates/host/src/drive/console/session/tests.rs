@@ -43,7 +43,7 @@ fn a_users_line_is_sent_after_the_previous_answer() {
     assert!(session.is_idle());
     assert_sends(&mut session, now, None); // the next status is not due
     assert_sends(&mut session, now + STATUS_INTERVAL, Some("status"));
-    assert!(session.status().is_some_and(Status::is_moving));
+    assert!(session.status().is_some_and(Status::is_walking));
 }
 
 #[test]
@@ -66,15 +66,37 @@ fn a_reset_cancels_the_request_and_repeats_watch() {
 }
 
 #[test]
+fn a_line_without_an_answer_before_a_reset_has_failed() {
+    let (now, mut session) = start(false, false);
+    session.queue("walk");
+    session.take_next_line(now);
+    session.receive("# lizard 0.2.0");
+    let failure = session.check_all_accepted();
+    let message = failure.expect_err("walk has no answer").to_string();
+    assert!(message.ends_with("`walk`: no answer"), "{message}");
+}
+
+#[test]
 fn poses_are_shown_only_if_the_user_asks_for_them() {
-    let (now, mut session) = start(false, true);
+    for line in ["watch 50", "WATCH 50"] {
+        let (now, mut session) = start(false, true);
+        session.take_next_line(now);
+        session.receive("ok watch 1");
+        assert_eq!(session.receive("# t=1 pose=1,2,3,4"), None);
+        session.queue(line);
+        session.take_next_line(now);
+        session.receive("ok watch 50");
+        assert!(session.receive("# t=50 pose=1,2,3,4").is_some(), "{line}");
+    }
+}
+
+#[test]
+fn stop_of_a_script_is_answered_in_upper_case_too() {
+    let (now, mut session) = start(false, false);
+    session.queue("STOP");
     session.take_next_line(now);
-    session.receive("ok watch 1");
-    assert_eq!(session.receive("# t=1 pose=1,2,3,4"), None);
-    session.queue("watch 50");
-    session.take_next_line(now);
-    session.receive("ok watch 50");
-    assert!(session.receive("# t=50 pose=1,2,3,4").is_some());
+    assert_shows(&mut session, "ok stop");
+    assert!(session.is_idle());
 }
 
 #[test]
@@ -291,6 +313,31 @@ fn a_stopped_robot_gets_its_own_deadman_back() {
 }
 
 #[test]
+fn a_robot_is_driven_while_its_routine_rests() {
+    let answer_as_resting_robot =
+        |line: &str| answer_as_robot(line).replace("gait=walk", "gait=rest");
+    for end in ["# done", "ok stop", "ok rest"] {
+        let (start, mut session) = start_driving(true);
+        session.queue("patrol");
+        run_session(&mut session, start, 500, answer_as_resting_robot);
+        assert!(session.is_driven());
+
+        // The answer to the name of another routine is lost, but the status shows that it runs.
+        session.receive(end);
+        let now = start + Duration::from_secs(1);
+        run_session(&mut session, now, 500, answer_as_robot);
+        let now = now + Duration::from_secs(1);
+        run_session(&mut session, now, 500, answer_as_resting_robot);
+        assert!(session.is_driven());
+
+        session.receive(end);
+        let now = now + Duration::from_secs(1);
+        run_session(&mut session, now, 500, answer_as_resting_robot);
+        assert!(!session.is_driven(), "{end}");
+    }
+}
+
+#[test]
 fn deadman_left_by_an_earlier_run_is_restored_as_zero() {
     let (now, mut session) = start_driving(true);
     session.queue("arc left");
@@ -323,6 +370,99 @@ fn a_gait_starts_only_after_deadman_is_confirmed() {
     assert!(session.check_all_accepted().is_err()); // the failure is counted
     session.queue("walk");
     assert_sends(&mut session, later, Some("deadman 901"));
+}
+
+#[test]
+fn an_unknown_deadman_is_neither_replaced_nor_restored() {
+    let (now, mut session) = start_driving(false);
+    session.queue("walk");
+    assert_sends(&mut session, now, Some("cal"));
+    session.receive("# boot stand"); // the link has lost the line with the setting
+    let message = session.receive("ok cal").expect("the user gets a message");
+    assert!(message.contains("not sent"), "{message}");
+    assert_sends(&mut session, now, None);
+
+    session.queue("walk");
+    assert_sends(&mut session, now, Some("cal"));
+    assert_eq!(session.restore_deadman(), None); // the user quits before the answer
+}
+
+#[test]
+fn a_setting_during_a_drive_becomes_the_robots_own_and_the_robot_is_still_driven() {
+    let answer_with_zero = |line: &str| answer_as_robot(line).replace("700", "0");
+    for (line, sent_lines, own_ms) in [
+        ("deadman 5000", "deadman 5000, deadman 901", 5000),
+        ("factory", "deadman 0, factory, cal, deadman 901", 0),
+        ("load", "deadman 0, load, cal, deadman 901", 0),
+    ] {
+        let (now, mut session) = start_driving(true);
+        session.queue("walk");
+        run_session(&mut session, now, 500, answer_with_zero);
+        session.queue(line);
+        let now = now + Duration::from_secs(1);
+        let lines = run_session(&mut session, now, 500, answer_with_zero);
+        assert_eq!(exclude_status(&lines).join(", "), sent_lines);
+        let own_line = format!("deadman {own_ms}");
+        assert_eq!(session.restore_deadman(), Some(own_line));
+    }
+}
+
+#[test]
+fn a_gait_after_load_reads_the_loaded_deadman() {
+    let (now, mut session) = start_driving(false);
+    session.queue("walk");
+    run_session(&mut session, now, 500, answer_as_robot);
+    session.restore_deadman();
+    session.queue("load");
+    session.queue("walk");
+    let now = now + Duration::from_secs(1);
+    let lines = run_session(&mut session, now, 500, answer_as_robot);
+    let lines = exclude_status(&lines).join(", ");
+    assert_eq!(lines, "load, cal, deadman 700, walk");
+}
+
+/// Starts a drive, and lets the robot report that its gait has ended; returns the time after that.
+fn end_drive(session: &mut Session, start: Instant) -> Instant {
+    session.queue("walk");
+    run_session(session, start, 300, answer_as_robot);
+    let now = start + Duration::from_secs(1);
+    assert_sends(session, now, Some("status"));
+    session.receive(&WALKING_STATUS.replace("gait=walk", "gait=stop"));
+    now
+}
+
+#[test]
+fn a_gait_at_the_end_of_another_is_driven_too() {
+    let (start, mut session) = start_driving(true);
+    let now = end_drive(&mut session, start);
+    session.queue("back");
+    assert_sends(&mut session, now, Some("back"));
+    session.receive("ok back");
+    assert!(session.is_driven());
+}
+
+#[test]
+fn deadman_is_restored_again_if_the_robot_has_not_confirmed_it() {
+    let (start, mut session) = start_driving(true);
+    let now = end_drive(&mut session, start);
+    assert_sends(&mut session, now, Some("deadman 700"));
+    let now = now + ANSWER_TIMEOUT;
+    assert!(session.time_out_request(now).is_some());
+    assert_sends(&mut session, now, Some("status"));
+    session.receive(&WALKING_STATUS.replace("gait=walk", "gait=stop"));
+    assert_sends(&mut session, now, Some("deadman 700"));
+}
+
+#[test]
+fn a_reset_during_the_preparation_of_a_drive_starts_it_again() {
+    let (now, mut session) = start_driving(false);
+    session.queue("walk");
+    assert_sends(&mut session, now, Some("cal"));
+    session.receive("# lizard 0.2.0");
+    let lines = run_session(&mut session, now, 500, answer_as_robot);
+    let lines = exclude_status(&lines).join(", ");
+    assert_eq!(lines, "cal, deadman 700, walk");
+    assert_eq!(session.restore_deadman().as_deref(), Some("deadman 700"));
 }
 
 #[test]

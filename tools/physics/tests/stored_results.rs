@@ -13,8 +13,8 @@ use lizard_physics::surface::{
 use lizard_physics::text::{check_or_update_block, format_stored, load_stored};
 use lizard_physics::{
     Case, Crossing, Displacement, FootSetup, GroupedDisplacements, LegDrive, ROBOT_NAMES,
-    WalkResults, crate_dir, format_displacement_table, format_expected_table, format_table,
-    list_walks, load_robot,
+    WalkResults, crate_dir, format_comparison_table, format_displacement_table,
+    format_expected_results_table, list_walks, load_robot,
 };
 
 /// Compares the text between a marker and the next end marker of a page with `expected_text`.
@@ -28,14 +28,14 @@ fn the_documentation_has_the_stored_displacements() {
     let walk_results = WalkResults::load_stored();
     for name in ROBOT_NAMES {
         let robot = load_robot(name);
-        let table = format_table(name, &robot, &walk_results);
+        let table = format_comparison_table(name, &robot, &walk_results);
         let fenced_table = format!("```text\n{table}```\n");
         let marker = format!("physics of robots/{name}.toml");
         check_page("docs/judges.md", &marker, &fenced_table);
         if name == "paper" {
             let displacements = format_displacement_table(name, &robot, &walk_results);
             for page in ["README.md", "docs/gaits.md", "docs/twin.md"] {
-                check_page(page, "ways of robots/paper.toml", &displacements);
+                check_page(page, "displacements of robots/paper.toml", &displacements);
             }
         }
     }
@@ -51,36 +51,37 @@ fn the_documentation_has_the_stored_displacements() {
     let changes = assumptions::format_table(&walk_results, &surfaces, &by_assumption);
     let fenced = format!("```text\n{changes}```\n");
     check_page("docs/limits.md", "assumptions by MuJoCo", &fenced);
-    let table = format_expected_table(&load_robot("paper"));
+    let table = format_expected_results_table(&load_robot("paper"));
     check_page("docs/measure.md", "expected of robots/paper.toml", &table);
 }
 
 #[test]
 fn format_stored_reproduces_the_stored_results() {
-    let path = crate_dir().join("figures.json");
-    let text = std::fs::read_to_string(&path).expect("figures.json is readable");
+    let path = crate_dir().join("walks.json");
+    let text = std::fs::read_to_string(&path).expect("walks.json is readable");
     let new_text = format_stored(&WalkResults::load_stored(), 3);
     // Other tests read the file at the same time, so it is written only if its text changes.
     if text != new_text && std::env::var_os("BLESS_PHYSICS").is_some() {
-        std::fs::write(&path, new_text).expect("figures.json is writable");
+        std::fs::write(&path, new_text).expect("walks.json is writable");
     } else {
         assert_eq!(text, new_text);
     }
 }
 
 #[test]
-fn every_gait_keeps_its_distance_over_edges_and_blocks_and_its_turn_on_every_floor() {
+fn every_gait_keeps_enough_of_its_displacement_on_every_surface_except_the_known_shortfalls() {
     let walk_results = WalkResults::load_stored();
     let stored_surfaces: SurfaceDisplacements = load_stored("surfaces.json");
     let mut walk_count = 0;
     for name in surface::ROBOT_NAMES {
-        for (gait, level) in surface::list_walking_gaits(&walk_results, name) {
+        for (gait, level_displacement) in surface::list_walking_gaits(&walk_results, name) {
             for surface in Surface::for_robot(name) {
                 let displacement = stored_surfaces[name][&gait][&surface.to_string()];
-                let losses = surface::describe_excess_losses(surface, level, displacement);
+                let shortfalls =
+                    surface::describe_shortfalls(surface, level_displacement, displacement);
                 let is_known_shortfall = KNOWN_SHORTFALLS.contains(&(name, gait.as_str(), surface));
-                let label = format!("{name}: {gait}, {surface}: {losses:?}");
-                assert_eq!(!losses.is_empty(), is_known_shortfall, "{label}");
+                let label = format!("{name}: {gait}, {surface}: {shortfalls:?}");
+                assert_eq!(!shortfalls.is_empty(), is_known_shortfall, "{label}");
                 walk_count += 1;
             }
         }
@@ -89,16 +90,17 @@ fn every_gait_keeps_its_distance_over_edges_and_blocks_and_its_turn_on_every_flo
     let stored_count: usize = stored_gaits.map(|surfaces| surfaces.len()).sum();
     assert_eq!(stored_count, walk_count, "no other walks may be stored");
     assert!(walk_count > 100, "{walk_count} walks");
-    // The check reports robots that cannot move or turn at an edge, and a robot that turns in the wrong direction.
+    // The check also reports a robot that does not move at an edge, and one that turns in the wrong direction.
     let no_displacement = Displacement([0.0; 3]);
-    for (gait, loss_count) in [("walk", 1), ("back", 1), ("left", 1), ("arc-right", 2)] {
-        let level = surface::find_level_displacement(&walk_results, gait);
-        let messages = surface::describe_excess_losses(Surface::Edge(20), level, no_displacement);
-        assert_eq!(messages.len(), loss_count, "{gait}: {messages:?}");
+    for (gait, shortfall_count) in [("walk", 1), ("back", 1), ("left", 1), ("arc-right", 2)] {
+        let level_displacement = surface::find_level_displacement(&walk_results, gait);
+        let messages =
+            surface::describe_shortfalls(Surface::Edge(20), level_displacement, no_displacement);
+        assert_eq!(messages.len(), shortfall_count, "{gait}: {messages:?}");
     }
     let [left, right] =
         ["left", "right"].map(|gait| surface::find_level_displacement(&walk_results, gait));
-    let messages = surface::describe_excess_losses(Surface::Slope(8), left, right);
+    let messages = surface::describe_shortfalls(Surface::Slope(8), left, right);
     let expected =
         "-14.9 deg per cycle, 14.9 deg on a level floor; the fraction -1.00 must be at least 0.75";
     assert_eq!(messages, [expected]);
@@ -107,13 +109,13 @@ fn every_gait_keeps_its_distance_over_edges_and_blocks_and_its_turn_on_every_flo
 #[test]
 fn gaits_that_do_not_turn_on_the_spot_take_every_foot_across_the_edge() {
     let walk_results = WalkResults::load_stored();
-    let mut turning_gaits = Vec::new();
+    let mut gaits_on_the_spot = Vec::new();
     for name in surface::ROBOT_NAMES {
         let feet = load_robot(name).ground().feet.positions([0.0; 4]);
-        for (gait, level) in surface::list_walking_gaits(&walk_results, name) {
-            let crossing = Crossing::find(&load_robot(name), level, 0);
+        for (gait, level_displacement) in surface::list_walking_gaits(&walk_results, name) {
+            let crossing = Crossing::find(&load_robot(name), level_displacement, 0);
             if !crossing.is_crossed {
-                turning_gaits.push(gait);
+                gaits_on_the_spot.push(gait);
                 continue;
             }
             let block = crossing.make_block(2.0);
@@ -131,7 +133,7 @@ fn gaits_that_do_not_turn_on_the_spot_take_every_foot_across_the_edge() {
                 assert!(is_before, "{name}: {gait} does not start before the edge");
             }
             for _ in 0..crossing.cycle_count {
-                pose = move_pose(pose, level.0);
+                pose = move_pose(pose, level_displacement.0);
             }
             for [forward, left] in feet {
                 let [forward, left, _] = move_pose(pose, [forward, left, 0.0]);
@@ -140,15 +142,15 @@ fn gaits_that_do_not_turn_on_the_spot_take_every_foot_across_the_edge() {
             }
         }
     }
-    turning_gaits.sort_unstable();
-    turning_gaits.dedup();
+    gaits_on_the_spot.sort_unstable();
+    gaits_on_the_spot.dedup();
     let expected_gaits = [
         "left",
         "right",
         "turn-slowly-on-the-spot-all-the-way-to-the-left",
         "turn-slowly-to-the-right",
     ];
-    assert_eq!(turning_gaits, expected_gaits);
+    assert_eq!(gaits_on_the_spot, expected_gaits);
 }
 
 /// Returns a pose (mm forward, mm to the left, deg) after a displacement in the pose's own frame.
@@ -162,7 +164,7 @@ fn move_pose([x, y, heading]: [f64; 3], [forward, left, turn]: [f64; 3]) -> [f64
 }
 
 #[test]
-fn results_of_all_assumptions_and_pad_shapes_are_stored_as_they_are_formatted() {
+fn results_of_all_assumptions_and_pad_shapes_are_stored_in_the_format_of_format_stored() {
     let stored_assumptions: GroupedDisplacements = load_stored("assumptions.json");
     let shapes: GroupedDisplacements = load_stored("pads.json");
     let stored_surfaces: SurfaceDisplacements = load_stored("surfaces.json");
@@ -201,17 +203,17 @@ fn every_walk_is_stored_and_agrees_with_the_model() {
         for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
             let gait = gait.name();
             let find_results = |case| walk_results.get(name, gait, case);
-            let is_determined =
+            let has_model_result =
                 find_results(Case::ALL[0]).is_some_and(|results| results.model.is_some());
             for case in Case::ALL {
                 let Some(results) = find_results(case) else {
-                    let may_be_missing = !is_determined && case != Case::ALL[0];
+                    let may_be_missing = !has_model_result && case != Case::ALL[0];
                     assert!(may_be_missing, "{name}: {gait}");
                     continue;
                 };
                 let disagreement = results.describe_disagreement(case);
                 assert_eq!(disagreement, None, "{name}: {gait}");
-                assert_eq!(results.model.is_some(), is_determined, "{name}: {gait}");
+                assert_eq!(results.model.is_some(), has_model_result, "{name}: {gait}");
                 count += 1;
             }
         }
@@ -243,12 +245,13 @@ fn the_stored_results_of_the_model_are_up_to_date() {
 fn a_foot_1_mm_too_long_costs_less_than_a_tenth_of_the_distance() {
     let walk_results = WalkResults::load_stored();
     let legs = LegDrive::Rigid;
+    let distance_and_turn = |Displacement([forward, left, turn])| (forward.hypot(left), turn.abs());
     let mut count = 0;
     for name in ROBOT_NAMES {
         let robot = load_robot(name);
         for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
             let find_results = |feet| walk_results.get(name, gait.name(), Case { legs, feet });
-            let results = [FootSetup::Level, FootSetup::Soft].map(find_results);
+            let results = [FootSetup::Level, FootSetup::Long].map(find_results);
             let [Some(level), Some(long)] = results else {
                 continue;
             };
@@ -256,8 +259,7 @@ fn a_foot_1_mm_too_long_costs_less_than_a_tenth_of_the_distance() {
             let pairs = model.chain([(level.mujoco, long.mujoco)]);
             for (level_displacement, long_displacement) in pairs {
                 let [(level_distance, level_turn), (long_distance, long_turn)] =
-                    [level_displacement, long_displacement]
-                        .map(|Displacement([x, y, turn])| (x.hypot(y), turn.abs()));
+                    [level_displacement, long_displacement].map(distance_and_turn);
                 // The test checks a gait's distance, or the turn of a gait without distance; it skips other gaits.
                 let (level_value, long_value) = match (level_distance > 4.0, level_turn > 1.0) {
                     (true, _) => (level_distance, long_distance),
@@ -277,10 +279,10 @@ fn a_foot_1_mm_too_long_costs_less_than_a_tenth_of_the_distance() {
 }
 
 #[test]
-fn robot_toml_accepts_every_key_of_the_trials() {
+fn robot_toml_accepts_every_key_in_the_table_of_expected_results() {
     let text = std::fs::read_to_string(crate_dir().join("../../robots/paper.toml"));
     let text = text.expect("robots/paper.toml is readable");
-    let table = format_expected_table(&load_robot("paper"));
+    let table = format_expected_results_table(&load_robot("paper"));
     let keys = table.lines().skip(2).map(|line| {
         let cell = line.rsplit(" | ").next().expect("a row has cells");
         cell.trim_end_matches(" |").trim_matches('`')

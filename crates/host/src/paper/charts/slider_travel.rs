@@ -4,7 +4,7 @@ use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
 use crate::shared::number::round_to_decimals;
-use crate::shared::plot::{Axis, IMPOSSIBLE_COLOUR, Plot, draw_legend_entry};
+use crate::shared::plot::{Axis, EXCLUDED_COLOUR, Plot, draw_legend_entry};
 use crate::shared::shapes::{Anchor, GREY, add_title, rectangle, render_svg, text, text_start};
 
 const COLUMN_COUNT: usize = 4;
@@ -14,9 +14,10 @@ const PANEL_SIZE: (f64, f64) = (255.0, 150.0);
 const PANEL_PITCH: (f64, f64) = (330.0, 240.0);
 const LEFT_COLOUR: &str = "#0072b2";
 const RIGHT_COLOUR: &str = "#d55e00";
+const RIGHT_DASHES: &str = "7 4";
 
 /// Draws both sliders' travel over a cycle of every gait, and the limits.
-pub fn draw_stroke(robot: &Robot) -> String {
+pub fn draw_slider_travel(robot: &Robot) -> String {
     let row_count = robot.gaits().len().div_ceil(COLUMN_COUNT);
     let size = (
         90.0 + PANEL_PITCH.0 * COLUMN_COUNT as f64,
@@ -28,11 +29,11 @@ pub fn draw_stroke(robot: &Robot) -> String {
         Group::new(),
         60.0,
         "Slider travel over a cycle of each gait",
-        "s in mm from nominal; grey: beyond the stroke that robot.toml allows",
+        "s, mm from the nominal length; grey: beyond the travel that robot.toml allows",
     );
     for (y, colour, dashes, meaning) in [
         (36.0, LEFT_COLOUR, "", "left slider (A1, A4)"),
-        (62.0, RIGHT_COLOUR, "7 4", "right slider (A2, A3)"),
+        (62.0, RIGHT_COLOUR, RIGHT_DASHES, "right slider (A2, A3)"),
     ] {
         group = draw_legend_entry(group, (size.0 - 300.0, y), colour, dashes, meaning);
     }
@@ -62,7 +63,7 @@ fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) 
     ] {
         let (top_left, bottom_left) = (plot.to_page_point(0.0, max), plot.to_page_point(0.0, min));
         let size = (plot.size.0, bottom_left.1 - top_left.1);
-        group = group.add(rectangle(top_left, size, IMPOSSIBLE_COLOUR));
+        group = group.add(rectangle(top_left, size, EXCLUDED_COLOUR));
     }
     let samples: Vec<(f64, f64, f64)> = (0..=400)
         .map(|i| f64::from(i) / 400.0)
@@ -75,12 +76,12 @@ fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) 
         let points = samples.iter().map(|sample| (sample.0, travel(sample)));
         plot.curve(&points.collect::<Vec<_>>(), colour, 2.5)
     };
-    let right_curve = draw_curve(|sample| sample.2, RIGHT_COLOUR);
+    let right_curve = draw_curve(|(_, _, right)| *right, RIGHT_COLOUR);
     group = group
-        .add(draw_curve(|sample| sample.1, LEFT_COLOUR))
-        .add(right_curve.set("stroke-dasharray", "7 4"));
+        .add(draw_curve(|(_, left, _)| *left, LEFT_COLOUR))
+        .add(right_curve.set("stroke-dasharray", RIGHT_DASHES));
     group = plot.draw_axes(group, &x_axis, &y_axis);
-    let travels = || samples.iter().flat_map(|sample| [sample.1, sample.2]);
+    let travels = || samples.iter().flat_map(|(_, left, right)| [*left, *right]);
     let min_travel = travels().fold(f64::INFINITY, f64::min);
     let max_travel = travels().fold(f64::NEG_INFINITY, f64::max);
     let title_point = (plot.corner.0, plot.corner.1 - 10.0);
