@@ -9,6 +9,6 @@ const [folder] = process.argv.slice(2);
 initSync({ module: readFileSync(join(folder, 'lizard.wasm')) });
 const robot = new Robot();
 for (const name of readdirSync(folder).filter((file) => file.endsWith('.toml'))) {
-  const { gaits } = robot.read(readFileSync(join(folder, name), 'utf8'));
+  const { gaits } = robot.load(readFileSync(join(folder, name), 'utf8'));
   writeFileSync(join(folder, name.replace(/toml$/, 'predictions.json')), JSON.stringify(gaits.map((_, index) => robot.predict(index))));
 }

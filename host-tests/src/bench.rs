@@ -52,7 +52,7 @@ impl FirmwareBench {
     ///
     /// # Panics
     /// If there is no firmware, or no banner within 500 ms.
-    pub fn boot_with(fidelity: Fidelity) -> Self {
+    pub fn boot(fidelity: Fidelity) -> Self {
         let board = SimulatedBoard::boot(&Self::elf_path(), fidelity, robot());
         Self(unwrap_or_panic(board))
     }
@@ -104,7 +104,7 @@ impl FirmwareBench {
         line.expect("the robot has printed a line").text.clone()
     }
 
-    /// Sends a line and returns its notes and its answer: see [`SimulatedBoard::ask`].
+    /// Sends a line and returns the `#` lines before its answer, and the answer: see [`SimulatedBoard::ask`].
     ///
     /// # Panics
     /// If the firmware does not answer.
@@ -128,7 +128,7 @@ impl FirmwareBench {
         unwrap_or_panic(self.0.time_calls(function, ms))
     }
 
-    /// Runs the firmware for some frames and returns them: see [`SimulatedBoard::run_for_frames`].
+    /// Runs the firmware for some frames and returns their pulses: see [`SimulatedBoard::run_for_frames`].
     ///
     /// # Panics
     /// If the firmware crashes, halts or is reset during these frames.

@@ -1,7 +1,7 @@
 //! Tests that the program `lizard` contains the firmware code built from the source.
 //!
 //! The program contains `firmware/code.hex` for users without a compiler. If the source changes but this file does not,
-//! boards that these users flash differ from the source.
+//! these users write outdated firmware to their boards.
 
 use std::io::Write as _;
 use std::process::Command;
@@ -11,10 +11,11 @@ use lizard_host::firmware::CODE_HEX;
 use lizard_host::sim::script::{Script, Step};
 use lizard_host::sim::session::{Recording, play};
 use lizard_host_tests::{FirmwareBench, robot, root};
+use lizard_upload::BOOT_ADDRESS;
 use simulated_uno::{Fidelity, Image, State, Uno};
 
 /// The error message if `firmware/code.hex` is outdated.
-const OUTDATED_MESSAGE: &str = "firmware/code.hex differs from the code built from the source: run `make code-image` and commit it";
+const OUTDATED_MESSAGE: &str = "firmware/code.hex differs from the code built from the source: run `make code-image` and commit that file";
 
 /// Returns the code of an image, from address 0 to the robot's section. Unused bytes are 0xff.
 fn extract_code(image: &Image) -> Vec<u8> {
@@ -23,21 +24,21 @@ fn extract_code(image: &Image) -> Vec<u8> {
     code
 }
 
-/// Returns the code that the program `lizard` contains.
-fn embedded_code() -> Image {
+/// Returns the image that the program `lizard` contains: the code without a section.
+fn code_image() -> Image {
     Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX")
 }
 
 /// Replaces the robot's section of an image.
 fn with_section(mut image: Image, section: &[u8]) -> Image {
-    let result = image.replace(u32::from(START_ADDRESS)..0x7e00, section);
+    let result = image.replace(u32::from(START_ADDRESS)..BOOT_ADDRESS as u32, section);
     result.expect("the section fits");
     image
 }
 
-/// Returns the image that the program `lizard` contains, with the section of the robot under test.
+/// Returns the code that the program `lizard` contains, with the section of the robot under test.
 fn embedded_image() -> Image {
-    with_section(embedded_code(), &robot().section())
+    with_section(code_image(), &robot().section())
 }
 
 /// Reads the versions of the installed compiler and linker, one per line.
@@ -76,12 +77,12 @@ fn record_minute(image: Image) -> Recording {
 
 #[test]
 fn the_program_contains_the_code_built_from_the_source() {
-    let code_images = [embedded_code(), with_section(FirmwareBench::image(), &[])];
-    let [embedded_code, built_code] = code_images.map(|image| extract_code(&image));
+    let code_images = [code_image(), with_section(FirmwareBench::image(), &[])];
+    let [embedded_bytes, built_bytes] = code_images.map(|image| extract_code(&image));
     let recorded_versions = std::fs::read_to_string(root().join("firmware/tools.txt"));
     let recorded_versions = recorded_versions.expect("firmware/tools.txt is readable");
     if recorded_versions == read_tool_versions() {
-        let mut pairs = embedded_code.iter().zip(&built_code);
+        let mut pairs = embedded_bytes.iter().zip(&built_bytes);
         let first_difference = pairs.position(|(embedded, built)| embedded != built);
         assert_eq!(
             first_difference, None,
@@ -101,11 +102,11 @@ fn the_program_contains_the_code_built_from_the_source() {
         [embedded_image(), FirmwareBench::image()].map(record_minute);
     assert_eq!(
         embedded_recording.banner, built_recording.banner,
-        "{OUTDATED_MESSAGE} (its banner)"
+        "{OUTDATED_MESSAGE} (the banners differ)"
     );
     assert_eq!(
         embedded_recording.answers, built_recording.answers,
-        "{OUTDATED_MESSAGE} (its answers)"
+        "{OUTDATED_MESSAGE} (the answers differ)"
     );
     let [embedded_widths, built_widths] =
         [embedded_recording, built_recording].map(|recording| recording.frames.widths);
@@ -114,19 +115,19 @@ fn the_program_contains_the_code_built_from_the_source() {
     assert_eq!(
         pairs.position(|(embedded, built)| embedded != built),
         None,
-        "{OUTDATED_MESSAGE} (the first frame whose pulses differ)"
+        "{OUTDATED_MESSAGE} (index of the first frame whose pulses differ)"
     );
 }
 
 #[test]
-fn the_code_in_the_program_walks_once_a_robot_is_added() {
+fn the_code_in_the_program_walks_after_a_robot_is_added() {
     let recording = record_minute(embedded_image());
     let banner = recording.banner.expect("the firmware prints its banner");
     let robot_label = lizard_host::firmware::format_robot_label(robot().firmware());
     let robot_text = format!(" robot {robot_label}");
     assert!(banner.contains(&robot_text), "{banner}");
     assert!(recording.frames.widths.len() > 2700);
-    let byte_count = embedded_code().flash().len();
+    let byte_count = code_image().flash().len();
     let allowed_counts = 20_000..=usize::from(START_ADDRESS);
     assert!(allowed_counts.contains(&byte_count), "{byte_count} bytes");
 }

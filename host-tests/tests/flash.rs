@@ -64,7 +64,7 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
     let walked_widths = expect_widths(&group_frames(&board.edges, pins, start_cycle, 100));
 
     // Runs the same image in a simulation without a boot loader, a port or the wall clock.
-    let mut bench = FirmwareBench::boot_with(Fidelity::DataSheet);
+    let mut bench = FirmwareBench::boot(Fidelity::DataSheet);
     bench.say("stand");
     bench.run_for_frames(AWAKE_FRAMES);
     bench.say("walk");

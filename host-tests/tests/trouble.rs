@@ -28,7 +28,7 @@ fn faults_at_any_moment_violate_no_rule() {
     let tested_activities: BTreeSet<Activity> = counts_by_activity.keys().copied().collect();
     assert_eq!(tested_activities, all_activities);
     for (activity, (run_count, _)) in counts_by_activity {
-        let scenarios_of_13 = if activity == Activity::Driving { 4 } else { 1 };
+        let scenarios_of_13 = if activity == Activity::Driven { 4 } else { 1 };
         let expected_count = scenarios_of_13 * SCENARIO_COUNT / 13;
         assert_eq!(run_count, expected_count, "{activity}");
     }

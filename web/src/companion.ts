@@ -19,13 +19,13 @@ export class Companion {
    */
   constructor(toml: string, { floor, servos, volts }: Session) {
     this.volts = volts;
-    const result = this.robot.read(toml);
+    const result = this.robot.load(toml);
     if (isRefused(result)) throw new Error(result.reason);
     this.robot.setFloor(floor);
-    this.robot.setServos(servos);
+    this.robot.setServoModel(servos);
     this.robot.startCore();
     for (let frame = 0; frame < WAKE_FRAME_COUNT; frame++) this.step();
-    this.robot.restart();
+    this.robot.returnToStart();
     this.step();
   }
 

@@ -215,7 +215,7 @@ async function start(): Promise<void> {
     for (const box of document.querySelectorAll<HTMLElement>('.sprung')) box.hidden = !mayLag;
     setText(element('lag'), measured ? `${measured.lag.toFixed(1)}°` : '–');
     setText(element('share'), prediction?.fraction == null ? '–' : `${(100 * prediction.fraction).toFixed(0)} %`);
-    showMessage(element('refusal'), last?.fault ?? last?.scene?.refusal ?? '');
+    showMessage(element('refusal'), last?.loop_error ?? last?.scene?.refusal ?? '');
   }
 
   const loadChosenFile = async () => {

@@ -45,13 +45,13 @@ export class Recording {
       ...['lf', 'rf', 'rh', 'lh'].map((leg) => `lag_${leg}_deg`), ...nameServos((n) => `pulse_a${n}_us`),
     ];
     const emptyFields = ['', '', '', ''];
-    const lines = this.frames.map(({ time, activity, frame: { scene, place, lag }, widths }) => [
+    const lines = this.frames.map(({ time, activity, frame: { scene, place, lags }, widths }) => [
       time.toFixed(2),
       // A gait's name comes from outside, from a file or a board; the quotes keep it from ending the field.
       `"${activity.replaceAll('"', '""')}"`,
       ...(scene?.angles.map((angle) => angle.toFixed(3)) ?? emptyFields),
       ...[place.x, place.y, place.heading].map((value) => (Number(value.toFixed(2)) + 0).toFixed(2)),
-      ...lag.map((value) => value.toFixed(3)),
+      ...lags.map((value) => value.toFixed(3)),
       ...(widths?.map((width) => (width / CYCLES_PER_US).toFixed(2)) ?? emptyFields),
     ]);
     return `${[header, ...lines].map((fields) => fields.join(',')).join('\n')}\n`;

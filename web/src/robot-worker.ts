@@ -10,17 +10,17 @@ let loadedToml = '';
 /** Loads a robot, its floor and its servos; returns false if the robot is refused. */
 function loadRobot({ toml, floor, servos }: OnFloor): boolean {
   if (toml !== loadedToml) {
-    if (isRefused(robot.read(toml))) return false;
+    if (isRefused(robot.load(toml))) return false;
     loadedToml = toml;
   }
   robot.setFloor(floor);
-  robot.setServos(servos);
+  robot.setServoModel(servos);
   return true;
 }
 
 /** Loads a robot and returns the scene of its neutral pose; null if the robot is refused. */
 function loadNeutralScene(toml: string): Scene | null {
-  const description = robot.read(toml);
+  const description = robot.load(toml);
   if (isRefused(description)) return null;
   loadedToml = toml;
   return robot.followPose(description.servos.map(({ neutral }) => neutral) as Four<number>, 1)?.scene ?? null;

@@ -208,7 +208,7 @@ export class Session {
   }
 
   private loadToml(toml: string, floorSetting: Floor | null, originalFile: [string, Predictions | null] = [this.original, this.predictions]): Refusal | null {
-    const description = this.robot.read(toml);
+    const description = this.robot.load(toml);
     if (isRefused(description)) return description;
     this.toml = toml;
     [this.original, this.predictions] = originalFile;
@@ -686,7 +686,7 @@ export class Session {
 
   /** Moves the robot back to its starting place on the floor. */
   returnToStart(): void {
-    this.robot.restart();
+    this.robot.returnToStart();
     this.walkedPath.clear();
   }
 
@@ -705,7 +705,7 @@ export class Session {
   /** Sets the servo model by its name in the description. */
   setServos(name: string): void {
     this.state.servos.value = name;
-    this.robot.setServos(name);
+    this.robot.setServoModel(name);
     this.storeChanges();
   }
 

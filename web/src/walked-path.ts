@@ -36,7 +36,7 @@ export class WalkedPath {
     // The cycle starts at the nearest known frame, because a real board does not report every frame.
     const startIndex = this.frames.findLastIndex(({ time }) => time <= lastFrame.time - cycleSeconds + this.frameSeconds / 2);
     if (startIndex < 0) return null;
-    const lags = this.frames.slice(startIndex + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));
+    const lags = this.frames.slice(startIndex + 1).flatMap(({ frame }) => frame.lags.map(Math.abs));
     return { ...Robot.displacementBetween(this.frames[startIndex].frame.place, lastFrame.frame.place), lag: Math.max(0, ...lags) };
   }
 }

@@ -21,7 +21,7 @@ export function installFakeSerial() {
     const { robot, image } = window.lizard;
     // A second instance, so that the page's own robot stays unchanged.
     const secondRobot = new robot.constructor();
-    const { start } = secondRobot.read(await (await fetch(`files/${robotName}.toml`)).text());
+    const { start } = secondRobot.load(await (await fetch(`files/${robotName}.toml`)).text());
     const section = secondRobot.section();
     const flash = new Uint8Array(start + section.length);
     flash.set(image.subarray(0, start));

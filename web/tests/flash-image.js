@@ -7,7 +7,7 @@ export const SECTION_START = 0x6e00;
 /** Makes the flash image for a robot file of the page. */
 export async function makeImage(robotName) {
   const robot = new Robot();
-  const { start } = robot.read(await readPageFile(`${robotName}.toml`, 'utf8'));
+  const { start } = robot.load(await readPageFile(`${robotName}.toml`, 'utf8'));
   const section = robot.section();
   const flash = new Uint8Array(32 * 1024).fill(0xff);
   flash.set(await readPageFile('code.bin'));

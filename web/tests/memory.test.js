@@ -13,7 +13,7 @@ const toml = await readPageFile('robot.toml', 'utf8');
 /** Measures by how many bytes `count` repetitions of an action enlarge the memory, after a warm-up. */
 function measureGrowth(count, action) {
   const robot = new Robot();
-  robot.read(toml);
+  robot.load(toml);
   const warmUpCount = count / 10;
   for (let n = 0; n < warmUpCount; n++) action(robot, n);
   const startBytes = memory.buffer.byteLength;

@@ -84,7 +84,7 @@ for (const [robotName, toml] of [['robot.toml', TOML], ['a robot that was typed 
       const frames = [];
       const rises = [];
       // Records the frames that the page itself computes.
-      lizard.robot.setServos('ideal');
+      lizard.robot.setServoModel('ideal');
       const originalFollowPulses = lizard.robot.followPulses.bind(lizard.robot);
       lizard.robot.followPulses = (widths) => {
         const frame = originalFollowPulses(widths);

@@ -11,7 +11,7 @@ const openRecordPanel = () => openUnfolded('#keep');
 const CYCLES_PER_FRAME = 320_000;
 /** Returns the number of frames since the board was switched on. */
 const countFrames = (page) => page.evaluate((cycles) => window.lizard.link.board.cycle / cycles, CYCLES_PER_FRAME);
-/** Waits until the page itself has simulated `count` frames. */
+/** Waits until the page itself has simulated `count` more frames. */
 const waitForFrames = async (page, count) =>
   page.waitForFunction((end) => window.lizard.link.board.cycle > end, CYCLES_PER_FRAME * ((await countFrames(page)) + count));
 const findButton = (page, name) => page.locator('#keep').getByRole('button', { name, exact: true });
@@ -24,7 +24,7 @@ function parseCsv(csv) {
   return lines.map((fields) => Object.fromEntries(header.map((name, n) => [name, fields[n]])));
 }
 
-testPage('the table of a run has the pose, the place and the pulses of every frame', openRecordPanel, async (page) => {
+testPage('the table of a run has the pose, the position and the pulses of every frame', openRecordPanel, async (page) => {
   await sendLine(page, 'walk', 'ok walk');
   const startFrameCount = await countFrames(page);
   await findButton(page, 'Record').click();
@@ -39,7 +39,7 @@ testPage('the table of a run has the pose, the place and the pulses of every fra
   assert.ok(rows.length >= 150 && rows.length <= passedFrameCount + 1, `${rows.length} of ${passedFrameCount} frames`);
   rows.forEach((row, n) => assert.equal(Number(row.time_s), Number((n * 0.02).toFixed(2))));
   assert.ok(rows.every(({ doing }) => doing === '"walk"'));
-  // The angles that the pulses command according to robot.toml: 10 us per degree around 1500 us.
+  // The angles that the pulses command according to robot.toml: 10 us per degree around 1500 us. The servo lags behind its pulses.
   const computePulseAngle = (row) => 138.590378 + (Number(row.pulse_a1_us) - 1500) / 10;
   const deviations = rows.map((row) => Math.abs(computePulseAngle(row) - Number(row.a1_deg)));
   assert.ok(Math.max(...deviations) < 8, `deviation of A1 from the angle of its pulse: ${Math.max(...deviations)} deg`);
@@ -110,7 +110,7 @@ testPage('two robots walk side by side, each as far as alone', openRecordPanel, 
   assert.equal(await message.innerText(), '');
 });
 
-testPage('a robot that is changed while two robots are started stays alone', openRecordPanel, async (page) => {
+testPage('if the robot is changed while two robots are being started, no second robot appears', openRecordPanel, async (page) => {
   await page.evaluate(async () => {
     document.querySelector('#both').click();
     await window.lizard.change(window.lizard.toml.replace('amplitude = 15.0', 'amplitude = 14.0'));
@@ -120,7 +120,7 @@ testPage('a robot that is changed while two robots are started stays alone', ope
   assert.equal(await page.locator('#keep-message').innerText(), '');
 });
 
-testPage('a stop that is pressed while two robots are started keeps both still', openRecordPanel, async (page) => {
+testPage('if Stop is pressed while two robots are being started, the robot stands and no second robot appears', openRecordPanel, async (page) => {
   await page.evaluate(() => {
     document.querySelector('#both').click();
     document.querySelector('.stop').click();

@@ -1,4 +1,4 @@
-// The page on a phone, with a mouse, in forced colours, and in browsers that cannot run it.
+// The page on a phone, with a mouse, in forced colours, and in browsers that cannot run it; and its lists, words and scripts.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
@@ -35,7 +35,7 @@ for (const [name, options] of [['held upright', PHONE], ['held sideways', LANDSC
     await advance(page, 500);
     await page.locator('.stop').tap();
     await advance(page, 300);
-    assert.equal(await readGait(page), 'stop', 'nothing covers Stop');
+    assert.equal(await readGait(page), 'stop', 'Stop is covered');
   });
 
   testPage(`a phone ${name} shows the robot and its buttons on one screen`, () => openStanding(options), async (page) => {
@@ -52,13 +52,13 @@ testPage('a finger that moves up over the floor scrolls the page', () => openSta
   await page.goto(`${address()}#room=gaits`);
   const follow = page.getByRole('button', { name: 'Follow' });
   await swipe(page, '#floor', 120, 0);
-  assert.equal(await follow.getAttribute('aria-pressed'), 'false', 'a sideways swipe drags the floor');
+  assert.equal(await follow.getAttribute('aria-pressed'), 'false', 'the sideways swipe did not drag the floor');
   assert.equal(await page.evaluate(() => scrollY), 0);
   await follow.click();
   // Last, because the page keeps scrolling for a while.
   await swipe(page, '#floor', 0, -150);
   await page.waitForFunction(() => scrollY > 100);
-  assert.equal(await follow.getAttribute('aria-pressed'), 'true', 'the floor was not dragged');
+  assert.equal(await follow.getAttribute('aria-pressed'), 'true', 'the swipe dragged the floor');
 });
 
 /** Returns the zoom of the floor, CSS pixels per mm. */
@@ -77,7 +77,7 @@ test('the wheel scrolls the page, and with Ctrl zooms, but never so far out that
   await page.evaluate(() => scrollTo(0, 0));
   await page.locator('#floor').dispatchEvent('wheel', { deltaY: 5000, ctrlKey: true, offsetX: 200, offsetY: 200 });
   await page.waitForFunction((firstZoom) => Number(document.querySelector('#floor').dataset.zoom) < firstZoom, firstZoom);
-  assert.ok(250 * (await readZoom(page)) > 60, 'pixels for a robot of 250 mm');
+  assert.ok(250 * (await readZoom(page)) > 60, 'a robot of 250 mm is at most 60 pixels long');
   // `Back to start` resets the view, even a moved one.
   const follow = page.getByRole('button', { name: 'Follow' });
   await page.locator('#floor').press('ArrowLeft');
@@ -87,7 +87,7 @@ test('the wheel scrolls the page, and with Ctrl zooms, but never so far out that
   await page.waitForFunction((firstZoom) => Number(document.querySelector('#floor').dataset.zoom) === firstZoom, firstZoom);
 });
 
-testPage('forced colours show which button is pressed and how long a bar is', () => openStanding({ forcedColors: 'active' }), async (page) => {
+testPage('in forced colours, the page shows which button is pressed and how long a bar is', () => openStanding({ forcedColors: 'active' }), async (page) => {
   await clickAndAdvance(page, '#gaits button[data-command="walk"]', 300);
   const readColour = (selector) =>
     page.evaluate((selector) => getComputedStyle(document.querySelector(selector)).backgroundColor, selector);
@@ -186,11 +186,11 @@ testPage('the page reports a word that the core does not have', openBlankPage, a
 
 testPage('the core has every word that a button sends', openStanding, async (page) => {
   assert.equal(await page.locator('#problems').isVisible(), false);
-  const sentCommands = await page.locator('[data-command]').evaluateAll((buttons) => buttons.map(({ dataset }) => dataset.command));
+  const sentWords = await page.locator('[data-command]').evaluateAll((buttons) => buttons.map(({ dataset }) => dataset.command));
   const { words, gaits } = await page.evaluate(() => window.lizard.description);
   const knownWords = [...words, ...gaits.map(({ command }) => command)];
-  assert.deepEqual(sentCommands.filter((command) => !knownWords.includes(command)), []);
-  assert.ok(sentCommands.length >= 10);
+  assert.deepEqual(sentWords.filter((command) => !knownWords.includes(command)), []);
+  assert.ok(sentWords.length >= 10);
 });
 
 testPage('a script that is not the page\'s own does not run', openPage, async (page) => {

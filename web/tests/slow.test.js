@@ -15,7 +15,7 @@ const STOP_LIMIT_MS = 300;
 const CPU_SLOWDOWN = 6;
 const WITH_MOTION = { reducedMotion: 'no-preference' };
 
-const openDevToolsFor = (page) => withTimeout('the tools of the browser', page.context().newCDPSession(page));
+const openDevToolsSession = (page) => withTimeout('opening the developer-tools session', page.context().newCDPSession(page));
 const isWalking = () => window.lizard?.gait === 'walk';
 
 /** Measures until a time is short enough, at most MAX_MEASUREMENT_COUNT times, and returns the shortest. */
@@ -38,8 +38,8 @@ test('the robot takes its first step within 1.5 s of the request for the page', 
   assert.ok(timeMs <= FIRST_STEP_LIMIT_MS, `${timeMs} ms`);
 });
 
-testPage('on a slow phone Stop stops the opening walk within 0.3 s', () => openBlankPage({ ...PHONE, ...WITH_MOTION }), async (page, t) => {
-  await (await openDevToolsFor(page)).send('Emulation.setCPUThrottlingRate', { rate: CPU_SLOWDOWN });
+testPage('on a slow phone, Stop ends the walk with which the page opens within 0.3 s', () => openBlankPage({ ...PHONE, ...WITH_MOTION }), async (page, t) => {
+  await (await openDevToolsSession(page)).send('Emulation.setCPUThrottlingRate', { rate: CPU_SLOWDOWN });
   await page.goto(address());
   await page.waitForFunction(isWalking);
   const timeMs = await measureShortest(STOP_LIMIT_MS, async () => {

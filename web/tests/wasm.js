@@ -1,4 +1,4 @@
-// The page's robot in WebAssembly, without a browser, from the page's own files.
+// Loads the page's WebAssembly into Node from the built page, for tests that need no browser.
 import { readFile } from 'node:fs/promises';
 
 import { initSync, Robot } from '../generated/lizard.js';

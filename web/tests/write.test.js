@@ -248,7 +248,7 @@ testPage('an image that would overwrite a Nano\'s boot loader is written only af
     dialogMessages.push(dialog.message());
     void dialog[reply]();
   });
-  await pressAndWait(page, '#flash-robot', /^not written: 3\d{4} bytes of flash are needed, but a Nano has only 30720 before its boot section\. Gaits can be left out/);
+  await pressAndWait(page, '#flash-robot', /^not written: 3\d{4} bytes of flash are needed, but a Nano has only 30720 before its boot section\. Remove gaits from robot/);
   assert.match(dialogMessages[0], /^Is this board an Arduino UNO\? Its USB chip is also used on the Nano/);
   assert.deepEqual(await readFlash(page, 0, 0x7e00), previousFlash, 'nothing was written');
   reply = 'accept';

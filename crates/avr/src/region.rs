@@ -1,8 +1,9 @@
 //! The region of flash after the program, which holds the robot's section and is written separately from the program.
 //!
-//! The compiler does not place this data, so it has a fixed address. On an AVR this address is a constant of the
-//! program, so a region takes no RAM, and reading it costs the same as reading a constant. Every address of flash is
-//! readable, whatever its contents. On any other machine a region is a slice of ordinary memory.
+//! This data is not part of the program, so it has a fixed address that the linker does not choose. On an AVR this
+//! address is a constant of the program, so a region takes no RAM, and reading it costs the same as reading a constant.
+//! Every address of flash is readable, whatever its contents. On any other machine a region is a slice of ordinary
+//! memory.
 
 use crate::{Flash, Pod};
 
@@ -26,7 +27,7 @@ pub struct Region<'a> {
 
 #[cfg(not(target_arch = "avr"))]
 impl<'a> Region<'a> {
-    /// The region with which a program starts: on a host, an empty one.
+    /// The region until a robot is opened: on a host, an empty one.
     pub const DEFAULT: Self = Self { bytes: &[] };
 
     /// Creates a region that consists of these bytes.
@@ -81,7 +82,7 @@ impl<'a> Region<'a> {
 
 #[cfg(target_arch = "avr")]
 impl<'a> Region<'a> {
-    /// The region with which a program starts: on an AVR, the region of the robot's section, the only one.
+    /// The region of the robot's section, the only one on an AVR.
     pub const DEFAULT: Self = Self {
         marker: core::marker::PhantomData,
     };

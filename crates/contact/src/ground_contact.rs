@@ -1,11 +1,12 @@
 //! The contact of a robot with its floor.
 //!
 //! The model is planar and quasi-static, with Coulomb friction. At each instant the pads slide so that friction
-//! dissipates as little power as possible: the body moves with the twist (vx, vy, omega) that minimises
-//! `sum mu N |v + omega x r_i + dr_i/dt|` over the feet. Three feet in stance, which move together, prevail over one in
-//! swing, and the body advances. With rigid legs, speed, weight and a common friction coefficient cancel. If springs
-//! drive the legs, each step minimises the sum of the friction's work and the springs' energy, and the ratio of
-//! friction to stiffness decides the lag of a leg behind its servo.
+//! dissipates as little power as possible: the body moves with the velocity (vx, vy, omega) that minimises
+//! `sum mu N_i |v + omega x r_i + dr_i/dt|` over the feet, where `mu` is the friction coefficient, `N_i` a foot's load
+//! and `r_i` its position. Three feet that move together prevail over one that swings, and the body advances. If the
+//! legs are rigid, the speed, the weight and a friction coefficient common to all feet have no effect. If springs drive
+//! the legs, each step minimises the sum of the friction's work and the springs' energy, and the ratio of friction to
+//! stiffness decides the lag of a leg behind its servo.
 
 use crate::drive::Drive;
 use crate::feet::{Body, Feet};
@@ -20,7 +21,8 @@ pub struct GroundContact {
     pub body: Body,
     /// Stiffness and lengths of the feet, which decide their loads.
     pub stance: Stance,
-    /// Friction coefficient of a pad that slides forward. It has an effect only with springs or motors.
+    /// Friction coefficient of a pad that slides forward. It has an effect only if springs drive the legs or the
+    /// servos are not ideal.
     pub friction_coefficient: f64,
     /// Ratio of a pad's friction coefficients: backward slide over forward slide.
     pub friction_ratio: f64,

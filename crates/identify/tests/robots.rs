@@ -1,4 +1,4 @@
-//! Tests the identification of deliberately changed keys from simulated movements, for each robot of `robots/`.
+//! Tests the identification of deliberately altered keys from simulated movements, for each robot of `robots/`.
 
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -7,13 +7,14 @@ use fastrand::Rng;
 use lizard_identify::{Identification, KEYS, MeasuredMovement, Verdict, identify};
 use lizard_robot::{CheckedGait, GroundContact, Robot};
 
-/// Standard error of a mean of about eight cycles, mm and deg.
-const MEAN_ERROR: f64 = 0.03;
+/// Standard error of a mean of about eight cycles: mm for a distance, deg for a turn.
+const STANDARD_ERROR: f64 = 0.03;
 /// Number of recorded gaits.
 const GAIT_COUNT: usize = 8;
-/// Size of each key's change, in the order of `KEYS`. A robot gets up to three of these changes, up or down.
-const CHANGE_SIZES: [f64; 7] = [2.0, 0.5, 6.0, -5.0, 0.5, 0.15, 0.08];
+/// Change of each key, in the order of `KEYS`. A robot gets up to three of these changes or their opposites.
+const CHANGES: [f64; 7] = [2.0, 0.5, 6.0, -5.0, 0.5, 0.15, 0.08];
 
+/// Changes the key with this index in `KEYS`.
 fn change_key(ground: &mut GroundContact, key_index: usize, change: f64) {
     let value = match key_index {
         0 => &mut ground.feet.mount_angle,
@@ -32,7 +33,7 @@ fn random_deviate(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64()).sum::<f64>() - 6.0
 }
 
-/// Simulates a robot's fastest gaits on a changed ground, with the random errors of a video.
+/// Simulates a robot's fastest gaits with the keys of `ground` and the random errors of a video.
 fn record_movements(robot: &Robot, ground: &GroundContact, rng: &mut Rng) -> Vec<MeasuredMovement> {
     let compute_speed = |gait: &CheckedGait| {
         let prediction = robot.predict(gait);
@@ -52,8 +53,8 @@ fn record_movements(robot: &Robot, ground: &GroundContact, rng: &mut Rng) -> Vec
         MeasuredMovement {
             gait: gait.name().to_owned(),
             pace: 1.0,
-            mean: components.map(|component| component + MEAN_ERROR * random_deviate(rng)),
-            error: [MEAN_ERROR; 3],
+            mean: components.map(|component| component + STANDARD_ERROR * random_deviate(rng)),
+            error: [STANDARD_ERROR; 3],
         }
     });
     movements.collect()
@@ -73,11 +74,11 @@ impl Trial {
         let mut ground = *robot.ground();
         let mut changes = [0.0; 7];
         for _ in 0..3 {
-            let key_index = rng.usize(..CHANGE_SIZES.len());
-            // Play cannot become negative.
+            let key_index = rng.usize(..CHANGES.len());
+            // The key with index 1, play, cannot become negative.
             let is_increase = key_index == 1 || rng.bool();
             let sign = if is_increase { 1.0 } else { -1.0 };
-            changes[key_index] = sign * CHANGE_SIZES[key_index];
+            changes[key_index] = sign * CHANGES[key_index];
         }
         for (key_index, change) in changes.into_iter().enumerate() {
             change_key(&mut ground, key_index, change);
@@ -97,7 +98,7 @@ impl Trial {
 /// Run by `make measure-test`.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
-fn changed_keys_are_found_within_two_standard_errors_and_correct_keys_stay() {
+fn altered_keys_are_found_within_two_standard_errors_and_unaltered_keys_stay() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
     let mut robot_paths: Vec<PathBuf> = std::fs::read_dir(folder)
         .expect("the folder robots/ is readable")
@@ -121,7 +122,7 @@ fn changed_keys_are_found_within_two_standard_errors_and_correct_keys_stay() {
             .map(|trial| trial.expect("the trial does not panic"))
             .collect()
     });
-    let (mut changed_count, mut hit_count, mut unchanged_count, mut false_change_count) =
+    let (mut altered_count, mut hit_count, mut unaltered_count, mut false_change_count) =
         (0, 0, 0, 0);
     for trial in &trials {
         let goodness = &trial.identification.goodness;
@@ -143,27 +144,27 @@ fn changed_keys_are_found_within_two_standard_errors_and_correct_keys_stay() {
                 continue;
             }
             if change == 0.0 {
-                unchanged_count += 1;
+                unaltered_count += 1;
                 false_change_count += usize::from(shift != 0.0);
             } else {
-                changed_count += 1;
+                altered_count += 1;
                 hit_count += usize::from(is_hit);
             }
         }
     }
     println!(
-        "{hit_count} of {changed_count} changed keys are within two standard errors, \
-         {false_change_count} of {unchanged_count} correct keys changed"
+        "{hit_count} of {altered_count} altered keys are within two standard errors, \
+         {false_change_count} of {unaltered_count} unaltered keys got a new value"
     );
-    assert!(changed_count >= 12, "{changed_count} changed keys");
-    assert!(unchanged_count >= 20, "{unchanged_count} correct keys");
+    assert!(altered_count >= 12, "{altered_count} altered keys");
+    assert!(unaltered_count >= 20, "{unaltered_count} unaltered keys");
     assert!(
-        hit_count as f64 >= 0.9 * f64::from(changed_count),
-        "only {hit_count} of {changed_count} changed keys are within two standard errors"
+        hit_count as f64 >= 0.9 * f64::from(altered_count),
+        "only {hit_count} of {altered_count} altered keys are within two standard errors"
     );
     assert!(
-        false_change_count as f64 <= 0.1 * f64::from(unchanged_count),
-        "{false_change_count} of {unchanged_count} correct keys changed"
+        false_change_count as f64 <= 0.1 * f64::from(unaltered_count),
+        "{false_change_count} of {unaltered_count} unaltered keys got a new value"
     );
-    assert_eq!(KEYS.len(), CHANGE_SIZES.len());
+    assert_eq!(KEYS.len(), CHANGES.len());
 }

@@ -1,8 +1,8 @@
-//! The two ends of the robot, head and tail, each carried by a five-bar.
+//! The two ends of the robot, head and tail, each a five-bar and the point that it carries.
 //!
 //! The tail's mechanism is the head's, mirrored in the chassis frame's x axis. Each end has its own
 //! frame: x to the robot's right, y away from the chassis, origin in the middle of the end's base. In
-//! this frame one closed form solves both ends. Only this module contains their differences.
+//! this frame one closed form solves both ends. Only this module knows how the ends differ.
 
 use core::fmt;
 
@@ -31,8 +31,8 @@ impl End {
         }
     }
 
-    /// Indices, in servo order, of the servos of the left and of the right crank: A1 and A2 at the
-    /// head, A4 and A3 at the tail.
+    /// Indices (0 to 3 for A1 to A4) of the servos of the left and of the right crank: A1 and A2 at
+    /// the head, A4 and A3 at the tail.
     pub const fn servos(self) -> [usize; 2] {
         match self {
             Self::Head => [0, 1],

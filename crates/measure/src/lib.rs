@@ -3,14 +3,14 @@
 //! A video shows how far the robot moves in a cycle, but this distance means little without a prediction.
 //! [`predict_gait`] computes the path that a gait should take. [`Report`] compares the recorded path with it, as a
 //! table or as JSON, and [`NamedVideo::format_path_csv`] formats the recorded path as CSV.
-//! [`PaperSize::draw_tag_sheet`] draws the sheet of tags that a video must show, and [`compute_board_height`] computes
-//! the height of the card on the robot's deck. The crate reads no file and prints nothing.
+//! [`PaperSize::draw_tag_sheet`] draws the sheet of tags that a video must show, and [`compute_deck_height`] computes
+//! the height of the robot's deck, on which its card lies. The crate reads no file and prints nothing.
 //!
 //! # When not to use it
 //! For a path without a prediction, `lizard_video` is enough.
 
-mod board;
 mod component;
+mod deck;
 mod gaits;
 mod mujoco;
 mod named_video;
@@ -19,8 +19,8 @@ mod prediction_range;
 mod report;
 mod sheet;
 
-pub use board::compute_board_height;
 pub use component::{AGREEMENT_LIMIT, COMPONENT_LABELS, Component, format_verdict};
+pub use deck::compute_deck_height;
 pub use gaits::{Gaits, MeasuredWalk};
 pub use named_video::NamedVideo;
 pub use predicted_gait::predict_gait;

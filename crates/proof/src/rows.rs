@@ -1,5 +1,5 @@
-//! The rows and columns of pairs of positions. Rows are distributed over all cores, and a row's columns are computed
-//! eight at a time.
+//! The pairs of positions of two servos: a row is a position of the first, a column one of the second. Rows are
+//! distributed over all cores, and a row's columns are computed eight at a time.
 
 use std::array::from_fn;
 
@@ -13,16 +13,16 @@ use crate::tally::Tally;
 /// Number of columns that are computed at once in floating point.
 pub const LANE_COUNT: usize = 8;
 
-/// Number of pieces into which the rows of each end and each side are divided.
+/// Number of pieces into which the rows of each part are divided; a part is an end or a side.
 pub const PIECES_PER_PART: usize = 64;
 
-/// A sample of the pairs: in each row, the pairs whose column has a given remainder modulo `one_in`. The remainder
-/// differs from row to row.
+/// A sample of the pairs: in each row, the columns whose remainder modulo `one_in` is that of the row's index plus
+/// `offset`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PairSample {
     /// One pair out of this number is compared; at least 1.
     pub one_in: u32,
-    /// Offset of the selected columns, below `one_in`.
+    /// Offset of the selected columns in row 0, below `one_in`.
     pub offset: u32,
 }
 
@@ -30,21 +30,22 @@ pub struct PairSample {
 /// sample. The others fill the group.
 pub type Group = ([usize; LANE_COUNT], usize);
 
-/// Compares the pairs of a row and a group of columns, and adds them to a tally.
+/// Compares the pairs of a row, given by its index, and a group of columns, and adds them to a tally.
 pub type CompareGroup<'a> = dyn Fn([&Positions; 2], &mut Tally, usize, Group) + Sync + 'a;
 
 /// Compares the pairs of a piece that belong to a sample: calls `compare_group` with each row of the piece, on all
-/// cores, and with each group of its columns. Returns the sum of the rows' tallies.
+/// cores, and with each group of its columns. Calls `report_progress` with the number of rows completed since the last
+/// call. Returns the sum of the rows' tallies.
 pub fn tally_rows(
     positions: [&Positions; 2],
     sample: PairSample,
-    piece_index: usize,
+    piece_in_part: usize,
     report_progress: &(dyn Fn(u64) + Sync),
     compare_group: &CompareGroup<'_>,
 ) -> Tally {
     let [row_count, column_count] = positions.map(|positions| positions.fixed.len());
     let (one_in, offset) = (sample.one_in as usize, sample.offset as usize);
-    (row_count * piece_index / PIECES_PER_PART..row_count * (piece_index + 1) / PIECES_PER_PART)
+    (row_count * piece_in_part / PIECES_PER_PART..row_count * (piece_in_part + 1) / PIECES_PER_PART)
         .into_par_iter()
         .map(|row| {
             let mut tally = Tally::default();

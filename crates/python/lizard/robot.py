@@ -19,12 +19,12 @@ BANNER_PREFIX = "# lizard "
 BANNER_TIMEOUT = 3.0
 """Time limit for the banner after the port is opened, s; it includes more than 1 s for a UNO's boot loader."""
 STATUS_ATTEMPT_COUNT = 8
-"""Number of `status` lines sent to a board that sends no banner. It needs at most five to find the baud rate; a radio
-may lose the others."""
+"""Number of `status` lines sent to a board that sends no banner. The board needs at most five to find the baud rate;
+the others replace lines that a radio loses."""
 ANSWER_TIMEOUT = 2.0
 """Time limit for an answer, s; `save` takes a third of a second."""
 RETRY_TIME = 5.0
-"""Time during which an unanswered line that may be sent twice is repeated, s."""
+"""Time for which a line is repeated until it is answered, s; only for lines that do no harm when they arrive twice."""
 NO_PULSES_CODES = (7, 10)
 """Error codes of `stop` if there are no pulses to stop: the servos rest, or the flash has no robot."""
 STALL_TIME = 1.0
@@ -32,8 +32,8 @@ STALL_TIME = 1.0
 POSE_TOLERANCE = 0.02
 """Largest rounding difference between a commanded angle and the angle in `status`, deg."""
 DRIVING_DEADMAN = 901
-"""`deadman` while a program drives the robot, ms. No user is likely to choose this value: a robot that has it kept it
-from an earlier program."""
+"""`deadman` while a program drives the robot, ms. No user is likely to choose this value, so a robot with this value
+still has it from an earlier program."""
 
 
 class NoAnswer(RobotError):
@@ -78,8 +78,8 @@ class Robot:
         self._end_reason: str | None = ""
         self._port_error: OSError | None = None
         self._is_connected = False
-        # The start of the answer to a line that starts a gait, until that answer.
-        self._start_answer: str | None = None
+        # How the answer begins while a line that starts a gait waits for it.
+        self._awaited_prefix: str | None = None
         # `deadman` before and while this program drives the robot, ms.
         self._own_deadman: int | None = None
         self._driving_deadman: int | None = None
@@ -95,7 +95,7 @@ class Robot:
         self._keep_alive.start()
 
     def _wait_for_robot(self) -> None:
-        if self._wait(lambda: self._is_connected, BANNER_TIMEOUT):
+        if self._wait_until(lambda: self._is_connected, BANNER_TIMEOUT):
             return
         for _ in range(STATUS_ATTEMPT_COUNT):
             try:
@@ -141,10 +141,10 @@ class Robot:
             line += f" {cycles}"
         with self._exchange_lock:
             self._set_deadman()
-            self._start_answer = f"ok {line.split(' ')[0]}"
+            self._awaited_prefix = f"ok {line.split(' ')[0]}"
             try:
                 self.send(line)
-                self._set_deadman()  # A reset before the line has cleared it.
+                self._set_deadman()  # Lost if the robot was reset before the line.
             except NoAnswer as error:
                 # If the gait runs, `deadman` stops it.
                 self._end_reason = None
@@ -156,7 +156,7 @@ class Robot:
                     self._restore_deadman()
                 raise
             finally:
-                self._start_answer = None
+                self._awaited_prefix = None
         if cycles is not None:
             self.wait()
 
@@ -169,10 +169,10 @@ class Robot:
 
         Raises TimeoutError after `timeout` seconds, RobotError if the robot stops for another reason.
         """
-        if not self._wait(lambda: self._end_reason is not None, timeout):
+        if not self._wait_until(lambda: self._end_reason is not None, timeout):
             raise TimeoutError(f"the robot still moves after {timeout} s")
         with self._exchange_lock:
-            # Another thread may have started a gait, or a gait that was not answered may run.
+            # Another thread may have started a gait, or a gait may run although its answer was lost.
             if self._end_reason == "":
                 self._restore_deadman()
         if self._end_reason:
@@ -205,7 +205,7 @@ class Robot:
         self._end_gait("stand")
 
     def speed(self, percent: int) -> None:
-        """Sets the pace of gaits, 10 to 100 percent."""
+        """Sets the speed of gaits, 10 to 100 percent."""
         self.send(f"speed {percent}")
 
     def pose(self, *angles: float) -> tuple[float, ...]:
@@ -235,7 +235,7 @@ class Robot:
                 pose, last_movement_time = status.pose, now
             elif status.gait != "pose" or now - last_movement_time > STALL_TIME:
                 reason = f"guard {status.guard}, fault {status.fault}"
-                raise RobotError(f"the robot stopped before the pose: {reason}")
+                raise RobotError(f"the robot did not reach the pose: {reason}")
             time.sleep(FRAME_PERIOD)
 
     def status(self) -> Status:
@@ -322,8 +322,8 @@ class Robot:
             def find_answers() -> list[str]:
                 return [text for text in self._answers if pattern.match(text)]
 
-            if not self._wait(lambda: find_answers() != [], timeout):
-                raise NoAnswer(f"the robot does not answer to `{line}`")
+            if not self._wait_until(lambda: find_answers() != [], timeout):
+                raise NoAnswer(f"the robot does not answer `{line}`")
             answer = find_answers()[0]
             if answer.startswith("err "):
                 code, reason = answer.split(" ", 2)[1:]
@@ -339,7 +339,7 @@ class Robot:
             self._port_error = error
             self._check_open()
 
-    def _wait(self, is_ready: Callable[[], bool], timeout: float | None) -> bool:
+    def _wait_until(self, is_ready: Callable[[], bool], timeout: float | None) -> bool:
         """Waits until `is_ready` is true; returns False after `timeout` seconds. Raises an error if the port closes."""
         with self._condition:
             was_ready = self._condition.wait_for(
@@ -377,7 +377,7 @@ class Robot:
             self._own_deadman = own_deadman
         driving_deadman = min(own_deadman or DRIVING_DEADMAN, DRIVING_DEADMAN)
         self._send_until_answered(f"deadman {driving_deadman}")
-        # A reset meanwhile has cleared both.
+        # If the robot was reset meanwhile, `_handle_line` has cleared both.
         self._own_deadman, self._driving_deadman = own_deadman, driving_deadman
 
     def _restore_deadman(self) -> None:
@@ -464,9 +464,9 @@ class Robot:
                 self._notes.append(line)
             elif line:
                 self._answers.append(line)
-                if line == "ok rest":  # `status` is the same while a routine rests
+                if line == "ok rest":  # `status` also shows `rest` in a routine
                     self._mark_ended("`rest` has ended the gait")
                 # A `# done` before this answer belongs to the gait before.
-                elif self._start_answer and line.startswith(self._start_answer):
+                elif self._awaited_prefix and line.startswith(self._awaited_prefix):
                     self._end_reason = None
             self._condition.notify_all()

@@ -231,7 +231,7 @@ def test_an_unanswered_gait_ends_the_wait_for_the_gait_before(robot, monkeypatch
     monkeypatch.setattr("lizard.robot.ANSWER_TIMEOUT", 0.1)
     lose_all_bytes(robot, monkeypatch)
     threading.Timer(0.1, trot).start()
-    with pytest.raises(lizard.RobotError, match="does not answer to `trot`"):
+    with pytest.raises(lizard.RobotError, match="does not answer `trot`"):
         robot.wait(timeout=10)
 
 

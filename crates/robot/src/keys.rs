@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use crate::config::RobotConfig;
-use crate::file::{self, Error, KEY_READS, KeyRead, Range, Table, format_number};
+use crate::file::{self, Error, KEY_USES, KeyUse, Range, Table, format_number};
 use crate::gaits::{define, routine};
 use crate::robot::TOP_LEVEL_KEYS;
 
@@ -77,14 +77,14 @@ fn format_range((min, max): Range, unit: &str) -> String {
 
 /// Records all keys that the reader accepts, except keys whose values are tables.
 fn record_keys() -> BTreeMap<String, RecordedCells> {
-    KEY_READS.with_borrow_mut(Vec::clear);
+    KEY_USES.with_borrow_mut(Vec::clear);
     read_definitions(&robot_text_with_every_table()).expect("the robot with every table is valid");
-    let key_reads = KEY_READS.with_borrow_mut(std::mem::take);
+    let key_uses = KEY_USES.with_borrow_mut(std::mem::take);
     let mut keys = BTreeMap::<String, RecordedCells>::new();
-    for (key, read) in &key_reads {
+    for (key, key_use) in &key_uses {
         let recorded_cells = keys.entry(to_generic_name(key)).or_default();
-        match read {
-            KeyRead::Number {
+        match key_use {
+            KeyUse::Number {
                 range,
                 unit,
                 default,
@@ -94,16 +94,16 @@ fn record_keys() -> BTreeMap<String, RecordedCells> {
                 let default = default.map(format_number);
                 recorded_cells.default = default.or(recorded_cells.default.take());
             }
-            KeyRead::Polar(distance_range, angle_range) => {
+            KeyUse::Polar(distance_range, angle_range) => {
                 let distance_values = format_range(*distance_range, "mm");
                 let angle_values = format_range(*angle_range, "deg");
                 recorded_cells.values = Some(format!("{distance_values}; {angle_values}"));
             }
-            KeyRead::Allowed | KeyRead::Table => {}
+            KeyUse::Allowed | KeyUse::Table => {}
         }
     }
-    let is_table = |read: &&(String, KeyRead)| matches!(read.1, KeyRead::Table);
-    for (table, _) in key_reads.iter().filter(is_table) {
+    let is_table = |key_use: &&(String, KeyUse)| matches!(key_use.1, KeyUse::Table);
+    for (table, _) in key_uses.iter().filter(is_table) {
         // Lists of harmonics are recorded as tables, but are keys, too.
         if !table.ends_with(".x") && !table.ends_with(".y") {
             keys.remove(&to_generic_name(table));

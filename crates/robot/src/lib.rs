@@ -43,7 +43,8 @@ pub use checks::{
 pub use config::servo;
 pub use config::{
     Coil, FUSE_RATING_A, Horn, INPUT_NAMES, Inputs, LegPlan, LegPoints, MIN_SWITCH_RATING_A, Pad,
-    Parts, Plate, Rail, Screw, Servo, ServoBody, ServoType, SpeedLimits, Supplies, healthy_rail_mv,
+    Parts, Plate, Rail, Screw, Servo, ServoBody, ServoType, SpeedLimits, Supplies,
+    healthy_rail_pin_mv,
 };
 pub use file::{Error, MAX_FILE_BYTES, edit, explain_mistake};
 pub use gaits::{Bars, Harmonic, Path, PathLeg, Routine, Stride, Waveform, to_command};

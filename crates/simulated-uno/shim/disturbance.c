@@ -24,12 +24,12 @@ static bool follows_enable(const avr_t *avr)
 void disturbance_serve(struct disturbance *disturbance)
 {
 	avr_t *avr = disturbance->avr;
-	if (!disturbance->blocked_cycles || !accepts_interrupts(avr))
+	if (!disturbance->foreign_cycles_left || !accepts_interrupts(avr))
 		return;
 	avr->state = cpu_Running;
 	/* Cycle by cycle, so that each event meanwhile, such as the arrival of a byte, happens at
 	 * its own time. */
-	for (; disturbance->blocked_cycles; disturbance->blocked_cycles--) {
+	for (; disturbance->foreign_cycles_left; disturbance->foreign_cycles_left--) {
 		avr->cycle++;
 		avr_cycle_timer_process(avr);
 	}
@@ -37,7 +37,7 @@ void disturbance_serve(struct disturbance *disturbance)
 
 bool disturbance_is_active(const struct disturbance *disturbance)
 {
-	return disturbance->blocked_cycles || disturbance->avr->cycle < disturbance->stalled_until;
+	return disturbance->foreign_cycles_left || disturbance->avr->cycle < disturbance->stalled_until;
 }
 
 bool disturbance_stalls_main(const struct disturbance *disturbance)

@@ -1,5 +1,5 @@
-/* Disturbances of the CPU that a test imposes: a foreign interrupt, which has no source on the
- * chip and the highest priority, and a main program that makes no progress.
+/* Disturbances of the CPU that a test imposes: a foreign interrupt, which has the highest
+ * priority and no source on the chip, and a main program that makes no progress.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -10,8 +10,8 @@
 struct disturbance {
 	avr_t *avr;
 	const struct handlers *handlers;
-	uint64_t blocked_cycles; /* remaining cycles of the foreign interrupt; 0 if none is pending */
-	uint64_t stalled_until;  /* the main program executes nothing before this cycle */
+	uint64_t foreign_cycles_left; /* in the foreign interrupt; 0 if none is pending */
+	uint64_t stalled_until;       /* the main program executes nothing before this cycle */
 };
 
 /* Serves the foreign interrupt if it is pending and interrupts are enabled: its cycles pass

@@ -2,11 +2,11 @@
 #include "supply.h"
 
 #define NOMINAL_MV 5000.0
-#define BROWN_OUT_MV 2700.0        /* VBOT with the UNO's fuses, BODLEVEL = 101 (29.5) */
+#define BROWN_OUT_MV 2700.0        /* VBOT with the UNO's fuses, BODLEVEL = 101 (data sheet 29.5) */
 #define HYSTERESIS_MV 50.0         /* VHYST */
 #define POWER_ON_RISING_MV 1400.0  /* VPOT, typical: a rising supply releases the power-on reset */
 #define POWER_ON_FALLING_MV 1300.0 /* VPOT, typical: a falling supply causes the power-on reset */
-#define MIN_OPERATING_MV 1800.0    /* below this, an EEPROM operation is torn */
+#define MIN_OPERATING_MV 1800.0    /* below this, an EEPROM operation ends with a torn byte */
 
 double supply_mv(const struct supply *supply, uint64_t cycle)
 {
@@ -18,7 +18,7 @@ double supply_mv(const struct supply *supply, uint64_t cycle)
 }
 
 /* The voltage below which the supply holds the chip in reset: "VBOT- = VBOT - VHYST/2"
- * (11.5). */
+ * (data sheet 11.5). */
 static double hold_below_mv(const struct supply *supply)
 {
 	return supply->brown_out_mv > 0 ? supply->brown_out_mv - HYSTERESIS_MV / 2 : POWER_ON_FALLING_MV;
@@ -30,7 +30,7 @@ static double release_above_mv(const struct supply *supply)
 	return supply->brown_out_mv > 0 ? supply->brown_out_mv + HYSTERESIS_MV / 2 : POWER_ON_RISING_MV;
 }
 
-/* The first cycle after the current one at which the ramp is beyond `level_mv`; 0: never. */
+/* The first cycle after the current one at which the ramp is beyond `level_mv`, or 0 if none. */
 static uint64_t crossing_cycle(const struct supply *supply, double level_mv)
 {
 	double change_mv = supply->to_mv - supply->from_mv;
@@ -62,8 +62,8 @@ static void schedule_check(struct supply *supply)
 		chip_call_at(avr, next_check, check_supply, supply);
 }
 
-/* Holds the chip in reset or releases it, according to the current voltage. */
-static void update(struct supply *supply)
+/* Applies the current voltage to the reset, the EEPROM and the SRAM. */
+static void apply_voltage(struct supply *supply)
 {
 	if (!supply->reset->follows_data_sheet)
 		return;
@@ -85,7 +85,7 @@ static void update(struct supply *supply)
 
 static avr_cycle_count_t check_supply(avr_t *avr, avr_cycle_count_t when, void *param)
 {
-	update(param);
+	apply_voltage(param);
 	return 0;
 }
 
@@ -116,16 +116,16 @@ void supply_ramp(struct supply *supply, double mv, uint64_t cycles)
 	supply->ramp_start = avr->cycle;
 	supply->ramp_end = avr->cycle + cycles;
 	avr->vcc = avr->avcc = avr->aref = mv; /* read by stock simavr's ADC */
-	update(supply);
+	apply_voltage(supply);
 }
 
 void supply_set_brown_out(struct supply *supply, double mv)
 {
 	supply->brown_out_mv = mv;
-	update(supply);
+	apply_voltage(supply);
 }
 
-static void arm_power_cut(struct supply *supply)
+static void schedule_power_cut(struct supply *supply)
 {
 	avr_t *avr = supply->reset->avr;
 	avr_cycle_timer_cancel(avr, cut_power, supply);
@@ -136,7 +136,7 @@ static void arm_power_cut(struct supply *supply)
 void supply_schedule_power_cut(struct supply *supply, uint64_t cycle)
 {
 	supply->power_cut_at = cycle;
-	arm_power_cut(supply);
+	schedule_power_cut(supply);
 }
 
 bool supply_may_reset(const struct supply *supply)
@@ -147,7 +147,7 @@ bool supply_may_reset(const struct supply *supply)
 void supply_reset(struct supply *supply)
 {
 	schedule_check(supply);
-	arm_power_cut(supply);
+	schedule_power_cut(supply);
 }
 
 void supply_power_on(struct supply *supply)

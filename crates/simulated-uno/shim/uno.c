@@ -319,7 +319,7 @@ void uno_set_flood(struct uno *uno, const uint8_t *bytes, size_t length)
 void uno_block_cpu(struct uno *uno, uint64_t cycles)
 {
 	avr_t *avr = uno->avr;
-	uno->disturbance.blocked_cycles = cycles;
+	uno->disturbance.foreign_cycles_left = cycles;
 	if (avr->state != cpu_Sleeping)
 		return; /* served by the loop, as soon as interrupts are enabled */
 	restart_catch_up(uno);

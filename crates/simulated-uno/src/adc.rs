@@ -1,4 +1,4 @@
-//! The voltages that the ADC measures: the bandgap reference and the analogue pins.
+//! The voltages that the ADC measures: the bandgap reference and the pins A0 to A5.
 
 use crate::ffi;
 use crate::{Pin, Uno};
@@ -14,7 +14,7 @@ impl Uno {
             (1000.0..=1200.0).contains(&mv),
             "the bandgap reference must be between 1000 and 1200 mV, but is {mv} mV"
         );
-        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim keeps a number.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim only stores the voltage.
         unsafe { ffi::uno_set_bandgap(self.raw, mv) }
     }
 
@@ -24,7 +24,7 @@ impl Uno {
     /// If the pin is not one of A0 to A5.
     pub fn set_analog_mv(&mut self, pin: Pin, mv: u16) {
         let channel = pin.number().checked_sub(Pin::a(0).number());
-        let channel = channel.unwrap_or_else(|| panic!("{pin} is not an analogue pin"));
+        let channel = channel.unwrap_or_else(|| panic!("{pin} is not an analog pin"));
         // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim takes the channel modulo the
         // number of channels.
         unsafe { ffi::uno_set_analog(self.raw, channel, mv) }

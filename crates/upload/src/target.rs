@@ -32,9 +32,9 @@ pub struct Target {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{} bytes of flash are needed, but a Nano has only {NANO_BOOT_ADDRESS} before its boot section{}. \
          Nothing was written", .end_address, if *.is_model_uncertain {
-    "; according to its USB chip, this board may be a Nano"
+    "; the USB chip of this board is used on both UNOs and Nanos"
 } else {
-    ". Gaits can be left out of robot.toml until it fits"
+    ". Remove gaits from robot.toml until the image fits"
 })]
 pub struct ImageTooLong {
     /// The address after the image's last byte.

@@ -17,14 +17,14 @@ pub enum Activity {
     Cycling,
     /// The robot writes the EEPROM.
     Saving,
-    /// The program has just started.
+    /// The firmware has just started.
     Starting,
     /// The robot answers a request.
-    Talking,
-    /// The robot performs its routine while its contacts close and open.
+    Answering,
+    /// The robot performs its routine while the contacts at its inputs close and open.
     Patrolling,
     /// A person drives the robot by radio.
-    Driving,
+    Driven,
 }
 
 impl Activity {
@@ -37,16 +37,17 @@ impl Activity {
         Self::Cycling,
         Self::Saving,
         Self::Starting,
-        Self::Talking,
+        Self::Answering,
         Self::Patrolling,
-        Self::Driving,
+        Self::Driven,
     ];
 
-    /// Returns the activity of the scenario with this number. In four of thirteen scenarios, a person drives the robot.
+    /// Returns the activity of the scenario with this number. Of thirteen scenarios, four are `Driven` and one is of
+    /// each other activity.
     #[must_use]
     pub fn for_scenario(number: u64) -> Self {
         let index = (number % 13) as usize;
-        Self::ALL.get(index).copied().unwrap_or(Self::Driving)
+        Self::ALL.get(index).copied().unwrap_or(Self::Driven)
     }
 }
 

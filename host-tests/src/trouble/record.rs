@@ -14,11 +14,11 @@ use simulated_uno::{
 pub const MS: u64 = CYCLES_PER_MS;
 
 /// A range of cycles.
-pub type Span = Range<u64>;
+pub type CycleSpan = Range<u64>;
 
 /// True if two spans have a cycle in common.
 #[must_use]
-pub fn overlap(first: &Span, second: &Span) -> bool {
+pub fn overlap(first: &CycleSpan, second: &CycleSpan) -> bool {
     first.start < second.end && second.start < first.end
 }
 
@@ -67,7 +67,7 @@ pub struct ReceivedLine {
     /// The effect on the servos if the board carries out the line.
     pub effect: Effect,
     /// True if the line is a command and arrived undamaged.
-    pub is_command: bool,
+    pub is_intact_command: bool,
 }
 
 impl ReceivedLine {
@@ -87,9 +87,9 @@ pub struct Record {
     pub pulses: Vec<(u64, Pulse)>,
     /// The lines that the board printed.
     pub printed_lines: Vec<Line>,
-    /// The lines that were sent with a wait for their answers, in chronological order.
+    /// The lines for whose answers the scenario waited, in chronological order.
     pub exchanges: Vec<Exchange>,
-    /// The lines that arrived at the board, sent with or without a wait for an answer.
+    /// The lines that arrived at the board, whether or not the scenario waited for an answer.
     pub received_lines: Vec<ReceivedLine>,
     /// The lines that were sent by cable or radio, each with its cycle.
     pub sent_lines: Vec<(u64, String)>,
@@ -97,21 +97,21 @@ pub struct Record {
     pub stop_cycles: Vec<u64>,
     /// The spans in which the person's lines could reach the board: the radio link existed, and the phone's screen was
     /// not locked.
-    pub radio_spans: Vec<Span>,
+    pub radio_spans: Vec<CycleSpan>,
     /// The cycles at which bytes arrived at the board.
     pub byte_cycles: Vec<u64>,
-    /// All starts of the program.
-    pub starts: Vec<ResetEvent>,
+    /// All resets, each of which starts the program.
+    pub resets: Vec<ResetEvent>,
     /// All writes to the EEPROM.
     pub eeprom_writes: Vec<EepromOperation>,
     /// The supply voltages in mV, each with the cycle from which it applied.
     pub supply_mv: Vec<(u64, f64)>,
     /// The spans in which the main loop was stalled.
-    pub stalls: Vec<Span>,
+    pub stalls: Vec<CycleSpan>,
     /// The spans in which interrupts were blocked.
-    pub interrupt_blocks: Vec<Span>,
+    pub interrupt_blocks: Vec<CycleSpan>,
     /// The cycles at which RESET was pulled low, or the supply was cut or fell below the brown-out level.
-    pub cut_cycles: Vec<u64>,
+    pub pulse_cut_cycles: Vec<u64>,
     /// The cycle at which the scenario ended.
     pub end_cycle: u64,
     /// The board's state at the end; `None` until the scenario has ended.
@@ -129,11 +129,11 @@ impl Record {
                 let is_cut_at = |cycle: &u64| {
                     (*cycle..*cycle + RELEASE_CYCLES).contains(&end) || (start..end).contains(cycle)
                 };
-                let is_delayed_by = |block: &Span| overlap(block, &(start..end + MS));
+                let is_delayed_by = |block: &CycleSpan| overlap(block, &(start..end + MS));
                 let pulse = Pulse {
                     servo,
                     width: pulse.width as u32,
-                    is_cut: self.cut_cycles.iter().any(is_cut_at),
+                    is_cut: self.pulse_cut_cycles.iter().any(is_cut_at),
                     is_end_late: self.interrupt_blocks.iter().any(is_delayed_by),
                 };
                 self.pulses.push((start, pulse));
@@ -143,7 +143,7 @@ impl Record {
 
     /// True if the main loop was stalled or interrupts were blocked in this span.
     #[must_use]
-    pub fn is_stalled_or_blocked(&self, span: &Span) -> bool {
+    pub fn is_stalled_or_blocked(&self, span: &CycleSpan) -> bool {
         let mut disturbances = self.stalls.iter().chain(&self.interrupt_blocks);
         disturbances.any(|disturbance| overlap(disturbance, span))
     }
@@ -172,7 +172,7 @@ impl Record {
             })
     }
 
-    /// Derives the outcome of a line that was sent without a wait for its answer, from the lines that the board prints
+    /// Derives the outcome of a line for whose answer the scenario did not wait, from the lines that the board prints
     /// in the next 300 ms. Returns `Some(true)` if the board carried out the line, `Some(false)` if it refused the
     /// line, `None` if the outcome is unknown.
     fn derive_outcome(&self, received: &ReceivedLine) -> Option<bool> {
@@ -187,7 +187,7 @@ impl Record {
         if next_lines.clone().any(|line| is_ok(&line.text)) {
             return Some(true);
         }
-        // After these errors, the board refuses every motion command.
+        // While the servos rest (7) or the supply is too low (8), a motion command without an `ok` is refused.
         let is_refusal = |text: &str| text.starts_with("err 7 ") || text.starts_with("err 8 ");
         let is_refused = next_lines.any(|line| is_refusal(&line.text));
         (is_refused && !self.is_disturbed(&span)).then_some(false)
@@ -195,7 +195,7 @@ impl Record {
 
     /// True if the answer to a `save` that arrived at this cycle was `ok`.
     #[must_use]
-    pub fn is_saved(&self, cycle: u64) -> bool {
+    pub fn was_save_accepted_at(&self, cycle: u64) -> bool {
         let is_accepted_save = |exchange: &Exchange| {
             let sent_span = exchange.sent_cycle..exchange.sent_cycle + 10 * MS;
             exchange.line == "save" && exchange.is_accepted() && sent_span.contains(&cycle)
@@ -207,22 +207,22 @@ impl Record {
     /// person began to drive by radio, and since the last reset that made the board forget the rate.
     #[must_use]
     pub fn has_found_baud_rate(&self, cycle: u64) -> bool {
-        let radio_start = self.radio_spans.first().map_or(cycle, |link| link.start);
-        let forgets_baud_rate = |start: &&ResetEvent| {
-            let is_reset = matches!(start.cause, ResetCause::PowerOn | ResetCause::External);
-            is_reset && start.cycle < cycle
+        let radio_start = self.radio_spans.first().map_or(cycle, |span| span.start);
+        let forgets_baud_rate = |reset: &&ResetEvent| {
+            let is_cause = matches!(reset.cause, ResetCause::PowerOn | ResetCause::External);
+            is_cause && reset.cycle < cycle
         };
-        let start = self.starts.iter().rev().find(forgets_baud_rate);
-        let search_start = start.map_or(radio_start, |start| start.cycle.max(radio_start));
+        let reset = self.resets.iter().rev().find(forgets_baud_rate);
+        let search_start = reset.map_or(radio_start, |reset| reset.cycle.max(radio_start));
         let mut lines = self.printed_lines.iter();
         lines.any(|line| line.is_answer() && (search_start..cycle).contains(&line.cycle))
     }
 
     /// True if there was a reset, a power cut, a stall or a block of interrupts in this span.
     #[must_use]
-    pub fn is_disturbed(&self, span: &Span) -> bool {
-        self.starts.iter().any(|reset| span.contains(&reset.cycle))
-            || self.cut_cycles.iter().any(|cut| span.contains(cut))
+    pub fn is_disturbed(&self, span: &CycleSpan) -> bool {
+        self.resets.iter().any(|reset| span.contains(&reset.cycle))
+            || self.pulse_cut_cycles.iter().any(|cut| span.contains(cut))
             || self.is_stalled_or_blocked(span)
     }
 }

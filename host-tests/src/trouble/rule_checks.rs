@@ -12,7 +12,7 @@ use simulated_uno::{Pin, ResetCause, State};
 use crate::{CYCLES_PER_US, FRAME_CYCLES};
 
 use super::random_commands::LARGE_SCALE;
-use super::record::{Exchange, MS, Record, Span, overlap};
+use super::record::{CycleSpan, Exchange, MS, Record, overlap};
 use super::scenario::Scenario;
 
 /// The LED's pin, D13.
@@ -106,7 +106,7 @@ pub fn collect_events(record: &Record) -> Vec<(Time, Event<'_>)> {
     for (cycle, mv) in &record.supply_mv {
         add(*cycle, Event::SupplyMv(*mv as u32));
     }
-    for cut in &record.cut_cycles {
+    for cut in &record.pulse_cut_cycles {
         add(*cut, Event::ProgramCut);
     }
     for stall in &record.stalls {
@@ -115,17 +115,17 @@ pub fn collect_events(record: &Record) -> Vec<(Time, Event<'_>)> {
     for block in &record.interrupt_blocks {
         add(block.start, Event::InterruptsBlocked(to_time(block.end)));
     }
-    for start in &record.starts {
-        add(start.cycle, Event::ProgramStart(to_cause(start.cause)));
+    for reset in &record.resets {
+        add(reset.cycle, Event::ProgramStart(to_cause(reset.cause)));
     }
     for cycle in &record.byte_cycles {
         add(*cycle, Event::ByteReceived);
     }
     let received_lines = record.received_lines.iter();
     for received in received_lines.filter(|received| !received.text.is_empty()) {
-        let is_command = received.is_command;
+        let is_command = received.is_intact_command;
         add(received.cycle, Event::LineReceived { is_command });
-        let is_saved = received.text == "save" && record.is_saved(received.cycle);
+        let is_saved = received.text == "save" && record.was_save_accepted_at(received.cycle);
         if received.text == "save" || received.effect == Effect::CalibrationChange {
             add(received.cycle, Event::CalibrationChanged { is_saved });
         }
@@ -266,8 +266,8 @@ fn check_pulse_times(record: &Record) -> Result<(), String> {
             let has_rested = to - from > 4 * FRAME_CYCLES;
             let mut blocks = record.interrupt_blocks.iter();
             let is_delayed = blocks.any(|block| overlap(block, &span));
-            let mut starts = record.starts.iter();
-            let was_reset = starts.any(|start| span.contains(&start.cycle));
+            let mut resets = record.resets.iter();
+            let was_reset = resets.any(|reset| span.contains(&reset.cycle));
             if !has_rested && to - from != FRAME_CYCLES && !is_delayed && !was_reset {
                 let late_cycles = to as i64 - (from + FRAME_CYCLES) as i64;
                 let (number, ms) = (servo + 1, to / MS);
@@ -295,8 +295,8 @@ fn check_only_sent_lines(record: &Record) -> Result<(), String> {
         // After a reset during a line, the program receives only the last part of the line. If the radio link breaks
         // during a line, noise may end the line early.
         let recent_cycles = line.cycle.saturating_sub(200 * MS)..line.cycle;
-        let mut starts = record.starts.iter();
-        let was_reset = starts.any(|start| recent_cycles.contains(&start.cycle));
+        let mut resets = record.resets.iter();
+        let was_reset = resets.any(|reset| recent_cycles.contains(&reset.cycle));
         let link_breaks_after = |cycle: u64| {
             let mut spans = record.radio_spans.iter();
             spans.any(|link| (cycle..cycle + 200 * MS).contains(&link.end))
@@ -331,7 +331,7 @@ fn check_stops_are_answered(record: &Record) -> Result<(), String> {
         };
         let answer = record.printed_lines.iter().find(is_stop_answer);
         let answer_cycle = answer.map(|line| line.cycle);
-        let find_deadline = |link: &Span| {
+        let find_deadline = |link: &CycleSpan| {
             let start = link.start.max(*stop);
             let deadline = match record.has_found_baud_rate(start) {
                 true => start + ANSWER_CYCLES,
@@ -368,8 +368,8 @@ fn check_led(record: &Record) -> Result<(), String> {
     let change_lines = lines.filter(|line| reports_change(&line.text));
     let changes = change_lines.map(|line| line.cycle);
     let changes = changes.chain(record.motion_commands().map(|(received, _)| received.cycle));
-    let starts = record.starts.iter().map(|start| start.cycle);
-    let changes: Vec<u64> = changes.chain(starts).collect();
+    let resets = record.resets.iter().map(|reset| reset.cycle);
+    let changes: Vec<u64> = changes.chain(resets).collect();
     for (cycle, code) in record.exchanges.iter().filter_map(reported_code) {
         // A flash of the LED that began before the last change belongs to the previous pattern.
         let last_change = changes.iter().filter(|change| **change < cycle).max();

@@ -168,9 +168,9 @@ impl Script<'_> {
             }
             Activity::Saving => self.start_saving(),
             Activity::Starting => self.start_program(is_at_power_on),
-            Activity::Talking => self.start_talking(),
+            Activity::Answering => self.start_requests(),
             Activity::Patrolling => self.start_patrol(),
-            Activity::Driving => self.start_drive(),
+            Activity::Driven => self.start_drive(),
         }
     }
 
@@ -214,7 +214,7 @@ impl Script<'_> {
     }
 
     /// Sends up to four lines without a wait for their answers, in some cases at rest or while a gait runs.
-    fn start_talking(&mut self) {
+    fn start_requests(&mut self) {
         match self.rng.u8(0..3) {
             0 => self.say("rest"),
             1 => self.say_random_gait(),

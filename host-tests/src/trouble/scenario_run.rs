@@ -104,12 +104,12 @@ impl ScenarioRun<'_> {
                 self.record.interrupt_blocks.push(now..end);
             }
             Step::Reset => {
-                self.record.cut_cycles.push(now);
+                self.record.pulse_cut_cycles.push(now);
                 self.uno.reset();
                 self.record_events();
             }
             Step::PowerCycle => {
-                self.record.cut_cycles.push(now);
+                self.record.pulse_cut_cycles.push(now);
                 self.uno.power_cycle();
                 self.record_events();
             }
@@ -215,7 +215,7 @@ impl ScenarioRun<'_> {
         self.uno.set_supply_mv(mv);
         self.record.supply_mv.push((now, mv));
         if mv < BROWN_OUT_MV {
-            self.record.cut_cycles.push(now);
+            self.record.pulse_cut_cycles.push(now);
         }
     }
 
@@ -275,7 +275,7 @@ impl ScenarioRun<'_> {
         self.record_events();
         let mut record = self.record;
         record.end_cycle = self.uno.cycle();
-        record.starts = self.uno.reset_events();
+        record.resets = self.uno.reset_events();
         record.eeprom_writes = self.uno.eeprom_operations();
         record.state = Some(self.uno.state().clone());
         let mut line_bytes = Vec::new();
@@ -303,7 +303,7 @@ fn parse_received_line(bytes: &[u8], cycle: u64, robot: &Robot) -> ReceivedLine 
     ReceivedLine {
         cycle,
         effect: find_suffix_effect(&text, robot),
-        is_command: is_undamaged && parse(text.as_bytes(), robot.firmware()).is_ok(),
+        is_intact_command: is_undamaged && parse(text.as_bytes(), robot.firmware()).is_ok(),
         text,
     }
 }

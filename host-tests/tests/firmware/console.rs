@@ -22,7 +22,7 @@ const MAX_PRINT_ERROR_DEG: f64 = 0.005 + 0.0032 + 0.0028;
 
 #[test]
 fn the_banner_and_an_answer_come_within_a_second_of_power_on() {
-    start_in_both_simulations(FirmwareBench::boot_with, |mut bench| {
+    start_in_both_simulations(FirmwareBench::boot, |mut bench| {
         let hash = robot().firmware().hash();
         let banner = bench.lines()[0].text.clone();
         assert!(banner.starts_with("# lizard "), "{banner}");

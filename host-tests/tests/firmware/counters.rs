@@ -1,4 +1,4 @@
-//! Tests of the fault counters. Each test causes faults and reads their counter, even while the counter changes.
+//! Tests of the fault counters: they count every fault, can be read while they change, and stay at their maximum.
 
 use lizard_host::sim::frame::FRAME_CYCLES;
 use simulated_uno::Fidelity;
@@ -27,28 +27,28 @@ fn each_overrun_of_the_receiver_is_counted() {
 #[test]
 fn a_counter_read_during_a_carry_has_its_old_or_new_value() {
     start_in_both_simulations(ReferenceRun::start_standing, |mut run| {
-        let late_address = run.variable_address("pulses::LATE_EDGES");
-        // From here on, the robot has stopped because of a late pulse, and the frame count has four digits, so all
-        // answers have the same length.
-        run.bench.uno.poke(late_address, 255);
+        let late_edges_address = run.variable_address("pulses::LATE_EDGES");
+        // The count written here stops the robot, and after 20 s the frame count has four digits, so all answers have
+        // the same length.
+        run.bench.uno.poke(late_edges_address, 255);
         run.bench.run_ms(20_000);
         let start = run.run_to_next_frame();
         let (mut old_value_count, mut new_value_count) = (0, 0);
-        // `status` is sent so that the main loop reads the count at a rising edge. It reads the count about `read_lead`
-        // cycles before the last part of the answer, which begins `answer_delay` cycles after the line arrives.
+        // The main loop is to read the count at A2's rising edge. The last part of its answer to `status` begins
+        // `answer_delay` cycles after the line arrives, and the count is read about `read_lead` cycles before it.
         // Interrupts lengthen this delay depending on the phase of the frame, so it is measured until it no longer
         // changes. Each attempt takes three frames, so that an answer is complete before the next line is sent.
-        let rise_cycle = |n: u64| start + 3 * n * FRAME_CYCLES + SLOT_CYCLES;
+        let a2_rise_cycle = |n: u64| start + 3 * n * FRAME_CYCLES + SLOT_CYCLES;
         let (mut answer_delay, mut read_lead, mut attempt) = (150_000, 2_800, 0);
         loop {
             attempt += 1;
-            let arrival_cycle = rise_cycle(attempt) - read_lead - answer_delay;
+            let arrival_cycle = a2_rise_cycle(attempt) - read_lead - answer_delay;
             let new_delay = measure_answer_delay(&mut run, arrival_cycle);
             if new_delay == answer_delay {
                 break;
             }
-            // At some phases of the frame, a tick delays only some answers. Slightly earlier, a tick delays every
-            // answer or none, so the read is aimed earlier after four attempts.
+            // At some phases of the frame, the frame's interrupt delays only some answers. After four attempts, the
+            // read is therefore aimed earlier, where the interrupt delays every answer or none.
             read_lead += 200 * u64::from(attempt > 4);
             answer_delay = new_delay;
             assert!(attempt < 40, "the answer delay does not converge");
@@ -57,10 +57,10 @@ fn a_counter_read_during_a_carry_has_its_old_or_new_value() {
         // the stall.
         for round in 0..500 {
             // Sending the answer takes most of a frame, and a `#` line may come before it.
-            let rise = rise_cycle(attempt + round + 2);
+            let rise = a2_rise_cycle(attempt + round + 2);
             run.run_to(rise - read_lead - answer_delay - 15_000);
-            run.bench.uno.poke(late_address, 255);
-            run.bench.uno.poke(late_address + 1, 0);
+            run.bench.uno.poke(late_edges_address, 255);
+            run.bench.uno.poke(late_edges_address + 1, 0);
             let line_count_before = run.bench.lines().len();
             send_status_at(&mut run, rise - read_lead - answer_delay);
             run.run_to(rise - read_lead - 500 + 2 * round);
@@ -108,11 +108,11 @@ fn measure_answer_delay(run: &mut ReferenceRun, arrival_cycle: u64) -> u64 {
 #[test]
 fn a_counter_at_its_maximum_stays_there() {
     let mut run = ReferenceRun::start_standing(Fidelity::DataSheet);
-    let late_address = run.variable_address("pulses::LATE_EDGES");
-    run.bench.uno.poke(late_address, 0xff);
-    run.bench.uno.poke(late_address + 1, 0xff);
-    let rise = run.run_to_next_frame();
-    run.run_to(rise - 600);
+    let late_edges_address = run.variable_address("pulses::LATE_EDGES");
+    run.bench.uno.poke(late_edges_address, 0xff);
+    run.bench.uno.poke(late_edges_address + 1, 0xff);
+    let a1_rise_cycle = run.run_to_next_frame();
+    run.run_to(a1_rise_cycle - 600);
     run.bench.uno.block_interrupts(700);
     run.bench.run_ms(20);
     assert_eq!(run.late_edge_count(), 65_535);

@@ -106,7 +106,7 @@ fn boot_to_walk(fidelity: Fidelity) -> FirmwareBench {
 
 /// Boots the board and returns it one second later, when the robot stands.
 fn boot_to_stand(fidelity: Fidelity) -> FirmwareBench {
-    let mut bench = FirmwareBench::boot_with(fidelity);
+    let mut bench = FirmwareBench::boot(fidelity);
     bench.run_ms(1000);
     bench
 }

@@ -71,7 +71,7 @@ fn the_timer_is_stopped_during_its_setup_and_starts_at_zero() {
 fn main_sleeps_in_idle_mode() {
     // The simulation has only one sleep mode, so the test reads the register. Idle mode is 000 (data sheet, 10.2); the
     // last bit enables sleep.
-    let bench = FirmwareBench::boot_with(Fidelity::DataSheet);
+    let bench = FirmwareBench::boot(Fidelity::DataSheet);
     assert_eq!(bench.uno.peek(SMCR), 0b0001);
 }
 

@@ -13,7 +13,7 @@ const UBRR0: u16 = 0xc4;
 
 #[test]
 fn the_line_has_eight_data_bits_no_parity_and_one_stop_bit() {
-    start_in_both_simulations(FirmwareBench::boot_with, |bench| {
+    start_in_both_simulations(FirmwareBench::boot, |bench| {
         // The fields are: asynchronous 00, no parity 00, one stop bit 0, eight data bits 11.
         assert_eq!(bench.uno.peek(UCSR0C), 0b0000_0110);
     });
@@ -21,7 +21,7 @@ fn the_line_has_eight_data_bits_no_parity_and_one_stop_bit() {
 
 #[test]
 fn the_baud_rate_differs_from_115_200_by_less_than_2_2_percent() {
-    start_in_both_simulations(FirmwareBench::boot_with, |bench| {
+    start_in_both_simulations(FirmwareBench::boot, |bench| {
         let divisor = peek_word(&bench.uno, UBRR0);
         // U2X0 halves the samples of a bit.
         let is_double_speed = bench.uno.peek(UCSR0A) & 2 != 0;
@@ -33,7 +33,7 @@ fn the_baud_rate_differs_from_115_200_by_less_than_2_2_percent() {
 
 #[test]
 fn a_byte_on_the_wire_takes_ten_bits_of_136_cycles() {
-    let mut bench = FirmwareBench::boot_with(Fidelity::DataSheet);
+    let mut bench = FirmwareBench::boot(Fidelity::DataSheet);
     bench.say("help");
     let cycles: Vec<u64> = bench.bytes().iter().map(|byte| byte.cycle).collect();
     let intervals: Vec<u64> = cycles.windows(2).map(|pair| pair[1] - pair[0]).collect();

@@ -2,6 +2,7 @@
 //! model, and must move the robot like the gait in floating point.
 
 use lizard_core::numbers::pose::Pulses;
+use lizard_core::numbers::units::CYCLE;
 use lizard_host_tests::{CYCLES_PER_US, NamedRobot, paper_robot, robots};
 use lizard_robot::{CheckedGait, Prediction, Robot, Travel};
 
@@ -18,7 +19,7 @@ fn pulses_to_angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
 /// Simulates one cycle of a gait at a speed in percent, and returns the robot's displacement due to the core's pulses;
 /// `None` if the guard stops the robot on its path to the gait's first pose. The cycle begins at the frame whose phase
 /// is nearest to 0.
-fn simulate_travel(named: &NamedRobot, gait: &CheckedGait, speed_percent: f64) -> Option<Travel> {
+fn simulate_cycle(named: &NamedRobot, gait: &CheckedGait, speed_percent: f64) -> Option<Travel> {
     let robot = &named.robot;
     let mut checked_robot = CheckedRobot::power_on_and_stand(named);
     checked_robot.expect_ok(&format!("speed {speed_percent}"));
@@ -30,9 +31,9 @@ fn simulate_travel(named: &NamedRobot, gait: &CheckedGait, speed_percent: f64) -
     // The phase of a reversed gait decreases, so the distance from 0 counts in both directions.
     let phase_distance = |checked_robot: &CheckedRobot| {
         let phase = i64::from(checked_robot.motion().phase());
-        phase.min((1 << 24) - phase)
+        phase.min(i64::from(CYCLE) - phase)
     };
-    let phase_per_frame = (f64::from(1 << 24) / frames_per_cycle) as i64;
+    let phase_per_frame = (f64::from(CYCLE) / frames_per_cycle) as i64;
     while phase_distance(&checked_robot) > phase_per_frame / 2 + 1 {
         checked_robot.run_frames(1);
     }
@@ -51,9 +52,9 @@ fn simulate_travel(named: &NamedRobot, gait: &CheckedGait, speed_percent: f64) -
     Some(robot.predict_travel(path))
 }
 
-/// Asserts that a displacement matches the prediction: forward within `tolerance_mm` or 1 %, the turn within 0.2 deg. A
-/// predicted value of `None` is not compared.
-fn assert_travel(name: &str, travel: Travel, tolerance_mm: f64, expected: &Prediction) {
+/// Asserts that a displacement matches the prediction: forward within the larger of `tolerance_mm` and 1 %,
+/// the turn within 0.2 deg. A predicted value of `None` is not compared.
+fn assert_displacement(name: &str, travel: Travel, tolerance_mm: f64, expected: &Prediction) {
     println!(
         "{name}: {:+.2} mm, {:+.2} deg, expected {:?} {:?}",
         travel.forward, travel.turn, expected.forward, expected.turn
@@ -84,7 +85,7 @@ fn the_pulses_of_every_gait_move_the_robot_like_the_gait_in_floating_point() {
                 if speed_percent < 100.0 && named.name.starts_with("random") {
                     continue;
                 }
-                let Some(travel) = simulate_travel(named, gait, speed_percent) else {
+                let Some(travel) = simulate_cycle(named, gait, speed_percent) else {
                     continue;
                 };
                 travel_count += 1;
@@ -92,7 +93,7 @@ fn the_pulses_of_every_gait_move_the_robot_like_the_gait_in_floating_point() {
                 let name = format!("{}: {} at {speed_percent} %", named.name, gait.name());
                 // In a robot without symmetry, a tenth of a degree may determine which foot sticks and which slips.
                 let tolerance_mm = 0.01 * named.robot.lizard().links.l10;
-                assert_travel(&name, travel, tolerance_mm, &expected);
+                assert_displacement(&name, travel, tolerance_mm, &expected);
             }
         }
     }
@@ -111,9 +112,9 @@ fn the_pulses_of_the_papers_gaits_move_the_robot_as_predicted_within_0_3_mm() {
         let expected = gait.predict(&paper_robot().ground().with_rigid_drive());
         predicted_count += usize::from(expected.forward.is_some() && expected.turn.is_some());
         for speed_percent in [100.0, 80.0, 50.0, 20.0] {
-            let travel = simulate_travel(&named, gait, speed_percent)
+            let travel = simulate_cycle(&named, gait, speed_percent)
                 .expect("the guard does not stop the robot");
-            assert_travel(gait.name(), travel, 0.3, &expected);
+            assert_displacement(gait.name(), travel, 0.3, &expected);
         }
     }
     assert!(predicted_count >= 9, "only {predicted_count} predictions");

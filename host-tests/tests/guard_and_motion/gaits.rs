@@ -34,19 +34,20 @@ fn core_gait(robot: &Robot, name: &str) -> Option<Gait> {
 
 /// Returns all phases that the wave tables distinguish, in the core's units.
 fn all_phases() -> impl Iterator<Item = u32> {
-    (0..PHASE_COUNT).map(|phase| phase << 8)
+    (0..PHASE_COUNT).map(|n| n << 8)
 }
 
-/// Computes the servo angles of a gait in fixed point, deg.
+/// Computes the servo angles at a phase of the core's gait, deg.
 fn core_angles(robot: &Robot, gait: &Gait, phase: u32) -> [f64; 4] {
     let sweeps = gait.pose(robot.firmware().waves(), phase).0;
     let sweeps_deg = sweeps.map(|sweep| f64::from(sweep.0) / STEPS_PER_DEGREE);
     std::array::from_fn(|servo| robot.servos()[servo].neutral + sweeps_deg[servo])
 }
 
-/// Computes a leg's angle from neutral at a phase from 0 to 1 of a gait in fixed point, deg, positive forward.
-fn leg_angle_deg(robot: &Robot, gait: &Gait, servo: usize, phase: f64) -> f64 {
-    let pose = gait.pose(robot.firmware().waves(), (phase * f64::from(CYCLE)) as u32);
+/// Computes a leg's angle from neutral, deg, positive forward, at a fraction of a cycle of the core's gait.
+fn leg_angle_deg(robot: &Robot, gait: &Gait, servo: usize, cycle_fraction: f64) -> f64 {
+    let phase = (cycle_fraction * f64::from(CYCLE)) as u32;
+    let pose = gait.pose(robot.firmware().waves(), phase);
     FORWARD_TURN_SIGN[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
 }
 
@@ -89,7 +90,7 @@ fn the_tables_of_every_gait_are_accurate_and_safe_at_every_phase() {
 }
 
 #[test]
-fn a_wave_leg_pushes_back_for_its_duty_factor_and_returns_in_the_remaining_cycle() {
+fn a_wave_leg_is_in_stance_for_its_duty_factor_and_swings_in_the_rest_of_the_cycle() {
     let mut leg_count = 0;
     for (NamedRobot { name, robot }, float_gait, gait) in all_gaits() {
         for (servo, stride) in float_gait.strides().iter().enumerate() {
@@ -100,28 +101,28 @@ fn a_wave_leg_pushes_back_for_its_duty_factor_and_returns_in_the_remaining_cycle
                 continue;
             }
             leg_count += 1;
-            // The leg's angle at a fraction of the cycle after the stroke starts.
-            let stroke_angle_deg = |cycle_fraction: f64| {
-                let phase = (stride.start + cycle_fraction).rem_euclid(1.0);
-                leg_angle_deg(robot, &gait, servo, phase)
+            // The leg's angle at a fraction of the cycle after the stance starts.
+            let angle_deg_after = |cycle_fraction: f64| {
+                let cycle_fraction = (stride.start + cycle_fraction).rem_euclid(1.0);
+                leg_angle_deg(robot, &gait, servo, cycle_fraction)
             };
             let leg_name = format!("{name}: {} {}", float_gait.name(), LEG_NAMES[servo]);
-            // In a stroke, the leg moves back at constant speed, from an angle in front to the same angle behind. The
-            // leg then returns.
-            let front_angle_deg = stroke_angle_deg(0.0);
-            let fraction = front_angle_deg / stride.amplitude;
+            // In stance, the leg moves back at constant speed, from an angle in front to the same angle behind. The
+            // leg then swings forward.
+            let front_angle_deg = angle_deg_after(0.0);
+            let front_over_amplitude = front_angle_deg / stride.amplitude;
             assert!(
-                (0.5..1.01).contains(&fraction),
+                (0.5..1.01).contains(&front_over_amplitude),
                 "{leg_name} begins at {front_angle_deg} deg"
             );
-            for (cycle_fraction, fraction) in [
+            for (cycle_fraction, angle_fraction) in [
                 (0.25 * duty, 0.5),
                 (0.5 * duty, 0.0),
                 (0.75 * duty, -0.5),
                 (duty, -1.0),
                 (0.5 * (1.0 + duty), 0.0),
             ] {
-                let error_deg = stroke_angle_deg(cycle_fraction) - fraction * front_angle_deg;
+                let error_deg = angle_deg_after(cycle_fraction) - angle_fraction * front_angle_deg;
                 assert!(
                     error_deg.abs() <= 2.0 * TABLE_ERROR_DEG,
                     "{leg_name}: {error_deg} deg at {cycle_fraction}"
@@ -133,7 +134,7 @@ fn a_wave_leg_pushes_back_for_its_duty_factor_and_returns_in_the_remaining_cycle
 }
 
 #[test]
-fn the_legs_of_a_held_gait_return_in_the_gaits_order() {
+fn legs_with_a_held_waveform_swing_in_the_gaits_order() {
     let mut gait_count = 0;
     for (NamedRobot { name, robot }, float_gait, gait) in all_gaits() {
         let strides = float_gait.strides();
@@ -147,19 +148,20 @@ fn the_legs_of_a_held_gait_return_in_the_gaits_order() {
         gait_count += 1;
         for (servo, swing_index) in swing_indices.into_iter().enumerate() {
             let amplitude = strides[servo].amplitude;
-            // The common stroke takes the first fifth of the cycle. Then the legs return, each in a fifth of the cycle.
-            let return_start = 0.2 * (1.0 + swing_index as f64);
-            for (phase, fraction) in [
+            // The common stance takes the first fifth of the cycle. Then the legs swing, each in a fifth of the cycle.
+            let swing_start = 0.2 * (1.0 + swing_index as f64);
+            for (cycle_fraction, angle_fraction) in [
                 (0.2, -1.0),
-                (return_start, -1.0),
-                (return_start + 0.2, 1.0),
+                (swing_start, -1.0),
+                (swing_start + 0.2, 1.0),
                 (1.0 - 1e-6, 1.0),
             ] {
-                let angle_deg = leg_angle_deg(robot, &gait, servo, phase.min(1.0 - 1e-6));
-                let error_deg = angle_deg - fraction * amplitude;
+                let cycle_fraction = cycle_fraction.min(1.0 - 1e-6);
+                let angle_deg = leg_angle_deg(robot, &gait, servo, cycle_fraction);
+                let error_deg = angle_deg - angle_fraction * amplitude;
                 assert!(
                     error_deg.abs() <= TABLE_ERROR_DEG,
-                    "{name}: {} at {phase}: {error_deg} deg",
+                    "{name}: {} at {cycle_fraction}: {error_deg} deg",
                     float_gait.name()
                 );
             }
@@ -185,24 +187,24 @@ fn a_path_moves_only_its_own_end_and_averages_to_its_centre() {
             path_count += 1;
             let solve = |pose| robot.lizard().solve(&pose).expect("the loops close");
             let neutral = solve(robot.neutral_pose());
-            let displacement_at = |phase: u32, end: End| {
-                let solution = solve(core_angles(robot, &gait, phase << 16).into());
+            let displacement_at = |step: u32, end: End| {
+                let solution = solve(core_angles(robot, &gait, step << 16).into());
                 solution.end(end).end_point - neutral.end(end).end_point
             };
             let mut sum = [0.0; 2];
-            for phase in 0..256 {
-                let displacement = displacement_at(phase, end);
+            for step in 0..256 {
+                let displacement = displacement_at(step, end);
                 sum[0] += displacement.x;
                 sum[1] += displacement.y;
                 assert!(
-                    displacement_at(phase, other_end).length() < 1e-9,
+                    displacement_at(step, other_end).length() < 1e-9,
                     "{name}: {gait_name} moves the {other_end}"
                 );
             }
-            let length_mm = robot.lizard().links.l10;
+            let shaft_distance_mm = robot.lizard().links.l10;
             let error_mm = sum[0].hypot(sum[1]) / 256.0;
             assert!(
-                error_mm < 1e-3 * length_mm,
+                error_mm < 1e-3 * shaft_distance_mm,
                 "{name}: {gait_name} is {error_mm} mm off its centre"
             );
         }
@@ -257,7 +259,7 @@ fn a_mirrored_gait_matches_its_original_with_left_and_right_swapped() {
             assert_eq!(original.increment, mirrored.increment, "{name}");
             for phase in all_phases() {
                 let pose = mirror(original.pose(robot.firmware().waves(), phase));
-                // Halves round up for either sign, and gains are rounded, so a mirrored sweep may differ by a step.
+                // Halves round up for either sign, and factors are rounded, so a mirrored sweep may differ by a step.
                 let deviation = pose.max_turn_to(&mirrored.pose(robot.firmware().waves(), phase));
                 assert!(deviation <= 1, "{name}: {deviation} steps");
             }
@@ -286,8 +288,8 @@ fn the_papers_symmetric_gaits_equal_their_mirror_half_a_cycle_later() {
         let gait = core_gait(paper_robot(), name).expect("the paper's robot has this gait");
         let pose_at = |phase: u32| gait.pose(paper_robot().firmware().waves(), phase);
         for phase in all_phases() {
-            let opposite_pose = pose_at((phase + CYCLE / 2) % CYCLE);
-            assert_eq!(mirror(pose_at(phase)), opposite_pose, "{name}");
+            let later_pose = pose_at((phase + CYCLE / 2) % CYCLE);
+            assert_eq!(mirror(pose_at(phase)), later_pose, "{name}");
         }
     }
 }
@@ -295,11 +297,11 @@ fn the_papers_symmetric_gaits_equal_their_mirror_half_a_cycle_later() {
 #[test]
 fn the_head_of_the_papers_look_follows_its_figure_of_eight() {
     let gait = core_gait(paper_robot(), "look").expect("the paper's robot has this gait");
-    for phase in (0..PHASE_COUNT).step_by(16) {
-        let angles = core_angles(paper_robot(), &gait, phase << 8);
+    for phase in all_phases().step_by(16) {
+        let angles = core_angles(paper_robot(), &gait, phase);
         let solution = paper_robot().lizard().solve(&angles.into());
         let end_point = solution.expect("the loops close").head.end_point;
-        let cycle_angle = std::f64::consts::TAU * f64::from(phase) / f64::from(PHASE_COUNT);
+        let cycle_angle = std::f64::consts::TAU * f64::from(phase) / f64::from(CYCLE);
         let error_mm = (end_point.x - 10.0 * cycle_angle.sin())
             .hypot(end_point.y - 54.0 - 5.0 * (2.0 * cycle_angle).sin());
         assert!(error_mm < 0.1, "{error_mm} mm at {phase}");

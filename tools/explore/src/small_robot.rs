@@ -11,14 +11,14 @@ use lizard_robot::flash;
 
 /// The slew limit, 1/65536 turn per frame. This is a third of the paper's limit, so a servo that wakes in a wrong
 /// position exceeds the limit.
-const SLEW_PER_FRAME: u16 = 364;
+const SLEW_LIMIT: u16 = 364;
 
-/// The sweep to either side of neutral that the gaits declare, 1/65536 turn. Only the gait `stray` exceeds it.
-const DECLARED_SWEEP: i16 = 1_000;
+/// The sweep to either side of neutral that the section declares as needed, 1/65536 turn. Only `stray` exceeds it.
+const NEEDED_SWEEP: i16 = 1_000;
 
 /// The Arduino number of the button's pin, A1.
 pub const BUTTON_PIN: u8 = 15;
-/// The Arduino number of the nose contact's pin, A2.
+/// The Arduino number of the obstacle switch's pin, A2.
 pub const NOSE_PIN: u8 = 16;
 
 /// Returns the paper's robot with four gaits and two endless routines. The gait `stray` leaves the safe poses. The
@@ -50,15 +50,16 @@ fn open(content: &Content) -> Robot<'static> {
 fn small_content() -> Content {
     let text = include_str!("../../../robots/paper.toml");
     let paper = lizard_robot::Robot::parse(text).expect("robots/paper.toml is valid");
-    let angle_rad = |sample: usize| sample as f64 / SAMPLES_PER_WAVE as f64 * std::f64::consts::TAU;
+    let to_rad = |sample: usize| sample as f64 / SAMPLES_PER_WAVE as f64 * std::f64::consts::TAU;
+    // A height of 1 is 10 deg, in 1/65536 turn.
     let sample_wave = |height_at: &dyn Fn(f64) -> f64| -> Wave {
-        std::array::from_fn(|sample| (height_at(angle_rad(sample)) * 1820.0).round() as i16)
+        std::array::from_fn(|sample| (height_at(to_rad(sample)) * 1820.0).round() as i16)
     };
     let mut content = Content {
-        slew: Slew::new(SLEW_PER_FRAME),
+        slew: Slew::new(SLEW_LIMIT),
         needed_travel: [SweepRange {
-            min: Sweep(-DECLARED_SWEEP),
-            max: Sweep(DECLARED_SWEEP),
+            min: Sweep(-NEEDED_SWEEP),
+            max: Sweep(NEEDED_SWEEP),
         }; 4],
         gaits: Vec::new(),
         names: Vec::new(),
@@ -113,9 +114,9 @@ fn add_routine(content: &mut Content, name: &str, steps: &[(u8, u8, u16)]) {
         ..Gait::routine(content.steps.len() as u16, steps.len() as u16, 0)
     });
     content.names.extend(name.bytes());
-    let to_step = |(kind, gait, count): &(u8, u8, u16)| Step {
+    let to_step = |(kind, gait_or_input, count): &(u8, u8, u16)| Step {
         kind: *kind,
-        gait: *gait,
+        gait: *gait_or_input,
         count: *count,
     };
     content.steps.extend(steps.iter().map(to_step));

@@ -52,7 +52,7 @@ export class Uno {
     /** The index in `executors` for each opcode. */
     this.executorIndexes = new Uint8Array(0x10000);
     /** Function called instead of an instruction while the processor sleeps; null while it is awake. */
-    this.passSleep = null;
+    this.passTimeAsleep = null;
     /** True if a port changed during the last instruction. */
     this.hasPortChanged = false;
     /** Function called after an instruction that changed a port, before any due events. */
@@ -73,8 +73,8 @@ export class Uno {
     const { progMem } = cpu;
     this.endCycle = endCycle;
     while (cpu.cycles < endCycle) {
-      if (this.passSleep !== null) {
-        this.passSleep();
+      if (this.passTimeAsleep !== null) {
+        this.passTimeAsleep();
       } else {
         const index = executorIndexes[progMem[cpu.pc]];
         if (index === 0) avrInstruction(cpu);

@@ -55,12 +55,12 @@ test('sleep is simulated event by event', () => {
   const board = makeUno(SLEEP_AND_INTERRUPTS, 'ldi r16, 1\n out 0x33, r16\n sei\n sleep\n');
   let sleepStepCount = 0;
   let passTime = null;
-  Object.defineProperty(board, 'passSleep', {
+  Object.defineProperty(board, 'passTimeAsleep', {
     get: () => passTime,
-    set: (passSleep) => {
+    set: (passTimeAsleep) => {
       passTime = () => {
         sleepStepCount += 1;
-        passSleep();
+        passTimeAsleep();
       };
     },
   });

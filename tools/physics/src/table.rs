@@ -20,10 +20,10 @@ pub(crate) enum Component {
 }
 
 impl Component {
-    /// Lists the components of a displacement that exceed a distance, mm, or a turn, deg.
+    /// Lists the components of a displacement that exceed `mm` forward or `deg` of turn.
     pub(crate) fn list_above(displacement: Displacement, mm: f64, deg: f64) -> Vec<Self> {
         let components = [(Self::Forward, mm), (Self::Turn, deg)].into_iter();
-        let exceeds = |(component, min): &(Self, f64)| component.value(displacement).abs() > *min;
+        let exceeds = |(component, max): &(Self, f64)| component.value(displacement).abs() > *max;
         let components = components.filter(exceeds);
         components.map(|(component, _)| component).collect()
     }
@@ -67,8 +67,8 @@ pub fn format_comparison_table(name: &str, robot: &Robot, walk_results: &WalkRes
         let width = list_moving_gaits(robot).map(str::len).max().unwrap_or(0);
         let headings = cases.iter().map(|case| match case.feet {
             FootSetup::Level => "level",
-            FootSetup::LongStiff => "0.6 mm long, 2 N/mm",
-            FootSetup::Long => "1.0 mm long",
+            FootSetup::LongStiff => "foot +0.6 mm, 2 N/mm",
+            FootSetup::Long => "foot +1.0 mm",
         });
         let headings: String = headings.map(|heading| format!("  {heading:<20}")).collect();
         lines.push(format!("{:width$}    {headings}", ""));
@@ -105,9 +105,9 @@ fn list_moving_gaits(robot: &Robot) -> impl Iterator<Item = &str> {
 
 /// Returns the displacement per cycle of each gait as a Markdown table. For level feet, the table has the model's
 /// prediction with ideal servos and with the robot's servos, and MuJoCo's result. For a foot that is 1.0 mm too long,
-/// it has the range between the model's prediction with ideal servos and MuJoCo's result.
+/// it gives the model's prediction with ideal servos and MuJoCo's result as a range.
 pub fn format_displacement_table(name: &str, robot: &Robot, walk_results: &WalkResults) -> String {
-    let mut text = "| gait | cycle, s | ideal servos | its servos | MuJoCo | ideal servos and MuJoCo, a foot 1.0 mm too long |\n|---|---|---|---|---|---|\n".to_owned();
+    let mut text = "| gait | cycle, s | ideal servos | the robot's servos | MuJoCo | ideal servos and MuJoCo, a foot 1.0 mm too long |\n|---|---|---|---|---|---|\n".to_owned();
     for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
         let find_results = |feet: FootSetup| {
             let legs = LegDrive::Rigid;

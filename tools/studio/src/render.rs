@@ -21,7 +21,7 @@ const PAPER_GREY: f64 = 205.0;
 const BODY_HALF_SIZE: [f64; 2] = [75.0, 105.0];
 /// Grey of the robot's top.
 const BODY_GREY: f64 = 70.0;
-/// Height of the robot's top, mm.
+/// Height of the robot's top below its card, mm.
 const BODY_HEIGHT_MM: f64 = 55.0;
 /// x coordinate of the edge about which the board is tilted, mm.
 const TILT_EDGE_X_MM: f64 = -200.0;
@@ -34,8 +34,8 @@ const NOISE_COUNT: usize = 1 << 16;
 /// Number of successive pixels that use one run of random numbers.
 const NOISE_RUN_LENGTH: usize = 64;
 
-/// The studio: the floor, the two strips of the sheet, and the camera. The robot carries the sheet's card with the deck
-/// tag.
+/// The studio: a board as the floor, the two strips of the sheet, and the camera. The robot carries the sheet's card
+/// with the deck tag.
 #[derive(Clone)]
 pub struct Studio {
     /// Width and height of the frame, pixels.
@@ -198,14 +198,14 @@ impl Studio {
         for (i, grey) in grey_levels.iter_mut().enumerate() {
             let (x, y) = ((i % width) as f64, (i / width) as f64);
             let pixel_centre = optics.point_at_height([x, y], 0.0);
-            let is_near = (0..2).any(|strip| {
+            let is_near_strip = (0..2).any(|strip| {
                 let [u, v] = LocalAxes::new(self.strips[strip]).to_local(pixel_centre);
                 u.abs() < sheet::STRIP_SIZE[0] && v.abs() < sheet::STRIP_SIZE[1]
             });
             let sample = |dx: f64, dy: f64| {
                 self.floor_grey_at(optics.point_at_height([x + dx, y + dy], 0.0))
             };
-            *grey = match is_near {
+            *grey = match is_near_strip {
                 true => average_over_pixel(sample) as f32,
                 false => self.floor_grey as f32,
             };
@@ -293,8 +293,8 @@ impl Optics {
         }
         let [right, down, forward] = &self.axes;
         let ray = [0, 1, 2].map(|i| forward[i] + u * right[i] + v * down[i]);
-        let distance = (height - self.eye[2]) / ray[2];
-        [0, 1].map(|i| self.eye[i] + distance * ray[i])
+        let depth = (height - self.eye[2]) / ray[2];
+        [0, 1].map(|i| self.eye[i] + depth * ray[i])
     }
 
     /// Returns the pixel that shows a point at a height.
@@ -303,9 +303,9 @@ impl Optics {
         let component_along = |axis: &Vector| (0..3).map(|i| axis[i] * offset[i]).sum::<f64>();
         let [right, down, depth] = [0, 1, 2].map(|i| component_along(&self.axes[i]));
         let [u, v] = [right / depth, down / depth];
-        let distance = self.focal_length * self.distortion_factor(u, v);
+        let scale = self.focal_length * self.distortion_factor(u, v);
         let [x, y] = self.image_centre;
-        [x + distance * u, y + distance * v]
+        [x + scale * u, y + scale * v]
     }
 
     /// Returns the factor by which the lens changes a point's distance from the axis.
@@ -321,8 +321,8 @@ impl Background {
         let studio = &self.studio;
         let [width, height] = studio.size;
         let mut grey_levels = self.grey_levels.clone();
-        // The poses of the robot during the exposure of a row.
-        let poses_in_row = |row: usize| -> [LocalAxes; SHUTTER_SAMPLES] {
+        // The axes of the robot during the exposure of a row.
+        let axes_in_row = |row: usize| -> [LocalAxes; SHUTTER_SAMPLES] {
             let row_delay = (row as f64 / height as f64 - 0.5) * studio.readout_s;
             std::array::from_fn(|i| {
                 let shutter_delay =
@@ -330,32 +330,32 @@ impl Background {
                 LocalAxes::new(pose_at(time_s + row_delay + shutter_delay))
             })
         };
-        let rows: Vec<_> = (0..height).map(poses_in_row).collect();
-        let middle_pose = rows[height / 2][SHUTTER_SAMPLES / 2];
-        let body_half_size = [(BODY_HALF_SIZE[0] + 5.0), (BODY_HALF_SIZE[1] + 5.0)];
-        self.for_each_pixel(middle_pose, body_half_size, BODY_HEIGHT_MM, |i, [x, y]| {
-            let [u, v] = middle_pose.to_robot(self.optics.point_at_height([x, y], BODY_HEIGHT_MM));
+        let rows: Vec<_> = (0..height).map(axes_in_row).collect();
+        let middle_axes = rows[height / 2][SHUTTER_SAMPLES / 2];
+        let body_extent = [(BODY_HALF_SIZE[0] + 5.0), (BODY_HALF_SIZE[1] + 5.0)];
+        self.for_each_pixel(middle_axes, body_extent, BODY_HEIGHT_MM, |i, [x, y]| {
+            let [u, v] = middle_axes.to_robot(self.optics.point_at_height([x, y], BODY_HEIGHT_MM));
             if u.abs() < BODY_HALF_SIZE[0] && v.abs() < BODY_HALF_SIZE[1] {
                 grey_levels[i] = BODY_GREY as f32;
             }
         });
-        let card_half_size = [
+        let card_extent = [
             sheet::CARD_SIZE[0] / 2.0 + 2.0,
             sheet::CARD_SIZE[1] - sheet::DECK_TAG_EDGE / 2.0 + 2.0,
         ];
         let card_height = studio.deck_tag_height;
-        self.for_each_pixel(middle_pose, card_half_size, card_height, |i, [x, y]| {
-            let poses = &rows[i / width];
+        self.for_each_pixel(middle_axes, card_extent, card_height, |i, [x, y]| {
+            let axes_of_row = &rows[i / width];
             let background_grey = f64::from(grey_levels[i]);
-            let card_grey = |pose: &LocalAxes| {
+            let card_grey = |axes: &LocalAxes| {
                 average_over_pixel(|dx, dy| {
                     let point = self.optics.point_at_height([x + dx, y + dy], card_height);
-                    let grey = studio.card_grey_at(pose.to_robot(point));
+                    let grey = studio.card_grey_at(axes.to_robot(point));
                     grey.unwrap_or(background_grey)
                 })
             };
             grey_levels[i] =
-                (poses.iter().map(card_grey).sum::<f64>() / SHUTTER_SAMPLES as f64) as f32;
+                (axes_of_row.iter().map(card_grey).sum::<f64>() / SHUTTER_SAMPLES as f64) as f32;
         });
         let mut grey = Vec::with_capacity(grey_levels.len());
         for (i, pixels) in grey_levels.chunks(NOISE_RUN_LENGTH).enumerate() {
@@ -371,16 +371,16 @@ impl Background {
     }
 
     /// Calls `visit` for every pixel of the rectangle around the robot's body or card, with the pixel's index, column
-    /// and row. `half_size` is half the width and length of the body or card, mm.
+    /// and row. `extent` is the largest distance from the origin of the axes, to a side and along the heading, mm.
     fn for_each_pixel(
         &self,
         LocalAxes { x, y, cos, sin }: LocalAxes,
-        half_size: [f64; 2],
+        extent: [f64; 2],
         height: f64,
         mut visit: impl FnMut(usize, [f64; 2]),
     ) {
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[a, b]| {
-            let (right, forward) = (a * half_size[0], b * half_size[1]);
+            let (right, forward) = (a * extent[0], b * extent[1]);
             let floor_x = x + forward * cos + right * sin;
             let floor_y = y + forward * sin - right * cos;
             self.optics.project([floor_x, floor_y], height)
@@ -410,9 +410,9 @@ fn average_over_pixel(sample: impl Fn(f64, f64) -> f64) -> f64 {
 
 /// Returns the grey of a tag at a point relative to the tag's centre; `None` outside the tag.
 fn tag_grey_at(id: usize, [x, y]: [f64; 2]) -> Option<f64> {
-    let cell = sheet::tag_edge(id) / sheet::CELLS_PER_SIDE as f64;
-    let half_count = sheet::CELLS_PER_SIDE as f64 / 2.0;
-    let [column, row] = [x / cell + half_count, half_count - y / cell].map(f64::floor);
+    let cell_edge = sheet::tag_edge(id) / sheet::CELLS_PER_SIDE as f64;
+    let half_cells = sheet::CELLS_PER_SIDE as f64 / 2.0;
+    let [column, row] = [x / cell_edge + half_cells, half_cells - y / cell_edge].map(f64::floor);
     let tag_range = 0.0..sheet::CELLS_PER_SIDE as f64;
     let is_inside = tag_range.contains(&column) && tag_range.contains(&row);
     is_inside.then(|| {

@@ -19,9 +19,9 @@ const api = {
   begin(module: WebAssembly.Module, { toml, floor, servos, task }: OnFloor & { task: SearchTask }) {
     initSync({ module });
     robot = new Robot();
-    robot.read(toml);
+    robot.load(toml);
     robot.setFloor(floor);
-    robot.setServos(servos);
+    robot.setServoModel(servos);
     const search = robot.beginSearch(task);
     if (isRefused(search)) throw new Error(search.reason);
     return { ...search, referenceTrial: robot.tryGait(task.bars) as Trial };

@@ -38,8 +38,8 @@ export class BootLoaderLine implements SerialLine {
   }
 
   /**
-   * Restores the firmware's baud rate, which resets the board if the boot loader has another rate. Bytes of the other
-   * rate are unreadable and are dropped.
+   * Sets the link to the firmware's baud rate again. If the boot loader used another rate, this resets the board and
+   * drops the bytes received at that rate, because the firmware did not send at it.
    */
   async restoreBaud(): Promise<void> {
     if (this.baud === BAUD_RATE) return;

@@ -34,7 +34,7 @@ export function warnOfBoardRobot(session: Session, problems: ProblemList, showRo
  */
 async function findByHash(reader: Robot, hash: string): Promise<KnownRobot | null> {
   const hasHash = (toml: string) => {
-    const result = reader.read(toml);
+    const result = reader.load(toml);
     return !isRefused(result) && result.hash === hash;
   };
   const ownRobot = browserStorage.getRobotsAside().find(({ toml }) => hasHash(toml));

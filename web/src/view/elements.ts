@@ -27,7 +27,7 @@ export function showSliderText(slider: HTMLInputElement, text: string): void {
 }
 
 /** Sets an attribute of an element, or removes it if the value is null. */
-export function putAttribute(node: Element, name: string, value: string | null): void {
+export function setAttribute(node: Element, name: string, value: string | null): void {
   if (value === null) node.removeAttribute(name);
   else node.setAttribute(name, value);
 }

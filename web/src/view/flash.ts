@@ -44,7 +44,7 @@ export class FlashView {
     const radioNote = `The page cannot write to the ${link.name}: ${NO_WRITING_BY_RADIO}.`;
     const cableNote =
       `Writes to the ${link.name} through its boot loader, verifies, and starts the board. The firmware is the same for every robot; saved settings stay. ` +
-      `The robot alone has ${robotSection.length} bytes and takes about a second, if the board already has firmware ${description.version}.`;
+      `If the board already has firmware ${description.version}, the robot alone (${robotSection.length} bytes) can be written in about a second.`;
     this.note.textContent = link.kind === 'radio' ? radioNote : cableNote;
   }
 
@@ -56,7 +56,7 @@ export class FlashView {
     void this.writer.write(content, 'flash');
   }
 
-  /** Reads a file and asks the user to confirm that it is to be written. */
+  /** Reads a file and asks the user whether to write it. */
   private async askToConfirm(file: File): Promise<void> {
     this.dropChosenImage();
     this.message.textContent = '';

@@ -121,7 +121,7 @@ export class FloorView {
     // Tests read the zoom from the dataset.
     const zoom = this.zoom.toFixed(4);
     if (this.canvas.dataset.zoom !== zoom) this.canvas.dataset.zoom = zoom;
-    const robots = [frame, secondFrame].map((robot) => robot && [robot.place, robot.scene, robot.slides]);
+    const robots = [frame, secondFrame].map((robot) => robot && [robot.place, robot.scene, robot.slips]);
     const state = JSON.stringify([width, height, devicePixelRatio, this.zoom, this.centre, plate, robots, this.tracks.map((track) => [track.length, track.at(-1)])]);
     if (state === this.drawnState && !this.drawsAlways) return;
     const context = prepareSurface(this.canvas, true)?.context;
@@ -173,7 +173,7 @@ export class FloorView {
         const { x, y, heading } = robot.place;
         context.translate(x, y);
         context.rotate((heading * Math.PI) / 180);
-        drawLizard(context, plate, robot.scene, robot.slides);
+        drawLizard(context, plate, robot.scene, robot.slips);
       }
       context.restore();
     });

@@ -4,7 +4,7 @@ import { type Bars, type Description, type Four, Robot } from '../robot';
 import type { Session } from '../session';
 import { type GaitEditor, FasterView } from './faster';
 import { element, make, makeSvg, replaceOptions, setAttributes, tableRow } from './elements';
-import { setUpNumberInput, putNumber } from './number-input';
+import { setUpNumberInput, setNumber } from './number-input';
 import { followShownRobot } from './rooms';
 import { TrialView } from './trial';
 import type { BoardWriter } from './writer';
@@ -143,7 +143,7 @@ export class GaitEditorView {
   private showGait(): void {
     const { gait } = this;
     if (!gait) return;
-    const put = (input: HTMLInputElement, value: number) => putNumber(input, roundToMultiple(value, 0.001));
+    const put = (input: HTMLInputElement, value: number) => setNumber(input, roundToMultiple(value, 0.001));
     for (const key of GAIT_NUMBERS) put(element(`gait-${key}`), gait[key]);
     element<HTMLInputElement>('gait-duty').disabled = gait.held;
     if (document.activeElement !== this.nameInput) this.nameInput.value = gait.name;

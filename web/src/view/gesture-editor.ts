@@ -2,7 +2,7 @@
 import type { DrawnGait, End, Workspace } from '../robot';
 import type { Session } from '../session';
 import { element, makeSvg, setAttributes, toPicture } from './elements';
-import { setUpNumberInput, putNumber } from './number-input';
+import { setUpNumberInput, setNumber } from './number-input';
 import { followShownRobot } from './rooms';
 import { TrialView } from './trial';
 import type { BoardWriter } from './writer';
@@ -130,7 +130,7 @@ export class GestureEditorView {
 
   private showGesture(): void {
     const { gesture } = this;
-    const put = (key: (typeof NUMERIC_KEYS)[number], value: number) => putNumber(element(`gesture-${key}`), Number(value.toFixed(2)));
+    const put = (key: (typeof NUMERIC_KEYS)[number], value: number) => setNumber(element(`gesture-${key}`), Number(value.toFixed(2)));
     put('period', gesture.period);
     put('size', gesture.size * 100);
     put('terms', gesture.terms);

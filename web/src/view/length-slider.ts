@@ -10,12 +10,12 @@ export class LengthSlider {
   private readonly printableMarks = element('length-marks');
   private lengths: Length[] = [];
   /** True once the user has chosen a length; only then does the page search for printable values. */
-  isChosen = false;
+  hasUserChosen = false;
 
   /**
-   * `tryLengths` is called with the edits of lengths while the slider is dragged; `isLast` is true at the end of the
-   * drag. `onChoice` is called when the user chooses another length or switches the symmetry. `chosenKey` is the key of
-   * the initial length.
+   * `tryLengths` is called with the new lengths while the slider is dragged; `isLast` is true at the end of the drag.
+   * `onChoice` is called when the user chooses another length or turns symmetry on or off. `chosenKey` is the key of the
+   * initial length.
    */
   constructor(
     tryLengths: (edits: Edits, isLast: boolean) => void,
@@ -50,9 +50,9 @@ export class LengthSlider {
   }
 
   private choose(key: string): void {
-    if (key === this.chosenKey && this.isChosen) return;
+    if (key === this.chosenKey && this.hasUserChosen) return;
     this.chosenKey = key;
-    this.isChosen = true;
+    this.hasUserChosen = true;
     this.show();
     this.onChoice();
   }
@@ -61,7 +61,7 @@ export class LengthSlider {
   private show(): void {
     const { chosenLength } = this;
     element('length-name').textContent = chosenLength?.label ?? '';
-    this.markPrintable(null, '');
+    this.showPrintable(null, '');
     if (chosenLength) this.showValue(chosenLength.value);
   }
 
@@ -71,8 +71,8 @@ export class LengthSlider {
     if (this.chosenLength) this.showValue(this.chosenLength.value);
   }
 
-  /** Marks the range of printable values (null while it is unknown) and shows a message. */
-  markPrintable(range: [number, number] | null, message: string): void {
+  /** Shows the range of printable values (null while it is unknown) and a message. */
+  showPrintable(range: [number, number] | null, message: string): void {
     element('length-printed').textContent = message;
     this.printableMarks.hidden = range === null;
     const { min, max } = this.slider;

@@ -3,7 +3,7 @@ import { type Edits, type Length, Robot } from '../robot';
 import type { Session } from '../session';
 import { downloadRobot } from './download';
 import { element, make, showMessage } from './elements';
-import { markInvalid } from './number-input';
+import { setInvalid } from './number-input';
 import { describeRefusal, makeEditsWithTwin, showOffers } from './tried-lengths';
 
 /** Sets the inputs up; `offerValidLengths` searches for valid alternatives to refused lengths and offers them. */
@@ -20,7 +20,7 @@ export function setUpLengths(session: Session, offerValidLengths: (edits: Edits)
       const input = inputs.get(key);
       if (!input) continue;
       input.value = String(value);
-      markInvalid(input, isInvalid);
+      setInvalid(input, isInvalid);
     }
   };
   const changeLength = async (key: string, value: number) => {

@@ -6,7 +6,7 @@ import { getPalette, getServoColour } from './palette';
 const FOOT_RADIUS_MM = 6;
 /** Width of the plate's drawn edge. */
 const RIM_WIDTH_MM = 0.6;
-/** Slide in one frame above which a foot counts as slipping. */
+/** Slip in one frame above which a foot counts as slipping. */
 const SLIP_THRESHOLD_MM = 0.3;
 
 type Context = CanvasRenderingContext2D;
@@ -74,13 +74,13 @@ function drawSkin(context: Context, scene: Scene): void {
 
 const SERVO_INDICES = [0, 1, 2, 3];
 
-/** Draws a leg's bodies next to and below the plate: foot, leaf spring and coupler. `slideMm` is the foot's slide. */
-function drawFoot(context: Context, scene: Scene, servo: number, slideMm: number): void {
+/** Draws a leg's bodies next to and below the plate: foot, leaf spring and coupler. `slipMm` is the foot's slip. */
+function drawFoot(context: Context, scene: Scene, servo: number, slipMm: number): void {
   const colours = getPalette();
   const { joints, foot } = scene.legs[servo];
   drawBar(context, joints[1], foot, colours.steel, 2.2);
   // A sticking foot is a disc; a slipping foot is a ring.
-  drawDisc(context, foot, FOOT_RADIUS_MM, slideMm > SLIP_THRESHOLD_MM ? colours.card : colours.ink, colours.ink, 2);
+  drawDisc(context, foot, FOOT_RADIUS_MM, slipMm > SLIP_THRESHOLD_MM ? colours.card : colours.ink, colours.ink, 2);
   drawBar(context, joints[0], joints[1], getServoColour(servo), 4.2);
 }
 
@@ -150,10 +150,10 @@ function drawFiveBar(context: Context, scene: Scene, end: 0 | 1): void {
   drawDisc(context, point, 3.2, '#f0e442', '#222222');
 }
 
-/** Draws the robot, starting with the lowest bodies; `slides` are the feet's slides in this frame, mm. */
-export function drawLizard(context: Context, plate: Plate, scene: Scene, slides: readonly number[]): void {
+/** Draws the robot, starting with the lowest bodies; `slips` are the feet's slips in this frame, mm. */
+export function drawLizard(context: Context, plate: Plate, scene: Scene, slips: readonly number[]): void {
   drawSkin(context, scene);
-  for (const servo of SERVO_INDICES) drawFoot(context, scene, servo, slides[servo] ?? 0);
+  for (const servo of SERVO_INDICES) drawFoot(context, scene, servo, slips[servo] ?? 0);
   drawChassis(context, plate);
   for (const servo of SERVO_INDICES) drawLeg(context, scene, servo);
   for (const side of [0, 1] as const) drawSlider(context, scene, side);

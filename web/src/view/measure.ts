@@ -17,7 +17,7 @@ import { WORDS } from '../words';
 import { saveFile } from './download';
 import { element, make, onFile, replaceOptions, setText } from './elements';
 import { setUpResults } from './results';
-import { setUpNumberInput, putNumber } from './number-input';
+import { setUpNumberInput, setNumber } from './number-input';
 import { ROOM_OPENED } from './rooms';
 import { drawTracking } from './draw-tracking';
 
@@ -84,7 +84,7 @@ export class MeasureView {
       // The robot accepts only whole numbers of percent and of cycles.
       const isWhole = name === 'speed' || name === 'cycles';
       setUpNumberInput(input, (typed) => (this.values[name] = typed !== null && isWhole ? Math.round(typed) : (typed ?? value)));
-      if (value !== null) putNumber(input, value);
+      if (value !== null) setNumber(input, value);
     }
     this.cameraButton.addEventListener('click', () => void this.runAction(() => this.toggleCamera()));
     onFile(element('measure-file'), (file) => void this.runAction(() => this.readVideo(file)));

@@ -9,20 +9,20 @@ export class OwnRobots {
   /** The robots in the list; another page may have changed the stored robots since. */
   private listedRobots: SavedChanges[] = [];
 
-  /** `loadFile` loads a robot by its file name; `listNames` shows the names of the robots put aside. */
+  /** `loadFile` loads a robot by its file name; `showNames` shows the names of the robots put aside. */
   constructor(
     private readonly session: Session,
     private readonly problems: ProblemList,
     private readonly loadFile: (file: string) => Promise<void>,
-    private readonly listNames: (names: string[]) => void,
+    private readonly showNames: (names: string[]) => void,
   ) {
     this.updateList();
   }
 
   /** If another robot has replaced a changed robot, puts the changed robot aside and offers to restore it. */
-  putAside(previous: SavedChanges | null): void {
-    if (!previous || previous.toml === previous.original || previous.toml === this.session.toml) return;
-    this.storeAside([previous, ...browserStorage.getRobotsAside().filter(({ toml }) => toml !== previous.toml)]);
+  putAside(previousRobot: SavedChanges | null): void {
+    if (!previousRobot || previousRobot.toml === previousRobot.original || previousRobot.toml === this.session.toml) return;
+    this.storeList([previousRobot, ...browserStorage.getRobotsAside().filter(({ toml }) => toml !== previousRobot.toml)]);
     this.problems.setMessage('own', 'This is another robot. Your own robot is put aside and stays in the list of robots.', { label: 'Back to my own robot', action: () => void this.restore() });
   }
 
@@ -30,23 +30,24 @@ export class OwnRobots {
   async restore(index = 0): Promise<void> {
     const ownRobot = this.listedRobots[index];
     this.problems.setMessage('own', null);
-    const { changes: previous } = this.session;
+    const { changes: previousRobot } = this.session;
     await this.loadFile(ownRobot.file);
     // The user has chosen another robot meanwhile, whose file is still being loaded.
     if (this.session.file === '') return;
-    // If the robot's file has changed meanwhile, only the stored text is loaded.
-    if (!(await this.session.restoreSaved(ownRobot)) && (await this.session.change(ownRobot.toml))) return this.putAside(previous);
-    this.storeAside(browserStorage.getRobotsAside().filter(({ toml }) => toml !== ownRobot.toml));
-    this.putAside(previous);
+    // If the file has changed since the robot was put aside, the text is loaded without its floor, servos and supply.
+    const isRestored = (await this.session.restoreSaved(ownRobot)) || (await this.session.change(ownRobot.toml)) === null;
+    if (!isRestored) return this.putAside(previousRobot);
+    this.storeList(browserStorage.getRobotsAside().filter(({ toml }) => toml !== ownRobot.toml));
+    this.putAside(previousRobot);
   }
 
-  private storeAside(robots: SavedChanges[]): void {
+  private storeList(robots: SavedChanges[]): void {
     browserStorage.putRobotsAside(robots);
     this.updateList();
   }
 
   private updateList(): void {
     this.listedRobots = browserStorage.getRobotsAside();
-    this.listNames(this.listedRobots.map(({ toml }) => readName(toml)));
+    this.showNames(this.listedRobots.map(({ toml }) => readName(toml)));
   }
 }

@@ -198,7 +198,7 @@ export class PartsView {
     const neutral = this.session.description.servos.map((servo) => servo.neutral);
     // The robot stands still while a step of the guide or a collision is shown.
     const isMoving = this.step === null && !this.collidingPair && frame?.scene != null;
-    const [angles, lags] = isMoving ? [frame.scene?.angles ?? neutral, frame.lag] : [this.collidingPair?.pose ?? neutral, [0, 0, 0, 0]];
+    const [angles, lags] = isMoving ? [frame.scene?.angles ?? neutral, frame.lags] : [this.collidingPair?.pose ?? neutral, [0, 0, 0, 0]];
     const poseText = [...angles, ...lags].map((angle) => angle.toFixed(2)).join(' ');
     if (poseText !== this.requestedPose) {
       this.requestedPose = poseText;

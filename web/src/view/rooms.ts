@@ -3,7 +3,7 @@
 import { parseFragment } from '../address';
 import type { Description } from '../robot';
 import type { Session } from '../session';
-import { putAttribute } from './elements';
+import { setAttribute } from './elements';
 
 /** The type of the event that the document receives after another room is opened. */
 export const ROOM_OPENED = 'room';
@@ -22,7 +22,7 @@ export function openRoom(hash: string): void {
   for (const candidate of findRooms()) candidate.hidden = candidate !== room;
   for (const link of document.querySelectorAll<HTMLAnchorElement>('nav a')) {
     const isOpenRoom = toRoomId(parseFragment(link.hash).get('room') ?? '') === room.id;
-    putAttribute(link, 'aria-current', isOpenRoom ? 'page' : null);
+    setAttribute(link, 'aria-current', isOpenRoom ? 'page' : null);
   }
   document.body.dataset.at = room.id;
   document.title = `${room.querySelector('h2')?.textContent}, ${PAGE_NAME}`;

@@ -4,7 +4,7 @@ import { type OnFloor, type Place, type Refusal, Robot, type RoundPath, type Rou
 import { createRobotQueue } from '../robot-requests';
 import { DriveRecorder } from '../routines/drive-recorder';
 import type { Session } from '../session';
-import { element, make, putAttribute, replaceOptions, setText, showMessage } from './elements';
+import { element, make, replaceOptions, setAttribute, setText, showMessage } from './elements';
 import { isShown } from './rooms';
 import type { RobotTextView } from './robot-text';
 import type { BoardWriter } from './writer';
@@ -188,7 +188,7 @@ export class RoutinesView {
       if (input.value !== step) input.value = step;
       block.classList.toggle('held', this.drag?.to === index);
       input.setAttribute('aria-invalid', String(invalidIndex === index));
-      putAttribute(input, 'aria-describedby', invalidIndex === index ? this.refusalBox.id : null);
+      setAttribute(input, 'aria-describedby', invalidIndex === index ? this.refusalBox.id : null);
     });
     showMessage(this.refusalBox, refusal?.reason ?? '');
     if (invalidIndex !== null) stepList.children[invalidIndex]?.append(this.refusalBox);

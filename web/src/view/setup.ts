@@ -15,7 +15,7 @@ import { firmwareStep } from './setup/firmware';
 import { hornsStep } from './setup/horns';
 import { keepStep } from './setup/keep';
 import { limitsStep } from './setup/limits';
-import { button, element, make, paragraph, putAttribute, row, setText, showMessage } from './elements';
+import { button, element, make, paragraph, row, setAttribute, setText, showMessage } from './elements';
 import { scaleStep } from './setup/scale';
 import { signsStep } from './setup/signs';
 import type { Step, Turn } from './setup/step';
@@ -88,7 +88,7 @@ export class SetupDialog {
   }
 
   /** The last turn in this step if the selected servo has turned; null otherwise. */
-  get turnInStep(): Turn | null {
+  get currentTurn(): Turn | null {
     const { lastTurn } = this;
     return lastTurn?.step === this.step && lastTurn.servo === this.servo ? lastTurn : null;
   }
@@ -293,7 +293,7 @@ export class SetupDialog {
     if (!session.link) return;
     const index = STEPS.indexOf(step);
     this.stepList.querySelectorAll('button').forEach((stepButton, n) => {
-      putAttribute(stepButton, 'aria-current', n === index ? 'step' : null);
+      setAttribute(stepButton, 'aria-current', n === index ? 'step' : null);
       if (n === index) this.stepList.scrollLeft = stepButton.offsetLeft - this.stepList.offsetLeft - (this.stepList.clientWidth - stepButton.offsetWidth) / 2;
       stepButton.classList.toggle('done', this.isDone(STEPS[n].name));
     });

@@ -97,7 +97,7 @@ export class SketchView {
 
   private applyRange(range: [number, number]): void {
     this.slider.setRange(range);
-    if (this.slider.isChosen) this.fit.findRange(this.slider.keys, range, (printable, message) => this.slider.markPrintable(printable, message));
+    if (this.slider.hasUserChosen) this.fit.findRange(this.slider.keys, range, (printable, message) => this.slider.showPrintable(printable, message));
   }
 
   /** Draws the robot; if `fitsView`, fits the view to it. A drag keeps the view and the elements of the joints. */

@@ -16,8 +16,8 @@ const CONTACT_LABELS: Record<string, string> = { button: 'button pressed', nose:
 
 const driveList = element<HTMLSelectElement>('drive');
 const servoList = element<HTMLSelectElement>('servos');
-const voltsInput = element<HTMLInputElement>('servo-volts');
-const supplyInput = element<HTMLInputElement>('supply');
+const servoVoltsInput = element<HTMLInputElement>('servo-volts');
+const boardVoltsInput = element<HTMLInputElement>('supply');
 
 export function setUpWorld(session: Session): void {
   driveList.addEventListener('change', () => changeFloor(session, { kind: driveList.value as LegDrive }));
@@ -30,10 +30,10 @@ export function setUpWorld(session: Session): void {
     session.setFloor(null);
     showRobot(session);
   });
-  for (const input of [supplyInput, voltsInput]) input.addEventListener('input', () => showVolts(input));
-  supplyInput.addEventListener('change', () => session.setSupply(supplyInput.valueAsNumber));
+  for (const input of [boardVoltsInput, servoVoltsInput]) input.addEventListener('input', () => showVolts(input));
+  boardVoltsInput.addEventListener('change', () => session.setSupply(boardVoltsInput.valueAsNumber));
   servoList.addEventListener('change', () => chooseServos(session, servoList.value));
-  voltsInput.addEventListener('change', () => chooseServos(session, `${servoList.value} at ${voltsInput.value}`));
+  servoVoltsInput.addEventListener('change', () => chooseServos(session, `${servoList.value} at ${servoVoltsInput.value}`));
   session.followRobot(() => showRobot(session));
 }
 
@@ -52,8 +52,8 @@ function showRobot(session: Session): void {
   enableSliders(floor, session.servos);
   servoList.replaceChildren(...description.models.map((model) => new Option(formatServoModel(model), model.name)));
   showServos(session);
-  supplyInput.value = String(session.volts);
-  showVolts(supplyInput);
+  boardVoltsInput.value = String(session.volts);
+  showVolts(boardVoltsInput);
   showInputs(session);
   const [slowVolts, stopVolts, restVolts] = description.supply;
   element('supply-note').textContent =
@@ -71,12 +71,12 @@ function showServos({ description, servos }: Session): void {
   const [name = '', supply] = servos.split(' at ');
   servoList.value = name;
   const ratings = description.models.find((model) => model.name === name)?.ratings;
-  voltsInput.disabled = !ratings;
+  servoVoltsInput.disabled = !ratings;
   if (!ratings) return;
   const [, , , supplyVolts] = ratings;
-  voltsInput.max = String(Math.max(6, supplyVolts));
-  voltsInput.value = supply ?? String(supplyVolts);
-  showVolts(voltsInput);
+  servoVoltsInput.max = String(Math.max(6, supplyVolts));
+  servoVoltsInput.value = supply ?? String(supplyVolts);
+  showVolts(servoVoltsInput);
 }
 
 /** Shows a checkbox for each of the robot's inputs; the simulated contact is closed while the box is ticked. */
@@ -92,13 +92,13 @@ function showInputs(session: Session): void {
 /** Enables only the sliders that have an effect. */
 function enableSliders(floor: Floor, servos: string): void {
   const hasSprings = floor.kind !== 'rigid';
-  const isElastic = hasSprings || servos !== 'ideal';
+  const canYield = hasSprings || servos !== 'ideal';
   getSlider('force').disabled = !hasSprings;
   // If neither springs nor servos yield, friction has no effect; if no foot is too long either, mass has no effect.
-  getSlider('friction').disabled = !isElastic;
-  getSlider('mass').disabled = !isElastic && floor.twist === 0;
+  getSlider('friction').disabled = !canYield;
+  getSlider('mass').disabled = !canYield && floor.twist === 0;
   getSlider('leaf').disabled = floor.twist === 0;
-  element('rigid-note').hidden = isElastic || canLag(floor) || floor.twist !== 0;
+  element('rigid-note').hidden = canYield || canLag(floor) || floor.twist !== 0;
 }
 
 /** Changes the leg drive or a slider's value. No other slider is read, because it may have rounded its value. */

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use lizard_measure::{Gaits, NamedVideo, Report, compute_board_height};
+use lizard_measure::{Gaits, NamedVideo, Report, compute_deck_height};
 use lizard_robot::Robot;
 use lizard_video::{Frame, Setup, Tag, Video, VideoError, sheet};
 use serde::{Deserialize, Serialize};
@@ -99,7 +99,7 @@ impl Camera {
         let deck_height = request.deck_height;
         let setup = Setup {
             print_scale: request.ruler_length / sheet::RULER_LENGTH,
-            deck_height: deck_height.unwrap_or_else(|| compute_board_height(&robot)),
+            deck_height: deck_height.unwrap_or_else(|| compute_deck_height(&robot)),
         };
         let gaits = Gaits::predict(&robot, &named_gaits, request.speed);
         let video = match self.cached_analysis.take() {

@@ -6,7 +6,7 @@ use lizard_core::numbers::section::START_ADDRESS;
 use lizard_kinematics::Check;
 use lizard_robot::edit::HIP_KEYS;
 use lizard_robot::servo::SERVO_NAMES;
-use lizard_robot::{Plate, Robot, ServoType, healthy_rail_mv};
+use lizard_robot::{Plate, Robot, ServoType, healthy_rail_pin_mv};
 use lizard_twin::ServoModel;
 use serde::Serialize;
 use tsify::Tsify;
@@ -237,7 +237,7 @@ impl Description {
             lengths: list_lengths(robot),
             plate: robot.plate().into(),
             margins: margins.concat(),
-            rail: healthy_rail_mv(&core.supplies())
+            rail: healthy_rail_pin_mv(&core.supplies())
                 .zip(core.rail_pin())
                 .map(|(mv, pin)| (pin - 14, mv / 1000.0)),
             inputs: robot.inputs().named_pins().collect(),

@@ -75,8 +75,8 @@ impl Robot {
 
     /// Loads the robot from a robot.toml. If the text is refused, the previous robot stays.
     #[wasm_bindgen(unchecked_return_type = "Description | Refusal")]
-    pub fn read(&mut self, toml: &str) -> JsValue {
-        result_to_js(self.0.read(toml))
+    pub fn load(&mut self, toml: &str) -> JsValue {
+        result_to_js(self.0.load(toml))
     }
 
     /// Tries other lengths in a robot.toml; if `searches`, also searches for valid alternatives to refused lengths.
@@ -133,8 +133,9 @@ impl Robot {
     }
 
     /// Returns the robot to its start on the floor.
-    pub fn restart(&mut self) {
-        self.0.restart();
+    #[wasm_bindgen(js_name = returnToStart)]
+    pub fn return_to_start(&mut self) {
+        self.0.return_to_start();
     }
 
     /// Returns the displacement from one place to another, in the frame of the first place; mm and deg.
@@ -160,10 +161,11 @@ impl Robot {
         Ok(())
     }
 
-    /// Selects the servo model by its name in the description; `own at 4.2` also sets the supply voltage.
-    #[wasm_bindgen(js_name = setServos)]
-    pub fn set_servos(&mut self, name: &str) {
-        self.0.set_servos(name);
+    /// Sets the servo model by its name in the description; a voltage after the name, as in `own at 4.2`, also sets the
+    /// supply.
+    #[wasm_bindgen(js_name = setServoModel)]
+    pub fn set_servo_model(&mut self, name: &str) {
+        self.0.set_servo_model(name);
     }
 
     /// Predicts the gait with this index; null if there is no such gait. Takes tenths of a second; the page therefore

@@ -3,7 +3,7 @@
 //!
 //! The page passes the text of a robot.toml and then, fifty times per second, the four pulse widths at a UNO's pins. It
 //! receives the position of every joint, the margin to every singularity, the limit that the pose violates, if any, and
-//! the body's place on the floor. `PageState` holds this state; [`Robot`] is its JavaScript class.
+//! the body's place on the floor. `PageState` holds the robot and its place; [`Robot`] is its JavaScript class.
 //!
 //! # When not to use it
 //! The interface is made for this page and changes with it. A Rust program uses `lizard-robot` and `lizard-twin`

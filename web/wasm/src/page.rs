@@ -29,13 +29,13 @@ pub struct Frame {
     /// The robot in the pose of its servos; `None` if a loop does not close.
     scene: Option<Scene>,
     /// The message about the loop that does not close; `None` if all loops close.
-    fault: Option<String>,
+    loop_error: Option<String>,
     /// Place of the body on the floor.
     place: Place,
     /// Distance that each foot slid over the floor in this frame, mm, in servo order.
-    slides: [f64; 4],
+    slips: [f64; 4],
     /// Lag of each leg behind its servo, deg, foot forward positive, in servo order.
-    lag: [f64; 4],
+    lags: [f64; 4],
 }
 
 /// The text of a robot.toml after a change, and its refusal.
@@ -64,17 +64,17 @@ pub struct PageState {
     /// Name of the servo model that the page set; `None` for the robot's own servos.
     model_name: Option<String>,
     running_core: Option<RunningCore>,
-    /// The prepared search; `None` if no search was prepared since the robot was read.
+    /// The prepared search; `None` if no search was prepared since the robot was loaded.
     #[cfg(feature = "tune")]
     pub(crate) search: Option<FasterSearch>,
 }
 
 impl PageState {
-    /// Reads a robot.toml and puts the robot at the start on the floor, with its servos at neutral.
+    /// Loads a robot.toml and puts the robot at the start on the floor, with its servos at neutral.
     ///
     /// # Errors
     /// Returns the first mistake in the text; the page keeps the previous robot.
-    pub fn read(&mut self, text: &str) -> Result<Description, Refusal> {
+    pub fn load(&mut self, text: &str) -> Result<Description, Refusal> {
         let robot = Robot::parse(text)?;
         let description = Description::for_robot(&robot);
         self.target_angles = robot.neutral_pose().into();
@@ -168,14 +168,14 @@ impl PageState {
         let to = twin.robot().sweeps(angles);
         let neutral: [f64; 4] = twin.robot().neutral_pose().into();
         let frame_count = frame_count.clamp(1, MAX_INTERPOLATED_FRAMES);
-        let mut slides = [0.0; 4];
+        let mut slips = [0.0; 4];
         let mut advance = |n: u32| {
             let fraction = f64::from(n) / f64::from(frame_count);
             let sweep_at = |i: usize| from[i] + fraction * (to[i] - from[i]);
             let state = twin.simulate_angles(std::array::from_fn(|i| {
                 neutral[i] + FORWARD_TURN_SIGN[i] * sweep_at(i)
             }));
-            slides = std::array::from_fn(|i| slides[i] + state.slips[i]);
+            slips = std::array::from_fn(|i| slips[i] + state.slips[i]);
             state
         };
         (1..frame_count).for_each(|n| {
@@ -183,11 +183,11 @@ impl PageState {
         });
         let state = advance(frame_count);
         self.target_angles = angles;
-        Some(make_frame(twin, &state, slides))
+        Some(make_frame(twin, &state, slips))
     }
 
     /// Returns the robot to its start on the floor.
-    pub fn restart(&mut self) {
+    pub fn return_to_start(&mut self) {
         if let Some(twin) = &mut self.twin {
             twin.set_body_pose(BodyPose::START);
         }
@@ -200,9 +200,9 @@ impl PageState {
         }
     }
 
-    /// Sets the servo model by its name in [`Description::models`]; `own at 4.2` also sets the supply voltage. An
-    /// unknown name has no effect.
-    pub fn set_servos(&mut self, name: &str) {
+    /// Sets the servo model by its name in [`Description::models`]; a voltage after the name, as in `own at 4.2`, also
+    /// sets the supply. An unknown name has no effect.
+    pub fn set_servo_model(&mut self, name: &str) {
         let Some(twin) = &mut self.twin else {
             self.model_name = Some(name.to_owned());
             return;
@@ -231,12 +231,13 @@ impl PageState {
         Some(search.map(|search| self.search.insert(search).extent()))
     }
 
-    /// Returns the workspace of the end point of the head (0) or the tail (1); `None` if no robot is loaded.
+    /// Returns the workspace of the end point of the head (0) or the tail (1); `None` for another `end` or without a
+    /// robot.
     pub fn workspace(&self, end: usize) -> Option<Workspace> {
         Some(Workspace::compute(self.robot()?, *End::ALL.get(end)?))
     }
 
-    /// Makes the map of singularities of the head (0) or the tail (1); `None` if no robot is loaded.
+    /// Makes the map of singularities of the head (0) or the tail (1); `None` for another `end` or without a robot.
     pub fn singularity_map(&self, end: usize) -> Option<SingularityMap> {
         Some(SingularityMap::compute(self.robot()?, *End::ALL.get(end)?))
     }
@@ -257,15 +258,15 @@ impl PageState {
 /// Largest number of interpolated frames between two poses; after a longer pause, the motion is unknown.
 const MAX_INTERPOLATED_FRAMES: u32 = 50;
 
-fn make_frame(twin: &Twin, state: &State, slides: [f64; 4]) -> Frame {
+fn make_frame(twin: &Twin, state: &State, slips: [f64; 4]) -> Frame {
     let scene = Scene::compute(twin);
-    let fault = scene.as_ref().err().cloned();
+    let loop_error = scene.as_ref().err().cloned();
     Frame {
         scene: scene.ok(),
-        fault,
+        loop_error,
         place: state.body_pose.into(),
-        slides,
-        lag: state.lags,
+        slips,
+        lags: state.lags,
     }
 }
 

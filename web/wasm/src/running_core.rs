@@ -5,7 +5,7 @@
 
 use lizard_core::control::supply::Reading;
 use lizard_core::virtual_board::RunningRobot;
-use lizard_robot::{CoreRobot, healthy_rail_mv};
+use lizard_robot::{CoreRobot, healthy_rail_pin_mv};
 
 /// Number of codes of the analogue-to-digital converter.
 const ADC_FULL_SCALE: f64 = 1024.0;
@@ -23,7 +23,7 @@ impl RunningCore {
     /// Starts a robot's core as at power-on, with an erased EEPROM.
     pub fn power_on(robot: CoreRobot) -> Self {
         Self {
-            rail_pin_mv: healthy_rail_mv(&robot.supplies()).unwrap_or(0.0),
+            rail_pin_mv: healthy_rail_pin_mv(&robot.supplies()).unwrap_or(0.0),
             running_robot: RunningRobot::power_on(robot),
         }
     }

@@ -1,7 +1,7 @@
 //! Splits received bytes into lines.
 //!
-//! Some terminals end a line with CR, some with LF, some with both. Here each CR and each LF ends a line. Empty lines
-//! are ignored, so CR LF ends only one line.
+//! Some terminals end a line with CR, some with LF, some with both. Here each CR and each LF ends a line. A line
+//! that is empty or only white space is blank; blank lines are ignored, so CR LF ends only one line.
 
 use heapless::Vec;
 
@@ -73,7 +73,7 @@ impl Line {
         self.is_garbled |= !self.has_ended && !self.text().is_empty();
     }
 
-    /// The text of the line in lower case, without leading and trailing blanks.
+    /// The text of the line in lower case, without leading and trailing white space.
     pub fn text(&self) -> &[u8] {
         self.bytes.trim_ascii()
     }
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn cr_lf_or_both_end_a_line_and_empty_lines_are_ignored() {
+    fn cr_lf_or_both_end_a_line_and_blank_lines_are_ignored() {
         for line_end in ["\r", "\n", "\r\n", "\n\r", "\r\r\n\n", "\r \t \n"] {
             let bytes = std::format!("{line_end}one{line_end}two{line_end}");
             let expected_lines = ["one", "two"].map(|text| Some(text.to_string()));
@@ -155,7 +155,7 @@ mod tests {
             let expected_lines = [first_line, Some("stand".to_string())];
             assert_eq!(split_lines(bytes), expected_lines);
         }
-        // Leading blanks count towards the 63 characters.
+        // Leading white space counts towards the 63 characters.
         assert_eq!(split_lines(std::format!("{:>64}\r", "stand")), [None]);
     }
 
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn the_text_of_a_line_is_in_lower_case_without_surrounding_blanks() {
+    fn the_text_of_a_line_is_in_lower_case_without_surrounding_white_space() {
         let text = "arc \t left".to_string();
         assert_eq!(split_lines("  Arc \t LEFT\t \n"), [Some(text)]);
     }

@@ -17,12 +17,12 @@ use crate::{Failure, RobotArgs};
 
 /// Check every gait in robot.toml and predict how far the robot walks with it.
 ///
-/// For each gait, prints the duration of a cycle, the highest servo speed, the table error over all 65536 phases, the
-/// smallest margins and the slider travel, and the displacement per cycle according to the contact model. A dash
-/// means that the model cannot decide: two feet pull with equal force against the other two. For each routine, prints
-/// the duration and the displacement of one round, including the transitions between its gaits. If a gait violates a
-/// limit, reports the gait, its phase, the margin, its value and the limit, and exits with code 2. Any other error in
-/// the file also gives exit code 2.
+/// For each gait, prints the duration of a cycle, the highest servo speed, the largest error of the gait's table in the
+/// firmware, the smallest margins and the slider travel, and the displacement per cycle according to the contact model.
+/// A dash means that the model cannot decide: two feet pull with equal force against the other two. For each routine,
+/// prints the duration and the displacement of one round, including the transitions between its gaits. If a gait
+/// violates a limit, reports the gait, its phase, the margin, its value and the limit, and exits with code 2. Any other
+/// error in the file also gives exit code 2.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   lizard gaits
@@ -48,15 +48,15 @@ pub struct Args {
     /// plausible ranges change a gait's displacement by 10 % or more, and by how much
     #[arg(long, conflicts_with_all = ["json", "trace", "sensitivity"])]
     assumptions: bool,
-    /// Instead, print how much of the servos' torque-speed line each gait uses, and its
-    /// displacement, on several supplies and at two speeds
+    /// Instead, print how close each gait comes to the servos' limit of torque at their speed
+    /// (1: at the limit), and its displacement, on several supplies and at two speeds
     #[arg(long, conflicts_with_all = ["json", "trace", "sensitivity", "assumptions"])]
     servos: bool,
     #[command(flatten)]
     robot: RobotArgs,
 }
 
-/// Prints the table, the JSON objects or the trace that the arguments select.
+/// Prints what the arguments select.
 ///
 /// # Errors
 /// Fails if robot.toml is invalid, if it has no gait of the given name, or if the output cannot be written.
@@ -144,7 +144,8 @@ struct GaitLine<'a> {
 #[derive(Serialize)]
 struct MinMargin {
     /// The margin, a sine.
-    margin: f64,
+    #[serde(rename = "margin")]
+    value: f64,
     /// The name of the check that has this margin.
     #[serde(rename = "what")]
     check: &'static str,
@@ -187,7 +188,7 @@ impl<'a> RoutineLine<'a> {
 impl<'a> GaitLine<'a> {
     fn new(row: &'a GaitRow) -> Self {
         let to_min_margin = |margin: lizard_robot::MinMargin| MinMargin {
-            margin: margin.value,
+            value: margin.value,
             check: Check::name(margin.check),
             phase: margin.phase,
         };

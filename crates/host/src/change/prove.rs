@@ -18,16 +18,16 @@ use crate::shared::spread::{SpreadArgs, Spreadable};
 /// right side, in the firmware's steps of 1/65536 turn. It decides each pair both with the
 /// firmware's integers and in floating point. In certified cells, where the firmware skips
 /// the guard, the guard must accept every pair. The command prints the largest error of each
-/// margin (at an end, only where the type-2 margin keeps its limit), and the largest distance
-/// from a limit at which the two decisions differ. The exit code is 1 if that distance exceeds
-/// the documented one, or if the guard refuses a pose in a cell.
+/// margin (at an end, only at pairs whose type-2 margin is above its limit), and the largest
+/// distance from a limit at which the two decisions differ. The exit code is 1 if that distance
+/// exceeds the one in docs/firmware.md, or if the guard rejects a pair in a certified cell.
 #[derive(clap::Args, Debug, Serialize, Deserialize)]
 #[command(after_help = "Examples:
   lizard prove
   lizard prove --robot robots/unequal.toml
   lizard prove --one-in 64 --offset 5")]
 pub struct Args {
-    /// Check only one pair in N, evenly spread
+    /// Check only one pair in N, at even intervals
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole_number_parser::<u32>(1, 1_000_000))]
     one_in: u32,
     /// Offset of the selected pairs, less than N; each offset selects different pairs
@@ -81,16 +81,17 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let proof = Proof::from_tallies(&robot, guard, pieces);
 
-    json::print_json_or_text(args.json, &proof, || format_table(&proof, sample))?;
+    json::print_json_or_text(args.json, &proof, || format_report(&proof, sample))?;
     match proof.wrong_count() {
         0 => Ok(()),
         wrong_count => Err(Failure::Operation(format!(
-            "the guard decides {wrong_count} pairs outside the band or in a cell incorrectly"
+            "the guard decides {wrong_count} pairs wrongly that are in a certified cell or farther \
+             from a limit than the allowed distance"
         ))),
     }
 }
 
-fn format_table(proof: &Proof, sample: PairSample) -> String {
+fn format_report(proof: &Proof, sample: PairSample) -> String {
     let mut text =
         "                                      largest error          decisions differ within\n\
          part        servos          pairs   type-2   type-1      mm    margin      mm   wrong\n"
@@ -122,7 +123,7 @@ fn format_table(proof: &Proof, sample: PairSample) -> String {
     };
     _ = writeln!(
         text,
-        "\n{sample_text}, in steps of 0.0055 deg, of a robot with tables {:08x}",
+        "\n{sample_text}, in steps of 0.0055 deg, of the robot whose numbers have the hash {:08x}",
         proof.hash
     );
     if proof.wrong_count() == 0 {

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use lizard_measure::{Gaits, Report, compute_board_height};
+use lizard_measure::{Gaits, Report, compute_deck_height};
 
 use super::picture;
 use super::recording::{RecordingArgs, height_parser};
@@ -35,7 +35,7 @@ pub struct Args {
     /// robot.toml that the paths clearly resemble]
     #[arg(long, value_hint = clap::ValueHint::Other, value_name = "NAMES", value_delimiter = ',')]
     gait: Vec<String>,
-    /// The robot's pace in the videos, percent
+    /// The robot's setting `speed` in the videos, percent
     #[arg(long, value_name = "PERCENT", default_value_t = 100, value_parser = whole_number_parser::<u8>(1, 100))]
     speed: u8,
     /// Height of the deck's tag above the floor, mm [default: the top of the board, computed from the robot's parts]
@@ -72,12 +72,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let named_gaits = args.gait.iter().map(|name| find_moving_gait(&robot, name));
     let named_gaits = named_gaits.collect::<Result<Vec<_>, _>>()?;
     let gaits = Gaits::predict(&robot, &named_gaits, args.speed);
-    let height = args.height.unwrap_or_else(|| compute_board_height(&robot));
+    let height = args.height.unwrap_or_else(|| compute_deck_height(&robot));
     let setup = args.recording.setup(height);
     let spinner = create_spinner("reading the frames");
     let analyse_video = |path: &PathBuf| args.recording.analyse(path, setup);
-    let videos = args.videos.iter().map(analyse_video);
-    let videos = videos.collect::<Result<Vec<_>, Failure>>()?;
+    let analyses = args.videos.iter().map(analyse_video);
+    let videos = analyses.collect::<Result<Vec<_>, Failure>>()?;
     if args.csv {
         drop(spinner);
         let csv = videos[0].format_path_csv();

@@ -68,20 +68,20 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
     measured.extend(mean_points.map(|point| (point.forward.mean, point.left.mean)));
     let last_point = (gait.forward.mean, gait.left.mean);
     measured.push(last_point);
-    let extent_of = |component: fn(&(f64, f64)) -> f64| {
-        let values = predicted.iter().chain(&measured).map(component);
+    let extent_of = |coordinate: fn(&(f64, f64)) -> f64| {
+        let values = predicted.iter().chain(&measured).map(coordinate);
         values.fold([0.0f64; 2], |[min, max], value| {
             [min.min(value), max.max(value)]
         })
     };
     let ([min_x, max_x], [min_y, max_y]) = (extent_of(|point| point.0), extent_of(|point| point.1));
-    // Both directions have the same scale, mm per pixel, with a margin.
-    let scale = ((max_x - min_x) / PATH_WIDTH)
+    // Both directions have the same scale, with a margin.
+    let mm_per_px = ((max_x - min_x) / PATH_WIDTH)
         .max((max_y - min_y) / PANEL_HEIGHT)
         .max(1e-3)
         * 1.15;
     let axis_range = |min: f64, max: f64, size: f64| {
-        let (middle, half_range) = ((min + max) / 2.0, scale * size / 2.0);
+        let (middle, half_range) = ((min + max) / 2.0, mm_per_px * size / 2.0);
         (middle - half_range, middle + half_range)
     };
     let plot = Plot {
@@ -90,7 +90,7 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
         x_range: axis_range(min_x, max_x, PATH_WIDTH),
         y_range: axis_range(min_y, max_y, PANEL_HEIGHT),
     };
-    let tick_step = compute_tick_step(scale * PATH_WIDTH);
+    let tick_step = compute_tick_step(mm_per_px * PATH_WIDTH);
     let [forward_axis, left_axis] =
         ["ahead, mm", "left, mm"].map(|name| Axis::new(tick_step, name));
     let group = plot.draw_grid(group, &forward_axis, &left_axis);
@@ -118,12 +118,14 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
 /// Draws the components of the displacement per cycle as bars.
 fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
     let components = gait.components();
-    let ends = components.iter().flat_map(|component| {
+    let values = components.iter().flat_map(|component| {
         let half_length = ERROR_BAR_HALF_LENGTH * component.standard_error;
         let error_ends = [component.mean - half_length, component.mean + half_length];
         error_ends.into_iter().chain(component.predicted)
     });
-    let [min, max] = ends.fold([0.0f64; 2], |[min, max], end| [min.min(end), max.max(end)]);
+    let [min, max] = values.fold([0.0f64; 2], |[min, max], value| {
+        [min.min(value), max.max(value)]
+    });
     let margin = 0.1 * (max - min).max(1e-3);
     let plot = Plot {
         corner: (BARS_X, top),
@@ -137,10 +139,10 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
     let mut group = plot.draw_grid(group, &name_axis, &value_axis);
     for (i, component) in components.into_iter().enumerate() {
         // Each component has an interval of width 1: the measured bar is on the left, the predicted bar on the right.
-        let interval_x = 0.5 + i as f64;
+        let interval_left = 0.5 + i as f64;
         let draw_bar = |offset: f64, value: f64, colour: &str| {
-            let (left, top) = plot.to_page_point(interval_x + offset, value.max(0.0));
-            let (right, bottom) = plot.to_page_point(interval_x + offset + 0.28, value.min(0.0));
+            let (left, top) = plot.to_page_point(interval_left + offset, value.max(0.0));
+            let (right, bottom) = plot.to_page_point(interval_left + offset + 0.28, value.min(0.0));
             rectangle((left, top), (right - left, bottom - top), colour)
         };
         group = group.add(draw_bar(0.2, component.mean, MEASURED_COLOUR));
@@ -149,14 +151,14 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
         }
         let half_length = ERROR_BAR_HALF_LENGTH * component.standard_error;
         let error_ends = [component.mean - half_length, component.mean + half_length];
-        let x = interval_x + 0.34;
+        let x = interval_left + 0.34;
         let [low, high] = error_ends.map(|end| (x, end));
         group = group.add(plot.line(low, high, "black", 1.5));
         for end in error_ends {
             group = group.add(plot.line((x - 0.05, end), (x + 0.05, end), "black", 1.5));
         }
         let point_below = |lines: f64| {
-            let (x, y) = plot.to_page_point(interval_x + 0.5, plot.y_range.0);
+            let (x, y) = plot.to_page_point(interval_left + 0.5, plot.y_range.0);
             (x, y + 20.0 + 18.0 * lines)
         };
         let verdict = component.format_verdict();
@@ -164,8 +166,8 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
             .add(text_middle(COMPONENT_LABELS[i], point_below(0.0), 15.0))
             .add(text(&verdict, point_below(1.0), 13.0, GREY, Anchor::Middle));
     }
-    let (left, right) = ((plot.x_range.0, 0.0), (plot.x_range.1, 0.0));
-    group = group.add(plot.line(left, right, "black", 1.0));
+    let [line_start, line_end] = [plot.x_range.0, plot.x_range.1].map(|x| (x, 0.0));
+    group = group.add(plot.line(line_start, line_end, "black", 1.0));
     plot.draw_axes(group, &name_axis, &value_axis)
 }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use lizard_measure::{NamedVideo, compute_board_height};
+use lizard_measure::{NamedVideo, compute_deck_height};
 use lizard_robot::Robot;
 use lizard_video::{Estimate, MeasuredSlide};
 use serde::Serialize;
@@ -69,7 +69,7 @@ struct SlideReport {
 /// Fails if a video cannot be read or shows no slide.
 pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let height = args.height.unwrap_or_else(|| compute_board_height(&robot));
+    let height = args.height.unwrap_or_else(|| compute_deck_height(&robot));
     let setup = args.recording.setup(height);
     let spinner = create_spinner("reading the frames");
     let measure_slide = |path: &PathBuf| {

@@ -10,7 +10,7 @@ use crate::problem::MODEL_ERROR;
 /// Number of gaits.
 const GAIT_COUNT: usize = 8;
 /// Standard error of each measured mean, mm or deg.
-const MEAN_ERROR: f64 = 0.05;
+const STANDARD_ERROR: f64 = 0.05;
 
 /// Computes movements that are curved functions of the keys, with different coefficients for each gait.
 fn compute_travels(values: &Values) -> Vec<Travel> {
@@ -47,7 +47,7 @@ fn measure_exactly(travels: Vec<Travel>, card: CardPose) -> Vec<MeasuredMovement
         gait: "walk".to_owned(),
         pace: 1.0,
         mean: card.convert_travel(travel),
-        error: [MEAN_ERROR; 3],
+        error: [STANDARD_ERROR; 3],
     };
     travels.into_iter().map(to_movement).collect()
 }
@@ -56,7 +56,7 @@ fn measure_exactly(travels: Vec<Travel>, card: CardPose) -> Vec<MeasuredMovement
 fn measure_robot(values: &Values, card: CardPose, rng: &mut Rng) -> Vec<MeasuredMovement> {
     let mut movements = measure_exactly(compute_travels(values), card);
     for mean in movements.iter_mut().flat_map(|movement| &mut movement.mean) {
-        *mean += MEAN_ERROR.hypot(MODEL_ERROR) * random_deviate(rng);
+        *mean += STANDARD_ERROR.hypot(MODEL_ERROR) * random_deviate(rng);
     }
     movements
 }
@@ -75,16 +75,16 @@ fn identify_with(
 }
 
 #[test]
-fn changed_keys_are_found_within_two_standard_errors_in_95_percent_and_correct_keys_stay() {
-    let (mut changed_count, mut hit_count) = (0, 0);
-    let (mut unchanged_count, mut false_change_count) = (0, 0);
+fn altered_keys_are_found_within_two_standard_errors_in_95_percent_and_unaltered_keys_stay() {
+    let (mut altered_count, mut hit_count) = (0, 0);
+    let (mut unaltered_count, mut false_change_count) = (0, 0);
     let mut explained_count = 0;
     const ROBOT_COUNT: u64 = 300;
     for seed in 0..ROBOT_COUNT {
         let mut rng = Rng::with_seed(seed);
         let mut true_values = default_file_values();
-        let is_changed: [bool; KEY_COUNT] = std::array::from_fn(|_| rng.bool());
-        for i in (0..KEY_COUNT).filter(|&i| is_changed[i]) {
+        let is_altered: [bool; KEY_COUNT] = std::array::from_fn(|_| rng.bool());
+        for i in (0..KEY_COUNT).filter(|&i| is_altered[i]) {
             let deviate = match i {
                 PLAY_INDEX => rng.f64(),
                 _ => random_deviate(&mut rng).max(-1.5).abs(),
@@ -98,11 +98,11 @@ fn changed_keys_are_found_within_two_standard_errors_in_95_percent_and_correct_k
         for i in 0..KEY_COUNT {
             let key = &result.keys[i];
             assert!(key.verdict != Verdict::Undetermined, "seed {seed}: {key:?}");
-            if is_changed[i] {
-                changed_count += 1;
+            if is_altered[i] {
+                altered_count += 1;
                 hit_count += i32::from((key.new_value - true_values[i]).abs() <= 2.0 * key.error);
             } else {
-                unchanged_count += 1;
+                unaltered_count += 1;
                 false_change_count += i32::from(key.verdict == Verdict::Changed);
             }
             let distance = (key.new_value - key.file_value).abs();
@@ -110,14 +110,14 @@ fn changed_keys_are_found_within_two_standard_errors_in_95_percent_and_correct_k
             assert!(distance == 0.0 || distance >= 2.0 * key.error);
         }
     }
-    let hit_fraction = f64::from(hit_count) / f64::from(changed_count);
+    let hit_fraction = f64::from(hit_count) / f64::from(altered_count);
     assert!(
         (0.93..=0.985).contains(&hit_fraction),
-        "{hit_count} of {changed_count} changed keys are within two standard errors"
+        "{hit_count} of {altered_count} altered keys are within two standard errors"
     );
     assert!(
-        f64::from(false_change_count) < 0.05 * f64::from(unchanged_count),
-        "{false_change_count} of {unchanged_count} correct keys changed"
+        f64::from(false_change_count) < 0.05 * f64::from(unaltered_count),
+        "{false_change_count} of {unaltered_count} unaltered keys got a new value"
     );
     assert!(
         f64::from(explained_count) > 0.97 * ROBOT_COUNT as f64,

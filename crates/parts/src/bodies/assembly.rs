@@ -4,7 +4,7 @@ use lizard_kinematics::{Real, Solution, Vector};
 use lizard_robot::Robot;
 
 use crate::bodies::builder::AssemblyBuilder;
-use crate::bodies::joints::Cranks;
+use crate::bodies::cranks::Cranks;
 use crate::bodies::layout::Layout;
 use crate::bodies::{chassis, ends, legs, links, sliders, struts};
 use crate::layers::body::{Body, Mount, end_and_index};

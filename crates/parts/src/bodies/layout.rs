@@ -4,7 +4,7 @@ use lizard_kinematics::{End, Side, Vector};
 use lizard_robot::servo::ARM_TURN_SIGN;
 use lizard_robot::{LegPlan, Plate, Robot};
 
-/// Distances from the plate's middle to the standoffs, mm: to the right, forward.
+/// Distances of each standoff from the plate's middle, mm: sideways and lengthwise.
 pub const STANDOFF_DISTANCES: [f64; 2] = [8.0, 39.0];
 
 /// Radius of the circle around a hexagonal standoff of 5.5 mm across flats, mm.
@@ -15,16 +15,16 @@ pub const UNO_SIZE: [f64; 3] = [53.34, 68.58, 12.0];
 /// Thickness of an Arduino UNO's board, mm.
 pub const UNO_BOARD_THICKNESS: f64 = 1.6;
 
-/// Pivots of all moving bodies, lengths of the servo links, and the plate's outline.
+/// Pivots of all moving bodies, lengths of the cranks, and the plate's outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {
     /// Servos' shafts, chassis frame, servo order, mm.
     pub shafts: [Vector; 4],
     /// Lengths of the cranks of head and tail, servo order, mm.
     pub crank_lengths: [f64; 4],
-    /// Tips of the sliders' arms in the frames of their links, servo order, mm.
+    /// Tip of each servo's slider arm, in the frame of the servo's crank, mm.
     pub arm_tips: [Vector; 4],
-    /// Pivots and anchors of the legs, servo order.
+    /// Dimensions of the legs, servo order.
     pub legs: [LegPlan; 4],
     /// Outline of the chassis plate.
     pub plate: Plate,

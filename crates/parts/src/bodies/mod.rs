@@ -6,10 +6,10 @@
 pub(crate) mod assembly;
 pub(crate) mod builder;
 pub(crate) mod chassis;
+pub(crate) mod cranks;
 pub(crate) mod decoration;
 pub(crate) mod ends;
 pub(crate) mod fittings;
-pub(crate) mod joints;
 pub(crate) mod layout;
 pub(crate) mod leads;
 pub(crate) mod legs;

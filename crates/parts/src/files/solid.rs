@@ -76,7 +76,7 @@ struct Piece {
 }
 
 impl Solid {
-    /// Builds the solid of a stack of layers, listed from the lowest to the highest.
+    /// Builds the solid of a stack of prisms, the layers, listed from the lowest to the highest.
     pub fn from_prisms(prisms: &[Prism]) -> Self {
         let outlines_at = |fraction| {
             let to_outline = |prism: &Prism| Outline::from_prism(&prism.cross_section(fraction));
@@ -90,6 +90,7 @@ impl Solid {
         let empty_outline = Outline::default();
         let mut pieces_below: Vec<Vec<Piece>> = Vec::new();
         for level in 0..=prisms.len() {
+            // The top outline of the layer below, and the bottom outline of the layer above.
             let lower = level.checked_sub(1).map_or(&empty_outline, |k| &tops[k]);
             let upper = bottoms.get(level).unwrap_or(&empty_outline);
             let lower_pieces = builder.split_outline(level, lower, upper);

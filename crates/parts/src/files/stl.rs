@@ -9,7 +9,7 @@ pub fn encode_stl(name: &str, mesh: &Mesh) -> Vec<u8> {
     let count = u32::try_from(mesh.triangles.len()).unwrap_or(u32::MAX);
     bytes.extend(count.to_le_bytes());
     for triangle in &mesh.triangles {
-        let [a, b, c] = triangle.map(|corner| mesh.corners[corner]);
+        let [a, b, c] = triangle.map(|index| mesh.corners[index]);
         let [u, v] = [b, c].map(|end| [0, 1, 2].map(|i| end[i] - a[i]));
         let normal = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| u[i] * v[j] - u[j] * v[i]);
         let squares = normal.map(|component| component * component);
@@ -18,12 +18,13 @@ pub fn encode_stl(name: &str, mesh: &Mesh) -> Vec<u8> {
             true => normal.map(|component| component / length),
             false => [0.0; 3],
         };
-        for corner in [unit_normal, a, b, c] {
-            for component in corner {
+        for vector in [unit_normal, a, b, c] {
+            for component in vector {
                 // Adding 0 turns -0 into 0, so that equal meshes give equal bytes.
                 bytes.extend((component as f32 + 0.0).to_le_bytes());
             }
         }
+        // No attribute bytes follow.
         bytes.extend([0, 0]);
     }
     bytes

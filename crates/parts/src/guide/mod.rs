@@ -37,7 +37,7 @@ pub const CORNER_SERVO: usize = 0;
 
 /// Introduction of the guide.
 const INTRODUCTION: &str = "No printed robot has walked yet. Therefore print in this order, and stop if something does not fit:\n\n\
-1. the **coupon** (`lizard parts DIR --coupon`): try the columns from the left; the first into which all counterparts go by hand shows your printer's `fit`;\n\
+1. the **coupon** (`lizard parts DIR --coupon`): each column of holes has more clearance than the column to its left. The first column from the left into which you can push all the loose pieces by hand shows your printer's `fit`;\n\
 2. one **corner** (`lizard parts DIR --corner`): a seat, a link, a leg, a strut and a foot. Printing takes three hours. Assemble it as in steps 1, 5 and 7 to 9;\n\
 3. all parts.\n\n\
 Print all parts in the given orientation, in layers of 0.2 mm, **without supports**. A slicer may suggest supports under the two ends \
@@ -46,8 +46,8 @@ of a sleeve's roof, but a bridge of 6.4 mm needs none.";
 /// Title of the step in which the pads are pressed onto their screws.
 const LEGS_TITLE: &str = "Legs, on the bench";
 /// Text for pads with a strip, added to the step in which the pads are pressed on.
-const STRIP_TEXT: &str = " Before you press the heads in, glue a strip along each dome, from its notch to the other side. The tips of its hairs or \
-bristles point away from the notch; its front end is folded up and glued into the notch, so that no edge of the floor catches it. \
+const STRIP_TEXT: &str = " Before you press the screws' heads in, glue a strip along each dome, from the dome's notch to its other side. The hairs or \
+bristles of the strip point away from the notch; the strip's front end is folded up and glued into the notch, so that no edge of the floor catches it. \
 Cut all four strips from one piece: their thickness lifts the feet and must be equal. Cut a hole of 4 mm into each, over the hole for the key.";
 /// Title of the step that levels the feet, the last step that turns pads.
 const LEVEL_TITLE: &str = "Level the feet";
@@ -109,7 +109,7 @@ fn make_guide(
     let mut files = vec![OutputFile::new("guide/robot.svg", robot_picture)];
     let mut text = format!(
         "# Building the robot\n\n![The robot](robot.svg)\n\n{INTRODUCTION}\n\n{}\n",
-        format_drilling_text(&parts)
+        format_part_notes(&parts)
     );
     let _ = writeln!(text, "## What is needed\n\n{bill}");
     let mut added_bodies: Vec<&Body> = Vec::new();
@@ -153,7 +153,7 @@ fn make_guide(
 }
 
 /// Formats the guide's text about holes to drill, and about the marks on the parts.
-fn format_drilling_text(parts: &[Part]) -> String {
+fn format_part_notes(parts: &[Part]) -> String {
     let format_holes = |part: &Part| match part.build_printed_layers() {
         (_, 0) => None,
         (_, 1) => Some(format!("a hole in each {}", part.name)),
@@ -162,7 +162,7 @@ fn format_drilling_text(parts: &[Part]) -> String {
     let hole_texts: Vec<_> = parts.iter().filter_map(format_holes).collect();
     format!(
         "Some holes are closed by one printed layer of {PRINT_LAYER_MM} mm, because a pocket is below them during printing. Open them with a 3 mm drill \
-         or a screw: {}. Parts that are mirror images have the numbers of their servos engraved: 13 is for A1 and A3.",
+         or a screw: {}. Parts that exist in two mirrored forms have the numbers of their servos engraved: 13 is for A1 and A3.",
         hole_texts.join(", ")
     )
 }
@@ -173,8 +173,8 @@ struct StepPicture {
     name: &'static str,
     caption: &'static str,
     view: View,
-    /// Ratio of the new bodies' lift to [`EXPLODED_LIFT`].
-    lift: f64,
+    /// Factor of the new bodies' lift in this picture.
+    lift_factor: f64,
     /// True for a new body to draw in colour.
     is_coloured: fn(&Body) -> bool,
     has_part_labels: bool,
@@ -197,7 +197,7 @@ fn draw_step(
         azimuth,
         ..view
     };
-    let corner = View {
+    let corner_view = View {
         is_close_up: true,
         azimuth: 150.0,
         elevation: 30.0,
@@ -207,7 +207,7 @@ fn draw_step(
         name: "exploded",
         caption: "apart",
         view,
-        lift: 1.0,
+        lift_factor: 1.0,
         is_coloured: |_| true,
         has_part_labels: true,
     };
@@ -216,16 +216,16 @@ fn draw_step(
         ExtraView::Corner => Some(StepPicture {
             name: "near",
             caption: "the front left corner",
-            view: corner,
-            lift: 0.6,
+            view: corner_view,
+            lift_factor: 0.6,
             is_coloured: is_at_corner,
             ..exploded
         }),
         ExtraView::CornerBelow => Some(StepPicture {
             name: "below",
             caption: "the front left corner from below",
-            view: view_from_below(30.0, corner),
-            lift: 0.5,
+            view: view_from_below(30.0, corner_view),
+            lift_factor: 0.5,
             is_coloured: is_at_corner,
             ..exploded
         }),
@@ -233,7 +233,7 @@ fn draw_step(
             name: "below",
             caption: "from below",
             view: view_from_below(300.0, view),
-            lift: 0.0,
+            lift_factor: 0.0,
             ..exploded
         }),
     };
@@ -241,7 +241,7 @@ fn draw_step(
     let done = StepPicture {
         name: "done",
         caption: "done",
-        lift: 0.0,
+        lift_factor: 0.0,
         has_part_labels: false,
         ..exploded
     };
@@ -250,7 +250,7 @@ fn draw_step(
         let earlier_bodies = earlier_bodies.map(|body| PictureBody::without_lift(body, true));
         let new_bodies = new_bodies.iter().map(|&body| PictureBody {
             body,
-            lift: picture.lift * EXPLODED_LIFT * (step.lift)(body),
+            lift: picture.lift_factor * EXPLODED_LIFT * (step.lift)(body),
             is_grey: !(picture.is_coloured)(body),
         });
         let drawn_bodies: Vec<_> = earlier_bodies.chain(new_bodies).collect();
@@ -308,7 +308,7 @@ mod tests {
         for (kind, is_slotted) in [("strut", true), ("rigid", false)] {
             let text = format!("{text}\n[leg.drive]\nkind = \"{kind}\"");
             let robot = lizard_robot::Robot::parse(&text)
-                .expect("paper.toml is valid with either kind of strut");
+                .expect("paper.toml is valid with either kind of leg drive");
             let steps = build_steps(is_slotted);
             for body in Assembly::new(&robot).bodies() {
                 let count = steps.iter().filter(|step| step.adds(body)).count();

@@ -5,7 +5,7 @@
 
 use lizard_kinematics::Vector;
 
-use super::guard::{Guard, Region};
+use super::guard::{Region, RelaxedGuard};
 use super::interval::Interval;
 use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Mount};
@@ -17,7 +17,7 @@ const MIN_HALF_WIDTH_DEG: f64 = 2.0;
 pub type Rectangle = [Interval; 2];
 
 /// Computes the rectangle of each body, in the order of [`Assembly::bodies`].
-pub fn compute_bounding_rectangles(assembly: &Assembly, guard: &Guard) -> Vec<Rectangle> {
+pub fn compute_bounding_rectangles(assembly: &Assembly, guard: &RelaxedGuard) -> Vec<Rectangle> {
     const EMPTY: Interval = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
     let mut rectangles = vec![[EMPTY; 2]; assembly.bodies().len()];
     let mut mounts: Vec<Mount> = Vec::new();
@@ -45,7 +45,7 @@ pub fn are_apart(a: &Rectangle, b: &Rectangle, min_mm: f64) -> bool {
 /// Extends the rectangles of the bodies on a mount that depends on these servos to enclose the bounds of their points.
 fn extend_rectangles<const N: usize>(
     assembly: &Assembly,
-    guard: &Guard,
+    guard: &RelaxedGuard,
     mount: Mount,
     servos: [usize; N],
     rectangles: &mut [Rectangle],

@@ -11,20 +11,20 @@ use lizard_robot::Robot;
 
 use super::interval::Interval;
 use super::interval_dual::IntervalDual;
-use crate::bodies::joints::Cranks;
+use crate::bodies::cranks::Cranks;
 
 /// Relaxation of the margins' limits, as a sine.
 const SINE_RELAXATION: f64 = 0.005;
-/// Type-2 limit below which the relaxation grows in proportion: the closer two couplers are to alignment, the more a
-/// rounded length turns them.
-const FULL_RELAXATION_TYPE2: f64 = 0.3;
+/// Type-2 limit down to which [`SINE_RELAXATION`] is enough. At a lower limit the relaxation is larger, in inverse
+/// proportion: the closer two couplers are to alignment, the more a rounded length turns them.
+const BASE_RELAXATION_TYPE2: f64 = 0.3;
 /// Relaxation of a slider's stroke and of crossed crank tips, mm.
 const LENGTH_RELAXATION_MM: f64 = 0.1;
-/// Resolution of the bounds of a servo's range in [`Guard::find_range_end`], deg.
+/// Resolution of the bounds of a servo's range in [`RelaxedGuard::find_bound`], deg.
 const RANGE_RESOLUTION_DEG: f64 = 0.01;
-/// Resolution of the angle of a pair's other servo in [`Guard::find_range_end`], deg.
+/// Resolution of the angle of a pair's other servo in [`RelaxedGuard::find_bound`], deg.
 const PARTNER_RESOLUTION_DEG: f64 = 0.2;
-/// Largest number of regions that [`Guard::find_pose`] searches.
+/// Largest number of regions that [`RelaxedGuard::find_pose`] searches.
 const MAX_SEARCHED_REGIONS: u32 = 300;
 
 /// Returns a key that orders numbers as [`f64::total_cmp`] does.
@@ -88,15 +88,15 @@ fn cranks_at<'a, const N: usize, T: Real>(
     }
 }
 
-/// An end of the range of a servo's angle.
+/// A bound of a servo's angle.
 #[derive(Clone, Copy)]
-enum RangeEnd {
-    Low,
-    High,
+enum Bound {
+    Lower,
+    Upper,
 }
 
-/// The guard of a robot.
-pub struct Guard<'a> {
+/// A relaxed guard of a robot, which accepts every pose that the firmware accepts.
+pub struct RelaxedGuard<'a> {
     robot: &'a Robot,
     /// Relaxed limits of the robot.
     limits: Limits,
@@ -104,11 +104,11 @@ pub struct Guard<'a> {
     pub ranges: [Interval; 4],
 }
 
-impl<'a> Guard<'a> {
+impl<'a> RelaxedGuard<'a> {
     /// Relaxes a robot's limits and bounds each servo's range.
     pub fn new(robot: &'a Robot) -> Self {
         let limits = robot.limits();
-        let sine_relaxation = SINE_RELAXATION * (FULL_RELAXATION_TYPE2 / limits.type2).max(1.0);
+        let sine_relaxation = SINE_RELAXATION * (BASE_RELAXATION_TYPE2 / limits.type2).max(1.0);
         let mut guard = Self {
             robot,
             limits: Limits {
@@ -128,8 +128,8 @@ impl<'a> Guard<'a> {
             let end_pairs = End::ALL.map(|end| end.servos()).into_iter();
             for pair in end_pairs.chain(Side::ALL.map(|side| side.servos())) {
                 for index in 0..2 {
-                    let [low, high] = [RangeEnd::Low, RangeEnd::High]
-                        .map(|end| guard.find_range_end(pair, index, end));
+                    let [low, high] = [Bound::Lower, Bound::Upper]
+                        .map(|bound| guard.find_bound(pair, index, bound));
                     guard.ranges[pair[index]] = Interval::new(low, high);
                 }
             }
@@ -139,12 +139,12 @@ impl<'a> Guard<'a> {
 
     /// Finds the lower or upper bound of the angle of one servo of a pair. Beyond this bound, no pose is accepted at any
     /// angle of the other servo.
-    fn find_range_end(&self, pair: [usize; 2], index: usize, end: RangeEnd) -> f64 {
-        let sign = match end {
-            RangeEnd::Low => 1.0,
-            RangeEnd::High => -1.0,
+    fn find_bound(&self, pair: [usize; 2], index: usize, bound: Bound) -> f64 {
+        let sign = match bound {
+            Bound::Lower => 1.0,
+            Bound::Upper => -1.0,
         };
-        let region_end =
+        let region_bound =
             |region: &Region<2>| region.middle[index] - sign * region.half_widths[index];
         let whole_region = Region::from_bounds(pair.map(|servo| self.ranges[servo]));
         // The outermost region comes first; of equally far regions, the one found first.
@@ -157,16 +157,16 @@ impl<'a> Guard<'a> {
             resolution[index] = RANGE_RESOLUTION_DEG;
             let [a, b] = [0, 1].map(|i| region.half_widths[i] / resolution[i]);
             if a.max(b) < 1.0 {
-                return region_end(&region);
+                return region_bound(&region);
             }
             for half_region in region.halves(usize::from(b > a)) {
                 insertion_index += 1;
-                let order_key = total_order_key(sign * region_end(&half_region));
+                let order_key = total_order_key(sign * region_bound(&half_region));
                 regions.insert((order_key, insertion_index), half_region);
             }
         }
         // The guard refuses every pose, which is impossible if the neutral pose is safe.
-        region_end(&whole_region)
+        region_bound(&whole_region)
     }
 
     /// Computes the cranks of some servos within a region and at its middle; `None` if the conditions that depend only
@@ -177,13 +177,14 @@ impl<'a> Guard<'a> {
         region: &Region<N>,
     ) -> Option<(Cranks<'a, IntervalDual<N>>, Cranks<'a, f64>)> {
         let angles = std::array::from_fn(|i| IntervalDual::angle(i, region.bounds(i)));
-        let bounds = cranks_at(self.robot, servos, angles);
-        let middle = cranks_at(self.robot, servos, region.middle);
+        let cranks = cranks_at(self.robot, servos, angles);
+        let middle_cranks = cranks_at(self.robot, servos, region.middle);
         let is_violated = |(check, bounds, middle): (Check, IntervalDual<N>, f64)| {
             let value = bounds.tighten(middle, &region.half_widths).value;
-            let [low, high] =
+            let [limit_at_low, limit_at_high] =
                 [value.low, value.high].map(|value| self.violated_limit(check, value));
-            low.is_some() && low == high
+            // Every value between is refused only if both ends violate the same limit.
+            limit_at_low.is_some() && limit_at_low == limit_at_high
         };
         let has_all =
             |servos_needed: [usize; 2]| servos_needed.iter().all(|servo| servos.contains(servo));
@@ -191,30 +192,35 @@ impl<'a> Guard<'a> {
         let (leg, zero) = (&self.robot.lizard().leg, IntervalDual::constant(0.0));
         let violates_leg = servos.iter().any(|&servo| {
             let end = End::from_servo(servo);
-            let bounds = leg.pose_at(end, zero, bounds.directions[servo]).margin;
-            let middle = leg.pose_at(end, 0.0, middle.directions[servo]).margin;
+            let bounds = leg.pose_at(end, zero, cranks.directions[servo]).margin;
+            let middle = leg
+                .pose_at(end, 0.0, middle_cranks.directions[servo])
+                .margin;
             is_violated((Check::LEG[servo], bounds, middle))
         });
         let violates_end = |end: End| {
-            let values = middle.five_bar(end).conditions(end).map(|(_, value)| value);
-            let mut conditions = bounds.five_bar(end).conditions(end).into_iter().zip(values);
+            let values = middle_cranks
+                .five_bar(end)
+                .conditions(end)
+                .map(|(_, value)| value);
+            let mut conditions = cranks.five_bar(end).conditions(end).into_iter().zip(values);
             has_all(end.servos())
                 && conditions.any(|((check, bounds), value)| is_violated((check, bounds, value)))
         };
         let violates_side = |side: Side| {
             let check = Check::STROKE[usize::from(side == Side::Right)];
             has_all(side.servos())
-                && is_violated((check, bounds.slider(side).s, middle.slider(side).s))
+                && is_violated((check, cranks.slider(side).s, middle_cranks.slider(side).s))
         };
         let is_refused = violates_leg
             || End::ALL.into_iter().any(violates_end)
             || Side::ALL.into_iter().any(violates_side);
-        (!is_refused).then_some((bounds, middle))
+        (!is_refused).then_some((cranks, middle_cranks))
     }
 
     /// Returns the relaxed limit that a value violates; `None` if it violates none.
     fn violated_limit(&self, check: Check, value: f64) -> Option<f64> {
-        // The limit of crossed tips is 0 and is no field of `Limits`, so the value is shifted instead of the limit.
+        // The limit of crossed tips is 0 and not a field of `Limits`, so the value is shifted instead of the limit.
         let shift = match check {
             Check::UncrossedHead | Check::UncrossedTail => LENGTH_RELAXATION_MM,
             _ => 0.0,
@@ -259,7 +265,7 @@ mod tests {
     /// Largest error of the firmware's integer arithmetic, mm (docs/firmware.md).
     const LENGTH_ERROR_MM: f64 = 4.0 / 256.0;
 
-    /// Reads a robot from `robots/`. The suffix " at its type-2 limit" lifts all limits except the type-2 limit.
+    /// Reads a robot from `robots/`. With the suffix " at its type-2 limit", no pose reaches another limit.
     fn read_robot(name: &str) -> Robot {
         let file = name.trim_end_matches(" at its type-2 limit");
         let path = format!("{}/../../robots/{file}.toml", env!("CARGO_MANIFEST_DIR"));
@@ -294,18 +300,18 @@ mod tests {
     fn each_limit_is_relaxed_by_slightly_more_than_the_firmwares_error() {
         for name in ["paper", "large", "unequal", "paper at its type-2 limit"] {
             let robot = read_robot(name);
-            let (guard, limits) = (Guard::new(&robot), robot.limits());
-            let sines_around = |limit: f64| [limit - SINE_ERROR, limit - 0.1];
-            let strokes_around = |end: f64, sign: f64| {
+            let (guard, limits) = (RelaxedGuard::new(&robot), robot.limits());
+            let sines_below = |limit: f64| [limit - SINE_ERROR, limit - 0.1];
+            let strokes_beyond = |end: f64, sign: f64| {
                 [LENGTH_ERROR_MM, 1.0].map(|distance_mm| end + sign * distance_mm)
             };
             let cases = [
-                (&Check::TYPE2[..], sines_around(limits.type2)),
-                (&Check::TYPE1, sines_around(limits.type1)),
-                (&Check::LEG, sines_around(limits.leg)),
+                (&Check::TYPE2[..], sines_below(limits.type2)),
+                (&Check::TYPE1, sines_below(limits.type1)),
+                (&Check::LEG, sines_below(limits.leg)),
                 (&Check::UNCROSSED, [-LENGTH_ERROR_MM, -1.0]),
-                (&Check::STROKE, strokes_around(limits.stroke_min, -1.0)),
-                (&Check::STROKE, strokes_around(limits.stroke_max, 1.0)),
+                (&Check::STROKE, strokes_beyond(limits.stroke_min, -1.0)),
+                (&Check::STROKE, strokes_beyond(limits.stroke_max, 1.0)),
             ];
             for (checks, [inside, outside]) in cases {
                 for &check in checks {
@@ -318,12 +324,12 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_at_a_limit_that_the_firmware_may_accept_is_never_refused() {
+    fn a_pose_that_the_firmware_may_accept_at_a_limit_is_never_refused() {
         const ALL_SERVOS: [usize; 4] = [0, 1, 2, 3];
         let mut reached_checks: Vec<Check> = Vec::new();
         for name in ["paper", "unequal", "paper at its type-2 limit"] {
             let robot = read_robot(name);
-            let guard = Guard::new(&robot);
+            let guard = RelaxedGuard::new(&robot);
             let relaxed = relax_limits(&robot);
             let neutral = robot.servos().each_ref().map(|servo| servo.neutral);
             let violated_check_at = |angles: [f64; 4]| match robot.lizard().solve(&angles.into()) {

@@ -27,7 +27,8 @@ impl<const N: usize> IntervalDual<N> {
         angle
     }
 
-    /// Largest change of the number if each servo is within its half width (deg) of its middle angle.
+    /// Largest change of the number from its value at the middle angles while each servo stays within its half width
+    /// (deg) of its middle angle.
     pub fn max_change(&self, half_widths: &[f64; N]) -> f64 {
         let slopes = self.derivatives.iter().zip(half_widths);
         slopes.fold(0.0, |sum, (slope, half_width)| {
@@ -51,31 +52,30 @@ impl<const N: usize> IntervalDual<N> {
         }
     }
 
-    /// Returns a function of this number from the function's value and the chain rule for each derivative.
-    fn map_chain_rule(self, value: Interval, derivative: impl Fn(Interval) -> Interval) -> Self {
+    /// Returns f(self), given its value and the rule that turns a derivative of `self` into one of f(self).
+    fn map_chain_rule(self, value: Interval, rule: impl Fn(Interval) -> Interval) -> Self {
         Self {
             value,
-            derivatives: self.derivatives.map(derivative),
+            derivatives: self.derivatives.map(rule),
         }
     }
 
-    /// Returns a function of two numbers from the function's value and the chain rule for each pair of derivatives.
+    /// Returns f(self, other), given its value and the rule that turns two derivatives into one of f(self, other).
     fn zip_chain_rule(
         self,
         other: Self,
         value: Interval,
-        derivative: impl Fn(Interval, Interval) -> Interval,
+        rule: impl Fn(Interval, Interval) -> Interval,
     ) -> Self {
-        let derivatives =
-            std::array::from_fn(|i| derivative(self.derivatives[i], other.derivatives[i]));
+        let derivatives = std::array::from_fn(|i| rule(self.derivatives[i], other.derivatives[i]));
         Self { value, derivatives }
     }
 }
 
-/// Implements operators. `map_chain_rule` and `zip_chain_rule` apply the derivative rule.
+/// Implements operators. `map_chain_rule` and `zip_chain_rule` apply the chain rule.
 macro_rules! operators {
     ($($operator:ident $method:ident($self:ident, $other:ident: $type:ty) $result:block)*) => {$(
-        // The derivatives of a product or a quotient also need other operations.
+        // The derivatives of a product or a quotient also use other operators.
         #[allow(clippy::suspicious_arithmetic_impl)]
         impl<const N: usize> $operator<$type> for IntervalDual<N> {
             type Output = Self;
@@ -121,10 +121,10 @@ impl<const N: usize> Real for IntervalDual<N> {
     fn sin_cos_all<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
         let (sines, cosines) = Interval::sin_cos_all(degrees.map(|angle| angle.value));
         // One degree in radians, between the neighbouring floating-point numbers.
-        let degree = Interval::new((PI / 180.0).next_down(), (PI / 180.0).next_up());
+        let radians_per_degree = Interval::new((PI / 180.0).next_down(), (PI / 180.0).next_up());
         let (mut sin, mut cos) = (degrees, degrees);
         for i in 0..K {
-            let in_radians = |slope: Interval| slope * degree;
+            let in_radians = |slope: Interval| slope * radians_per_degree;
             sin[i] = degrees[i].map_chain_rule(sines[i], |slope| in_radians(slope) * cosines[i]);
             cos[i] = degrees[i].map_chain_rule(cosines[i], |slope| -in_radians(slope) * sines[i]);
         }
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn bounds_of_a_linkage_contain_its_positions_and_rates() {
+    fn bounds_of_a_linkage_contain_its_positions_and_derivatives() {
         for (left, right) in [(120.0, 60.0), (95.0, 40.0), (140.0, 80.0)] {
             for half_width in [0.01, 0.1, 1.0] {
                 let bounds_around =
@@ -171,10 +171,10 @@ mod tests {
                         for servo in 0..2 {
                             let mut next_angles = crank_angles;
                             next_angles[servo] += step_deg;
-                            let rate =
+                            let derivative =
                                 (compute_point_and_margin(next_angles)[i] - value) / step_deg;
                             let Interval { low, high } = duals[i].derivatives[servo];
-                            assert!(low - 1e-4 <= rate && rate <= high + 1e-4);
+                            assert!(low - 1e-4 <= derivative && derivative <= high + 1e-4);
                             // The bounds of the derivatives are not much wider than needed.
                             assert!(half_width > 0.1 || high - low < 0.1, "{low} {high}");
                         }

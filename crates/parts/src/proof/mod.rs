@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 use crate::bodies::assembly::Assembly;
 use crate::layers::body::Body;
 use crate::proof::clearance::Clearance;
-use guard::Guard;
+use guard::RelaxedGuard;
 pub use search::FAR_MM;
 use shape_pairs::Task;
 
@@ -154,7 +154,7 @@ impl Proof {
 /// independent, so other machines can complete them.
 pub struct ProofTasks<'a> {
     assembly: &'a Assembly,
-    guard: Guard<'a>,
+    guard: RelaxedGuard<'a>,
     tasks: Vec<Task>,
     /// True if the quick check found parts that come too close; `tasks` then holds only the worst tasks.
     has_clash: bool,
@@ -174,7 +174,7 @@ pub struct TaskResult {
 impl<'a> ProofTasks<'a> {
     /// Collects the tasks for the pairs of bodies that `is_chosen` accepts.
     pub fn new(assembly: &'a Assembly, is_chosen: impl Fn(&Body, &Body) -> bool) -> Self {
-        let guard = Guard::new(assembly.robot());
+        let guard = RelaxedGuard::new(assembly.robot());
         let tasks = Task::collect(assembly, &guard, FAR_MM, is_chosen);
         let clashing_tasks = quick_check::find_worst_tasks(assembly, &tasks);
         Self {

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use lizard_kinematics::{Solution, Vector};
 
 use super::NearestPair;
-use super::guard::{Guard, Region, total_order_key};
+use super::guard::{Region, RelaxedGuard, total_order_key};
 use super::interval_dual::IntervalDual;
 use super::shape_pairs::Task;
 use crate::bodies::assembly::Assembly;
@@ -58,7 +58,7 @@ struct BoundedRegion<const N: usize> {
 /// after `max_regions` regions.
 pub fn find_nearest_pair(
     assembly: &Assembly,
-    guard: &Guard,
+    guard: &RelaxedGuard,
     task: &Task,
     max_regions: u64,
 ) -> (NearestPair, u64) {
@@ -74,7 +74,7 @@ pub fn find_nearest_pair(
 /// Finds the nearest bodies over all poses of `servos`.
 fn search<const N: usize>(
     assembly: &Assembly,
-    guard: &Guard,
+    guard: &RelaxedGuard,
     task: &Task,
     servos: [usize; N],
     max_regions: u64,
@@ -129,7 +129,7 @@ fn search<const N: usize>(
 /// A search over the angles of `N` servos.
 struct Search<'a, const N: usize> {
     assembly: &'a Assembly,
-    guard: &'a Guard<'a>,
+    guard: &'a RelaxedGuard<'a>,
     task: &'a Task,
     servos: [usize; N],
     /// Accepted pose with the smallest distance found.

@@ -6,7 +6,7 @@
 use lizard_kinematics::Vector;
 
 use super::bounding_rectangles::{are_apart, compute_bounding_rectangles};
-use super::guard::{Guard, Region};
+use super::guard::{Region, RelaxedGuard};
 use super::interval_dual::IntervalDual;
 use super::{MIN_GAP_MM, TOUCH_OVERLAP};
 use crate::bodies::assembly::Assembly;
@@ -70,7 +70,7 @@ impl Task {
     /// between the rectangles that they never leave. Bodies designed to touch are paired only if their heights overlap.
     pub fn collect(
         assembly: &Assembly,
-        guard: &Guard,
+        guard: &RelaxedGuard,
         max_gap_mm: f64,
         is_chosen: impl Fn(&Body, &Body) -> bool,
     ) -> Vec<Self> {

@@ -32,7 +32,7 @@ pub use parts::{Horn, Pad, Parts, Screw, ServoBody};
 pub use plate::Plate;
 pub use servo::{Servo, SpeedLimits};
 pub(crate) use strut::{mounted_spring_length, strut_with_coil};
-pub use supply::{FUSE_RATING_A, MIN_SWITCH_RATING_A, Rail, Supplies, healthy_rail_mv};
+pub use supply::{FUSE_RATING_A, MIN_SWITCH_RATING_A, Rail, Supplies, healthy_rail_pin_mv};
 
 use lizard_contact::{GroundContact, JointFriction};
 use lizard_core::numbers::link_lengths::MIN_COUPLER_STEPS;

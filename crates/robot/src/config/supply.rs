@@ -33,8 +33,7 @@ const _: () = assert!(2 * FUSE_RATING_A <= MIN_SWITCH_RATING_A);
 /// The Arduino numbers of the analogue pins A0 to A5.
 const ANALOGUE_PINS: std::ops::RangeInclusive<u8> = 14..=19;
 
-/// The chip's voltage reference, and the thresholds (V) for a falling voltage below which gaits slow down, the robot
-/// stops, and the pulses end.
+/// The chip's voltage reference, and the voltages (V) below which gaits slow down, the robot stops, and the pulses end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Supplies {
     /// Voltage of the chip's internal reference, V.
@@ -61,8 +60,8 @@ pub struct Rail {
     pub has_derived_slow_threshold: bool,
 }
 
-/// Smallest difference between a derived `slow` threshold and both `stop` below it and the supply above it, V. It
-/// exceeds the hysteresis of 0.15 V, by which a supply must recover before gaits return to full pace.
+/// Smallest distance of a derived `slow` threshold from `stop`, which is lower, and from the servos' supply, which is
+/// higher, V. It exceeds the hysteresis of 0.15 V, by which a supply must recover before gaits return to full pace.
 const MIN_THRESHOLD_GAP: f64 = 0.25;
 
 /// The pace limit at a low supply voltage if the servos' rail is not measured, percent.
@@ -71,8 +70,8 @@ const DEFAULT_SLOW_PACE_PERCENT: u8 = 50;
 const MIN_PACE_PERCENT: f64 = 10.0;
 
 impl Rail {
-    /// Sets the `slow` threshold if it is derived from the servos. Below it, the most demanding gait would exceed the
-    /// utilisation `limit`. `utilisation` is this gait's utilisation at the supply `volts`.
+    /// Sets the `slow` threshold if it is derived from the servos. `utilisation` is the most demanding gait's
+    /// utilisation of the servos at the supply `volts`; below the threshold it would exceed `limit`.
     pub(crate) fn derive_slow_threshold(&mut self, utilisation: f64, limit: f64, volts: f64) {
         let [slow, stop, _] = &mut self.thresholds;
         let min = *stop + MIN_THRESHOLD_GAP;
@@ -107,7 +106,7 @@ impl Supplies {
         })
     }
 
-    /// Rejects a divider at which the supply of the servos, `servo_volts`, would exceed what its pin measures.
+    /// Rejects a divider that passes on more of `servo_volts`, the servos' supply, than the rail's pin can measure.
     pub(crate) fn check_rail(&self, servo_volts: f64) -> ReadResult<()> {
         let ratio = self.rail.map_or(f64::INFINITY, |rail| rail.divider_ratio);
         // The subtraction keeps a rounding error from rejecting a ratio that is just sufficient.
@@ -140,7 +139,7 @@ impl Supplies {
 /// The voltage at the pin that measures a healthy servo rail, mV; `None` if no rail is measured. Simulations apply this
 /// voltage, because the firmware would end the pulses at a rail of 0 V. The rail is assumed to be at 5 V, or 0.5 V
 /// above its `slow` threshold if that is higher.
-pub fn healthy_rail_mv(supplies: &CoreSupplies) -> Option<f64> {
+pub fn healthy_rail_pin_mv(supplies: &CoreSupplies) -> Option<f64> {
     /// Assumed margin of the rail above its `slow` threshold.
     const HEADROOM_MV: f64 = 500.0;
     /// Supply of the board, and the lowest rail voltage that is assumed.
@@ -163,7 +162,7 @@ fn read_rail(supply: &Table, used_pins: &mut UsedPins) -> ReadResult<Option<Rail
         return Err(table.error("pin", message));
     };
     claim_pin(&table, pin, used_pins)?;
-    // Covers a battery of two lithium cells, 8.4 V, which needs a ratio of at least 2.
+    // Covers a battery of two lithium cells, 8.4 V, which needs a ratio of at least 1.68.
     let divider_ratio = table.number("ratio", (1.0, 6.0), "(rail voltage / pin voltage)")?;
     let has_derived_slow_threshold = !table.has_key("slow");
     let mut defaults = DEFAULT_THRESHOLDS;
@@ -257,12 +256,12 @@ mod tests {
             f64::from(robot.firmware().supplies().rail.slow_mv) / 1000.0
         };
         let sg90_volts = slow_volts_with("", "", "0.6");
-        let find_max_utilisation = |friction: &str, supply_ratio: f64| {
+        let find_max_utilisation = |friction: &str, relative_supply: f64| {
             let table = format!("[ground]\nfriction = {friction}");
             let robot = valid_robot_with("paper", &[(NEXT_TABLE, &table)]);
             let simulate = |gait| crate::Effort::simulate(gait, robot.ground(), &robot.motors());
             let efforts = robot.gaits().iter().map(simulate);
-            let utilisations = efforts.map(|effort| effort.utilisation(1.0, supply_ratio));
+            let utilisations = efforts.map(|effort| effort.utilisation(1.0, relative_supply));
             utilisations.fold(0.0, f64::max)
         };
         let max_utilisation = find_max_utilisation("0.6", 1.0);

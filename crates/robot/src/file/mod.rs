@@ -13,7 +13,7 @@ mod text;
 pub use error::Error;
 pub(crate) use error::{ReadResult, format_number, suggest};
 #[cfg(test)]
-pub(crate) use reader::{KEY_READS, KeyRead, Range};
+pub(crate) use reader::{KEY_USES, KeyUse, Range};
 pub(crate) use reader::{Table, parse, read_for_each};
 pub use syntax::explain_mistake;
 pub use text::MAX_FILE_BYTES;

@@ -1,5 +1,5 @@
-//! Reads robot.toml as typed values. A [`Table`] is one table of the file; it rejects unknown keys, and every error
-//! contains the full name of its key.
+//! Reads robot.toml as typed values. A [`Table`] is one table of the file; it rejects unknown keys unless it is opened
+//! as unchecked, and every error contains the full name of its key.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -69,10 +69,10 @@ fn find_key_offset(mut table: &DeTable, key: &str) -> Option<usize> {
     }
 }
 
-/// A call that reads or allows a key, recorded for the reference of all keys.
+/// The use of a key by a call, recorded for the test of the page that lists all keys.
 #[cfg(test)]
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum KeyRead {
+pub(crate) enum KeyUse {
     /// The table may have this key.
     Allowed,
     /// The key is a table, or an array of tables.
@@ -89,8 +89,8 @@ pub(crate) enum KeyRead {
 
 #[cfg(test)]
 thread_local! {
-    /// The reads of this thread, in order, each with the full name of its key.
-    pub(crate) static KEY_READS: std::cell::RefCell<Vec<(String, KeyRead)>> = const { std::cell::RefCell::new(Vec::new()) };
+    /// The uses of keys in this thread, in order, each with the full name of its key.
+    pub(crate) static KEY_USES: std::cell::RefCell<Vec<(String, KeyUse)>> = const { std::cell::RefCell::new(Vec::new()) };
 }
 
 /// One table of the file.
@@ -119,7 +119,7 @@ impl<'a> Table<'a> {
     /// Opens the table `name`, which may have any keys.
     pub fn unchecked_table(&self, name: &str) -> ReadResult<Self> {
         #[cfg(test)]
-        self.record_read(name, KeyRead::Table);
+        self.record_use(name, KeyUse::Table);
         Ok(Self {
             key: self.full_key(name),
             contents: Some(self.read_value(name, "a table", DeValue::as_table)?),
@@ -147,7 +147,7 @@ impl<'a> Table<'a> {
     pub fn require_known_keys(self, allowed: &[&str]) -> ReadResult<Self> {
         #[cfg(test)]
         for name in allowed {
-            self.record_read(name, KeyRead::Allowed);
+            self.record_use(name, KeyUse::Allowed);
         }
         let is_unknown = |name: &&str| !allowed.contains(name);
         match self.key_names().into_iter().find(is_unknown) {
@@ -159,8 +159,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Rejects the keys `names`, which belong to an earlier version of the file; `replacement` is what the user must
-    /// write instead.
+    /// Rejects the keys `names` of an earlier version of the format; `replacement` is what the user must write instead.
     pub fn reject_removed_keys(&self, names: &[&str], replacement: &str) -> ReadResult<()> {
         match names.iter().find(|name| self.has_key(name)) {
             Some(name) => {
@@ -201,7 +200,7 @@ impl<'a> Table<'a> {
     /// Reads a number in a range, both limits included.
     pub fn number(&self, name: &str, range: Range, unit: &str) -> ReadResult<f64> {
         #[cfg(test)]
-        self.record_number_read(name, range, unit, None);
+        self.record_number_use(name, range, unit, None);
         let value = self.read_value(name, "a number", to_decimal_number)?;
         self.require_in_range(name, value, range, unit)
     }
@@ -209,7 +208,7 @@ impl<'a> Table<'a> {
     /// Reads a number; returns `default` if the key is missing.
     pub fn number_or(&self, name: &str, default: f64, range: Range, unit: &str) -> ReadResult<f64> {
         #[cfg(test)]
-        self.record_number_read(name, range, unit, Some(default));
+        self.record_number_use(name, range, unit, Some(default));
         if self.has_key(name) {
             self.number(name, range, unit)
         } else {
@@ -217,18 +216,18 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Rejects a key's `value` unless it is less than `limit`, the value of the key `limit_key` in the same table.
+    /// Rejects a key's `value` unless it is less than `limit`, the value of the key `limit_name` in the same table.
     pub fn require_less(
         &self,
         name: &str,
         value: f64,
-        limit_key: &str,
+        limit_name: &str,
         limit: f64,
     ) -> ReadResult<()> {
         if value < limit {
             return Ok(());
         }
-        let message = format!("is {value}; it must be less than {limit_key}, which is {limit}");
+        let message = format!("is {value}; it must be less than {limit_name}, which is {limit}");
         Err(self.error(name, message))
     }
 
@@ -254,7 +253,7 @@ impl<'a> Table<'a> {
         unit: &str,
     ) -> ReadResult<[f64; N]> {
         #[cfg(test)]
-        self.record_number_read(name, range, unit, None);
+        self.record_number_use(name, range, unit, None);
         let numbers = self.read_array::<N>(name)?;
         for value in numbers {
             self.require_in_range(name, value, range, unit)?;
@@ -287,7 +286,7 @@ impl<'a> Table<'a> {
         angle_range: Range,
     ) -> ReadResult<[f64; 2]> {
         #[cfg(test)]
-        self.record_read(name, KeyRead::Polar(distance_range, angle_range));
+        self.record_use(name, KeyUse::Polar(distance_range, angle_range));
         if !self.has_key(name) {
             return Ok(default);
         }
@@ -309,7 +308,7 @@ impl<'a> Table<'a> {
     /// Reads an array of tables that may have only the keys `allowed`. The array is empty if the key is missing.
     pub fn tables(&self, name: &str, allowed: &[&str]) -> ReadResult<Vec<Table<'a>>> {
         #[cfg(test)]
-        self.record_read(name, KeyRead::Table);
+        self.record_use(name, KeyUse::Table);
         if !self.has_key(name) {
             return Ok(Vec::new());
         }
@@ -329,19 +328,19 @@ impl<'a> Table<'a> {
     }
 
     #[cfg(test)]
-    fn record_read(&self, name: &str, read: KeyRead) {
-        KEY_READS.with_borrow_mut(|reads| reads.push((self.full_key(name), read)));
+    fn record_use(&self, name: &str, key_use: KeyUse) {
+        KEY_USES.with_borrow_mut(|uses| uses.push((self.full_key(name), key_use)));
     }
 
     #[cfg(test)]
-    fn record_number_read(&self, name: &str, range: Range, unit: &str, default: Option<f64>) {
+    fn record_number_use(&self, name: &str, range: Range, unit: &str, default: Option<f64>) {
         let unit = unit.to_owned();
-        let read = KeyRead::Number {
+        let key_use = KeyUse::Number {
             range,
             unit,
             default,
         };
-        self.record_read(name, read);
+        self.record_use(name, key_use);
     }
 
     /// Reads a key's value with `convert`, which returns `None` for a value of the wrong type. A missing key is an error.
@@ -358,7 +357,7 @@ impl<'a> Table<'a> {
         convert(value).ok_or_else(|| self.type_error(name, value, expected_type))
     }
 
-    /// Reads an array of exactly `N` numbers of any size.
+    /// Reads an array of exactly `N` numbers, without a check of their range.
     fn read_array<const N: usize>(&self, name: &str) -> ReadResult<[f64; N]> {
         let expected_type = match N {
             2 => "an array of two numbers",
@@ -397,7 +396,7 @@ impl<'a> Table<'a> {
 
     /// Creates the error for a value of the wrong type.
     fn type_error(&self, name: &str, value: &DeValue, expected_type: &str) -> Error {
-        let found_type = match value {
+        let found = match value {
             DeValue::String(text) => format!("the string \"{text}\""),
             DeValue::Integer(number) => number.to_string(),
             DeValue::Float(number) => number.to_string(),
@@ -406,7 +405,7 @@ impl<'a> Table<'a> {
             DeValue::Array(_) => "an array".to_string(),
             DeValue::Table(_) => "a table".to_string(),
         };
-        self.error(name, format!("is {found_type}; it must be {expected_type}"))
+        self.error(name, format!("is {found}; it must be {expected_type}"))
     }
 }
 

@@ -59,11 +59,11 @@ fn explain_duplicate(lines: &[&str], line_index: usize) -> Option<String> {
         .iter()
         .rposition(|line| table_header_name(line).is_some())
         .map_or(0, |index| index + 1);
-    let is_key = |line: &&str| {
+    let defines_key = |line: &&str| {
         line.split_once('=')
             .is_some_and(|(name, _)| name.trim() == key)
     };
-    let first_line = table_start + lines_before[table_start..].iter().position(is_key)? + 1;
+    let first_line = table_start + lines_before[table_start..].iter().position(defines_key)? + 1;
     Some(format!(
         "`{key}` is defined twice, first on line {first_line}; keep one definition"
     ))
@@ -85,11 +85,11 @@ fn explain_mistake_in_line(line: &str) -> Option<String> {
     if value.is_empty() {
         return Some(format!("`{key}` has no value after the ="));
     }
-    explain_number(value).or_else(|| explain_unquoted_string(value))
+    explain_malformed_number(value).or_else(|| explain_unquoted_string(value))
 }
 
 /// Explains a number in a form that TOML does not allow; `None` for anything else.
-fn explain_number(value: &str) -> Option<String> {
+fn explain_malformed_number(value: &str) -> Option<String> {
     let is_number =
         |text: &str| text.parse::<f64>().is_ok() && !text.starts_with(char::is_alphabetic);
     let is_digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
@@ -125,8 +125,8 @@ fn explain_number(value: &str) -> Option<String> {
 
 /// Explains a string without quotation marks; `None` for anything else.
 fn explain_unquoted_string(value: &str) -> Option<String> {
-    let is_plain = |c: char| c.is_alphanumeric() || "_-. ".contains(c);
-    let is_word = value.starts_with(char::is_alphabetic) && value.chars().all(is_plain);
+    let may_be_in_word = |c: char| c.is_alphanumeric() || "_-. ".contains(c);
+    let is_word = value.starts_with(char::is_alphabetic) && value.chars().all(may_be_in_word);
     let is_toml_keyword = ["true", "false", "inf", "nan"].contains(&value);
     (is_word && !is_toml_keyword)
         .then(|| format!("`{value}` is missing quotation marks; write \"{value}\""))

@@ -2,29 +2,29 @@
 // interrupt takes four cycles longer from sleep (data sheet, 7.7.1).
 import { avrInstruction } from 'avr8js';
 
-const SLEEP = 0x9588;
+const SLEEP_OPCODE = 0x9588;
 const SMCR = 0x53;
-const SE = 1;
+const SE_MASK = 1;
 const WAKING_CYCLES = 4;
 
 export function simulateSleep(uno) {
   const { cpu } = uno;
-  const passTime = () => {
+  const passTimeAsleep = () => {
     const nextCycle = cpu.nextClockEvent?.cycles ?? Infinity;
     cpu.cycles = Math.max(cpu.cycles, Math.min(nextCycle, uno.endCycle));
   };
   const execute = () => {
-    const isSleepEnabled = cpu.data[SMCR] & SE;
+    const isSleepEnabled = cpu.data[SMCR] & SE_MASK;
     avrInstruction(cpu);
-    if (isSleepEnabled && cpu.nextInterrupt < 0) uno.passSleep = passTime;
+    if (isSleepEnabled && cpu.nextInterrupt < 0) uno.passTimeAsleep = passTimeAsleep;
   };
-  uno.overrideInstructions(execute, (opcode) => opcode === SLEEP);
+  uno.overrideInstructions(execute, (opcode) => opcode === SLEEP_OPCODE);
   const tick = cpu.tick.bind(cpu);
   cpu.tick = () => {
     const pc = cpu.pc;
     tick();
-    if (uno.passSleep !== null && cpu.pc !== pc) {
-      uno.passSleep = null;
+    if (uno.passTimeAsleep !== null && cpu.pc !== pc) {
+      uno.passTimeAsleep = null;
       cpu.cycles += WAKING_CYCLES;
     }
   };

@@ -14,9 +14,9 @@ export const limitsStep: Step = {
   isPerServo: true,
   highlight: ({ servo }) => ({ servo, turnDeg: null }),
   makeElements(dialog) {
-    const { calibrator, servo, session, turnInStep } = dialog;
+    const { calibrator, servo, session, currentTurn } = dialog;
     const limit = calibrator?.calibration.servos[servo].limit ?? null;
-    const currentAngle = turnInStep?.commandedDegrees ?? session.description.servos[servo].neutral;
+    const currentAngle = currentTurn?.commandedDegrees ?? session.description.servos[servo].neutral;
     const [from, to] = limit ?? [0, 0];
     const makeBox = (label: string, value: number, action: (value: number) => void) => numberBox(label, value, '0.01', action);
     return [

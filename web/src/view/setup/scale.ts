@@ -10,14 +10,14 @@ export const scaleStep: Step = {
   title: 'Measure the servos’ rotation',
   needsRobot: true,
   isPerServo: true,
-  highlight: ({ servo, turnInStep }) => ({ servo, turnDeg: turnInStep?.commandedDegrees ?? null }),
+  highlight: ({ servo, currentTurn }) => ({ servo, turnDeg: currentTurn?.commandedDegrees ?? null }),
   makeElements(dialog) {
-    const { calibrator, servo, turnInStep } = dialog;
+    const { calibrator, servo, currentTurn } = dialog;
     const currentScale = calibrator?.calibration.servos[servo].scale;
     return [
       paragraph(`Mark the direction of the crank of ${formatServo(servo)}, turn the servo, and measure the angle by which it turns.`),
-      row(button(`Turn A${servo + 1}`, () => turnServo(dialog), !turnInStep)),
-      ...(turnInStep ? [row(numberBox('Measured angle, degrees', null, '0.1', (measuredDegrees) => setMeasuredTurn(dialog, turnInStep, measuredDegrees)))] : []),
+      row(button(`Turn A${servo + 1}`, () => turnServo(dialog), !currentTurn)),
+      ...(currentTurn ? [row(numberBox('Measured angle, degrees', null, '0.1', (measuredDegrees) => setScale(dialog, currentTurn, measuredDegrees)))] : []),
       paragraph(`Scale: ${currentScale === undefined ? '–' : `${currentScale.toFixed(2)} µs per degree`}`),
       note('Most servos have about 10 µs per degree. Without a protractor, skip this step.'),
     ];
@@ -33,7 +33,7 @@ function turnServo(dialog: SetupDialog): void {
   });
 }
 
-function setMeasuredTurn(dialog: SetupDialog, { servo, commandedDegrees }: Turn, measuredDegrees: number): void {
+function setScale(dialog: SetupDialog, { servo, commandedDegrees }: Turn, measuredDegrees: number): void {
   dialog.run(async (calibrator) => {
     if (measuredDegrees <= 0) return 'The measured angle must be more than 0 degrees.';
     dialog.lastTurn = null;

@@ -16,14 +16,14 @@ export const signsStep: Step = {
   title: 'Check the signs',
   needsRobot: true,
   isPerServo: true,
-  highlight: ({ servo, turnInStep }) => ({ servo, turnDeg: turnInStep?.commandedDegrees ?? 10 }),
+  highlight: ({ servo, currentTurn }) => ({ servo, turnDeg: currentTurn?.commandedDegrees ?? 10 }),
   makeElements(dialog) {
-    const { servo, turnInStep } = dialog;
+    const { servo, currentTurn } = dialog;
     const name = `A${servo + 1}`;
     return [
       paragraph(`${formatServo(servo)}: only this servo turns, by 10°. Look from above.`),
-      row(button(turnInStep ? `Turn ${name} again` : `Turn ${name}`, () => turnServo(dialog), !turnInStep)),
-      ...(turnInStep ? makeQuestion(dialog, turnInStep) : []),
+      row(button(currentTurn ? `Turn ${name} again` : `Turn ${name}`, () => turnServo(dialog), !currentTurn)),
+      ...(currentTurn ? makeQuestion(dialog, currentTurn) : []),
       note('Do not skip this step: with a wrong sign, the robot would treat an unsafe pose as safe.'),
     ];
   },

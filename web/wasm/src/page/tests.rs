@@ -9,8 +9,8 @@ use crate::paper::PAPER_TOML;
 fn the_previous_robot_stays_after_a_refused_robot() {
     let mut page = PageState::default();
     assert_eq!(page.follow_pulses([24_000; 4]), None);
-    page.read(PAPER_TOML).expect("paper.toml is valid");
-    let result = page.read("[links]");
+    page.load(PAPER_TOML).expect("paper.toml is valid");
+    let result = page.load("[links]");
     let error = result.expect_err("a robot without links is refused");
     assert!(error.reason.starts_with("robot.toml"), "{error:?}");
     assert!(page.follow_pulses([24_000; 4]).is_some());
@@ -18,14 +18,14 @@ fn the_previous_robot_stays_after_a_refused_robot() {
 
 fn make_paper_page() -> PageState {
     let mut page = PageState::default();
-    page.read(PAPER_TOML).expect("paper.toml is valid");
+    page.load(PAPER_TOML).expect("paper.toml is valid");
     page
 }
 
 /// Makes a page with the paper's robot and ideal servos.
 fn make_ideal_page() -> PageState {
     let mut page = make_paper_page();
-    page.set_servos("ideal");
+    page.set_servo_model("ideal");
     page
 }
 
@@ -85,10 +85,10 @@ fn real_servos_have_a_dead_band_and_limited_speed_but_ideal_servos_do_not() {
     let (last_turn, error) = step_a1(&mut page, 3200);
     assert!((18.8..20.6).contains(&last_turn), "{last_turn}");
     assert!((last_turn + error - 20.0).abs() < 1e-9);
-    page.set_servos("ideal");
+    page.set_servo_model("ideal");
     assert_near(step_a1(&mut page, 3200), [20.0, 0.0]);
     // An unknown model has no effect: the servos stay ideal.
-    page.set_servos("better");
+    page.set_servo_model("better");
     assert_near(step_a1(&mut page, 0), [0.0, 0.0]);
 }
 
@@ -99,7 +99,7 @@ fn follow_cycles(
     name: &str,
     frame_step: u32,
 ) -> (Travel, Vec<[f64; 4]>, f64) {
-    page.set_servos("ideal");
+    page.set_servo_model("ideal");
     let gait = page.robot().and_then(|robot| robot.gait(name));
     let gait = gait.expect("the robot has this gait");
     let frames = gait.frames().step_by(frame_step as usize);
@@ -114,11 +114,11 @@ fn follow_cycles(
     };
     let (first_cycle, second_cycle) = (follow_cycle(), follow_cycle());
     let end_place = |frames: &[Frame]| frames.last().expect("a cycle has frames").place;
-    let slides = second_cycle.iter().map(|frame| frame.slides).collect();
-    let lags = second_cycle.iter().flat_map(|frame| frame.lag);
+    let slips = second_cycle.iter().map(|frame| frame.slips).collect();
+    let lags = second_cycle.iter().flat_map(|frame| frame.lags);
     let largest_lag = lags.fold(0.0, |largest: f64, lag| largest.max(lag.abs()));
     let displacement = end_place(&first_cycle).displacement_to(end_place(&second_cycle));
-    (displacement, slides, largest_lag)
+    (displacement, slips, largest_lag)
 }
 
 #[test]
@@ -154,7 +154,7 @@ fn the_prediction_depends_on_the_servos_dead_band_torque_and_supply() {
         utilisations.expect("the servos are not ideal")
     };
     let sg90_mm = predict_walk_mm(&page);
-    page.set_servos("ideal");
+    page.set_servo_model("ideal");
     let ideal_mm = predict_walk_mm(&page);
     // The loss is 1 deg of 40, as in crates/twin/tests/frames.rs, plus up to 2 %, because a waveform's samples cut its
     // corners; the prediction for ideal servos has no such samples.
@@ -162,9 +162,9 @@ fn the_prediction_depends_on_the_servos_dead_band_torque_and_supply() {
         (sg90_mm / ideal_mm - 39.0 / 40.0).abs() < 0.02,
         "SG90 {sg90_mm} mm, ideal {ideal_mm} mm"
     );
-    page.set_servos("copy");
+    page.set_servo_model("copy");
     let copy_utilisations = predict_utilisations(&page);
-    page.set_servos("own");
+    page.set_servo_model("own");
     let own_utilisations = predict_utilisations(&page);
     for (copy_utilisation, own_utilisation) in copy_utilisations.into_iter().zip(own_utilisations) {
         assert!(
@@ -179,23 +179,23 @@ fn the_prediction_depends_on_the_servos_dead_band_torque_and_supply() {
     };
     assert_near(own_utilisations, 9, 0.45);
     assert_near(own_utilisations, 19, 0.72);
-    page.set_servos("own at 4.0");
+    page.set_servo_model("own at 4.0");
     let low_supply_utilisations = predict_utilisations(&page);
     assert_near(low_supply_utilisations, 19, 0.87);
     // An invalid supply has no effect.
-    page.set_servos("own at 12");
-    page.set_servos("own at a wall");
+    page.set_servo_model("own at 12");
+    page.set_servo_model("own at a wall");
     assert_eq!(predict_utilisations(&page), low_supply_utilisations);
 }
 
 #[test]
 fn at_least_two_feet_stick_at_any_time_of_a_walk() {
-    let (_, slides, _) = follow_cycles(&mut make_paper_page(), "walk", 1);
+    let (_, slips, _) = follow_cycles(&mut make_paper_page(), "walk", 1);
     let mut slid_mm = [0.0; 4];
-    for frame_slides in slides {
-        let sticking_count = frame_slides.iter().filter(|mm| **mm < 0.3).count();
-        assert!(sticking_count >= 2, "{frame_slides:?} mm");
-        slid_mm = [0, 1, 2, 3].map(|i| slid_mm[i] + frame_slides[i]);
+    for frame_slips in slips {
+        let sticking_count = frame_slips.iter().filter(|mm| **mm < 0.3).count();
+        assert!(sticking_count >= 2, "{frame_slips:?} mm");
+        slid_mm = [0, 1, 2, 3].map(|i| slid_mm[i] + frame_slips[i]);
     }
     assert!(
         slid_mm.iter().all(|mm| *mm > 20.0),

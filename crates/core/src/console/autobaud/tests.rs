@@ -48,7 +48,7 @@ fn a_confirmed_rate_survives_31_wrong_bytes() {
 }
 
 #[test]
-fn long_noise_changes_the_rate_only_once_in_the_next_pause() {
+fn many_wrong_bytes_change_the_rate_once_at_the_next_pause() {
     let mut detector = RateDetector::new(BaudRate::Fastest);
     let new_rate = feed_and_pause(&mut detector, &[GARBLED_BYTE; 10_000]);
     assert_eq!(new_rate, Some(BaudRate::Half));
@@ -57,14 +57,14 @@ fn long_noise_changes_the_rate_only_once_in_the_next_pause() {
 }
 
 #[test]
-fn a_command_of_three_bytes_does_not_confirm_a_guessed_rate() {
+fn four_bytes_confirm_a_guessed_rate_and_31_wrong_bytes_leave_it_confirmed() {
     for rate in BaudRate::ALL {
         let mut detector = RateDetector::new(rate);
+        // The fastest rate is that of USB, which is not a guess.
         let is_usb_rate = rate == BaudRate::Fastest;
         assert_eq!(detector.confirm_rate(3), is_usb_rate, "{rate:?}");
         assert!(detector.confirm_rate(4));
         for _ in 0..3 {
-            // Noise that does not change the rate leaves the rate confirmed.
             assert_eq!(feed_and_pause(&mut detector, &[GARBLED_BYTE; 31]), None);
             assert!(detector.confirm_rate(1), "{rate:?} is confirmed");
         }

@@ -6,7 +6,6 @@ use std::vec::Vec;
 
 use proptest::prelude::*;
 
-mod any_line;
 mod calibration;
 mod counts;
 mod effect;
@@ -14,6 +13,7 @@ mod faults;
 mod helpers;
 mod inputs;
 mod memory;
+mod refused_and_random_lines;
 mod routines;
 mod status;
 

@@ -30,15 +30,15 @@ pub enum EepromOperation {
 }
 
 impl Controller {
-    /// True while an EEPROM operation is in progress; meanwhile no order may be given. The write of a rest pose that
-    /// waits for a better supply does not count, because no order depends on it.
+    /// True while an order's operation, or the write of a rest pose, is in progress; meanwhile no order may be given.
+    /// While a rest pose waits for a better supply, its write does not count, because no order depends on it.
     pub fn is_memory_in_use(&self) -> bool {
         self.eeprom_operation.is_some()
             || self.rest_pose_write.is_some() && self.safety.allows_writing_now()
     }
 
-    /// True while an order waits for the measurement of the supply, or for the end of a dip, when the supply recovers
-    /// or its level falls. Meanwhile there is nothing to do before the next frame.
+    /// True while an order waits for the measurement of the supply, or for the end of a dip, either in a recovery or in
+    /// a lower level. Meanwhile there is nothing to do before the next frame.
     pub fn is_waiting_for_supply(&self) -> bool {
         let supply = self.safety.supply();
         let is_supply_undetermined = match supply.measured_level() {
@@ -48,8 +48,8 @@ impl Controller {
         self.eeprom_operation.is_some() && is_supply_undetermined
     }
 
-    /// Advances the EEPROM operation by at most one byte. Returns the outcome of the order once the order is complete,
-    /// otherwise `None`.
+    /// Advances the write of a rest pose, or else the order's operation, by at most one byte. Returns the outcome of
+    /// the order once the order is complete, otherwise `None`.
     #[inline(never)]
     pub fn advance_operation<M: Memory>(&mut self, memory: &mut M) -> Option<Result<(), Refusal>> {
         if !memory.is_ready() || self.is_waiting_for_supply() {

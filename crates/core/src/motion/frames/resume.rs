@@ -11,7 +11,7 @@ use crate::numbers::pose::Pose;
 
 impl Motion {
     /// Wakes the servos one after another; then the robot stands. The servos wake in the rest pose, or in the neutral
-    /// pose if the rest pose is unsafe or exceeds the travel.
+    /// pose if there is no rest pose, or if it is unsafe or beyond a servo's travel.
     #[inline(never)]
     pub fn wake(&mut self, rest_pose: Option<&Pose>) {
         self.start_standing();
@@ -26,8 +26,8 @@ impl Motion {
         }
     }
 
-    /// Keeps the robot at rest, without pulses. The robot will later wake in the pose of `servo_state`, if this pose is
-    /// safe and within the travel.
+    /// Keeps the robot at rest, without pulses. The robot will later wake in the pose of `servo_state`, if there is one
+    /// and this pose is safe and within the servos' travel.
     #[inline(never)]
     pub fn resume_rest(&mut self, servo_state: Option<&ServoState>) {
         self.freeze(State::Resting);
@@ -39,9 +39,9 @@ impl Motion {
         }
     }
 
-    /// Resumes the pulses of servos that held a pose until a reset. Returns false if this pose is unsafe or exceeds the
-    /// travel. If `will_stand` is true, the servos wake one after another, to limit the load on the supply, and then
-    /// the robot stands; otherwise all servos that had pulses get them immediately.
+    /// Resumes the pulses of servos that held a pose until a reset. Returns false if this pose is unsafe or beyond a
+    /// servo's travel. If `will_stand` is true, the servos wake one after another, to limit the load on the supply, and
+    /// then the robot stands; otherwise all servos that had pulses get them immediately.
     #[inline(never)]
     pub fn resume(&mut self, servo_state: &ServoState, will_stand: bool) -> bool {
         if !self.can_hold(&servo_state.pose) {
@@ -55,7 +55,7 @@ impl Motion {
         if will_stand {
             self.next_target = Some(Target::Gait(GaitId::STAND));
         } else {
-            // The next servo wakes after a full interval.
+            // A servo that was not yet awake at the reset wakes after a full interval.
             let frames_awake = servo_state.frames_awake.min(AWAKE_FRAMES);
             self.servo_state.frames_awake = frames_awake - frames_awake % WAKE_INTERVAL_FRAMES;
         }
@@ -63,7 +63,7 @@ impl Motion {
         true
     }
 
-    /// True if a pose is safe and within the travel.
+    /// True if a pose is safe and within the servos' travel.
     fn can_hold(&self, pose: &Pose) -> bool {
         self.first_hazard(pose).is_none()
     }

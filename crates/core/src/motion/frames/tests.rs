@@ -25,7 +25,7 @@ impl Motion {
         Self::awake(Sample::asymmetric())
     }
 
-    /// Creates the motion of a robot that is awake and in `stand` at full pace.
+    /// Creates the motion of a robot that is awake and in `stand` at full pace, which it reaches in seven frames.
     fn awake(robot: Sample) -> Self {
         let mut motion = Self::new(*robot);
         motion.run(FRAMES_TO_WAKE + 7);
@@ -82,7 +82,7 @@ impl Motion {
     }
 
     /// The pulses of the current pose.
-    pub(crate) fn held_pulses(&self) -> Pulses {
+    pub(crate) fn pose_pulses(&self) -> Pulses {
         self.servo_state.pose.pulses(&self.calibration)
     }
 }
@@ -112,7 +112,7 @@ fn make_resting_motion() -> Motion {
 }
 
 #[test]
-fn a_held_pose_has_the_activity_pose_if_ordered_and_stop_otherwise() {
+fn a_held_pose_counts_as_pose_if_it_was_commanded_and_as_stop_otherwise() {
     let mut stopped_motion = Motion::in_gait("sway", 90);
     stopped_motion.stop();
     let mut posed_motion = Motion::standing();
@@ -122,7 +122,7 @@ fn a_held_pose_has_the_activity_pose_if_ordered_and_stop_otherwise() {
         (stopped_motion, Activity::Stop),
         (posed_motion, Activity::Pose),
     ] {
-        let held_pulses = motion.held_pulses();
+        let held_pulses = motion.pose_pulses();
         for _ in 0..50 {
             assert_eq!(motion.advance_frame(), held_pulses);
             assert_eq!(motion.activity(), activity);
@@ -160,7 +160,7 @@ fn a_move_that_arrives_at_a_pose_holds_it() {
 }
 
 #[test]
-fn a_move_that_arrives_at_another_or_the_stopped_gait_starts_at_phase_0_and_accelerates() {
+fn after_the_move_to_it_even_the_stopped_gait_starts_at_phase_0_and_accelerates() {
     for name in GAIT_NAMES {
         for (stopped_name, held_frames) in [("swing", 0), ("sway", 5)] {
             let mut motion = Motion::in_gait(stopped_name, 90);
@@ -216,7 +216,7 @@ fn a_move_brakes_on_its_line_before_it_turns_to_another_pose() {
 }
 
 #[test]
-fn a_move_to_a_gait_continues_when_that_gait_is_ordered_again() {
+fn a_move_to_a_gait_continues_when_that_gait_is_commanded_again() {
     let mut motion = Motion::standing();
     motion.go_to_sweeps(SWEEPS);
     motion.run(TRANSITION_FRAMES);
@@ -231,7 +231,7 @@ fn a_move_to_a_gait_continues_when_that_gait_is_ordered_again() {
 // Cycling.
 
 #[test]
-fn the_same_gait_ordered_again_continues_in_the_middle_of_its_cycle() {
+fn the_same_gait_commanded_again_continues_in_the_middle_of_its_cycle() {
     for name in GAIT_NAMES.into_iter().filter(|name| *name != "stray") {
         let build_motion = || Motion::in_gait(name, 60);
         let mut repeated_motion = build_motion();
@@ -275,7 +275,7 @@ fn the_last_of_several_commands_determines_the_motion() {
 }
 
 #[test]
-fn a_gait_that_is_ordered_again_while_it_brakes_for_another_motion_restarts() {
+fn a_gait_that_is_commanded_again_while_it_brakes_for_another_motion_restarts() {
     let mut motion = Motion::in_gait("sway", 90);
     motion.go_to_sweeps(SWEEPS);
     motion.run(2);
@@ -315,7 +315,7 @@ fn stop_freezes_the_pose_in_the_next_frame_of_every_gait_and_of_the_move_to_it()
             motion.run(20);
             assert_eq!(motion.activity(), Activity::Stop);
             assert_eq!(motion.pose(), &pose, "{name}, frame {frames}");
-            assert_eq!(motion.advance_frame(), motion.held_pulses());
+            assert_eq!(motion.advance_frame(), motion.pose_pulses());
         }
     }
 }
@@ -338,12 +338,12 @@ fn rest_ends_the_pulses_in_the_next_frame_of_every_gait_and_the_pose_stays() {
 
 #[test]
 fn stop_and_rest_cancel_the_next_motion() {
-    for order in [Motion::stop, Motion::rest] {
+    for command in [Motion::stop, Motion::rest] {
         let mut motion = Motion::in_gait("sway", 90);
         motion.go_to_sweeps(SWEEPS);
         motion.run(3);
         let pose = *motion.pose();
-        order(&mut motion);
+        command(&mut motion);
         motion.run(TRANSITION_FRAMES);
         assert_eq!(motion.pose(), &pose);
     }

@@ -105,7 +105,7 @@ pub fn send_calibration<P: Read + Write>(
 #[cfg(test)]
 mod tests {
     use super::super::test_double::{
-        connect_paper_robot, connect_paper_robot_until, read_calibration,
+        connect_paper_robot, connect_paper_robot_unplugged_at, read_calibration,
     };
     use super::*;
 
@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn a_robot_that_does_not_answer_save_may_have_saved() {
-        let mut link = connect_paper_robot_until("save");
+        let mut link = connect_paper_robot_unplugged_at("save");
         let calibration = read_calibration(&mut link);
         let error = send_calibration(&calibration, &mut link).expect_err("the port is gone");
         let expected = "; the robot may have saved the calibration: restore it once more";

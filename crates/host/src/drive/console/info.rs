@@ -68,7 +68,7 @@ impl From<Calibration> for CalibrationInfo {
 /// Runs `lizard info`.
 ///
 /// # Errors
-/// Fails if there is no board, or if the board does not answer like a lizard.
+/// Fails if there is no board, or if its answers are not those of the firmware.
 pub fn run(args: Args) -> Result<(), Failure> {
     let finder = args.connection.into_finder("info")?;
     let (mut board, banner) = finder.connect()?;
@@ -140,8 +140,8 @@ impl BoardInfo {
     }
 }
 
-/// Reads the status. A robot that was just reset reports no voltage until its analogue-to-digital converter has run;
-/// the request is therefore repeated for up to a second.
+/// Reads the status. A board that was just reset reports no voltage until its analogue-to-digital converter has run;
+/// the request is therefore repeated for up to a second. A board without a robot has no pose and is asked only once.
 fn read_status_with_voltages<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
     for _ in 0..9 {
         let status = read_status(link)?;
@@ -161,8 +161,8 @@ fn read_status<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError>
     })
 }
 
-/// Parses the firmware's version and the robot in a banner; the robot is `None` for older firmware, into which it was
-/// compiled.
+/// Parses the firmware's version and the robot in a banner; the robot is `None` for older firmware, which does not
+/// name the robot compiled into it.
 pub(in crate::drive) fn parse_firmware_and_robot(
     line: &str,
 ) -> (Option<String>, Option<RobotIdentity>) {
@@ -190,7 +190,7 @@ mod tests {
         let hash = format!("{:08x}", paper.firmware().hash());
         let banner = format!("# lizard 1.2.3 robot paper {hash}, send help for the commands");
         let board = BoardInfo::read("COM3".to_owned(), Some(&banner), &mut link)
-            .expect("the robot answers");
+            .expect("the board answers");
         let text = board.to_text();
         for line in [
             "port        COM3\n".to_owned(),

@@ -12,44 +12,44 @@ use pollster::block_on;
 use super::link::Link;
 
 /// The firmware's core on a virtual board, and its output.
-pub struct ConsoleDouble {
+pub struct BoardDouble {
     running_robot: RunningRobot,
     /// The robot's unread output.
     output: VecDeque<u8>,
     /// All text that the link has sent to the robot.
     sent_text: String,
     /// The line after which the board is unplugged.
-    last_line: &'static str,
+    unplug_line: &'static str,
 }
 
 /// The robot.toml of the paper's robot.
 pub const PAPER_TOML: &str = include_str!("../../../../../robots/paper.toml");
 
 /// Connects to the paper's robot and reads its banner.
-pub fn connect_paper_robot() -> Link<ConsoleDouble> {
-    connect_paper_robot_until("unplug")
+pub fn connect_paper_robot() -> Link<BoardDouble> {
+    connect_paper_robot_unplugged_at("never sent")
 }
 
-/// Connects as [`connect_paper_robot`] does, to a board that is unplugged when it gets the line `last_line`.
-pub fn connect_paper_robot_until(last_line: &'static str) -> Link<ConsoleDouble> {
+/// Connects as [`connect_paper_robot`] does, to a board that is unplugged when it gets the line `unplug_line`.
+pub fn connect_paper_robot_unplugged_at(unplug_line: &'static str) -> Link<BoardDouble> {
     let robot = Robot::parse(PAPER_TOML).expect("the robot.toml is valid");
-    let mut link = Link::new(ConsoleDouble::power_on(&robot, last_line));
+    let mut link = Link::new(BoardDouble::power_on(&robot, unplug_line));
     link.wait_for_robot().expect("the robot sends a banner");
     link
 }
 
 /// Reads the active calibration of a connected robot.
-pub fn read_calibration(link: &mut Link<ConsoleDouble>) -> Calibration {
+pub fn read_calibration(link: &mut Link<BoardDouble>) -> Calibration {
     block_on(lizard_calibrate::read_settings(link)).expect("the robot answers")
 }
 
-impl ConsoleDouble {
-    fn power_on(robot: &Robot, last_line: &'static str) -> Self {
+impl BoardDouble {
+    fn power_on(robot: &Robot, unplug_line: &'static str) -> Self {
         Self {
             running_robot: RunningRobot::power_on(*robot.firmware()),
             output: VecDeque::new(),
             sent_text: String::new(),
-            last_line,
+            unplug_line,
         }
     }
 
@@ -62,9 +62,9 @@ impl ConsoleDouble {
     }
 }
 
-impl Read for ConsoleDouble {
+impl Read for BoardDouble {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        if self.sent_text.lines().next_back() == Some(self.last_line) {
+        if self.sent_text.lines().next_back() == Some(self.unplug_line) {
             return Err(ErrorKind::BrokenPipe.into());
         }
         if self.output.is_empty() {
@@ -79,7 +79,7 @@ impl Read for ConsoleDouble {
     }
 }
 
-impl Write for ConsoleDouble {
+impl Write for BoardDouble {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.sent_text.push_str(&String::from_utf8_lossy(bytes));
         for byte in bytes {

@@ -1,5 +1,5 @@
-//! `lizard draw --horns`: the angles at which the cranks are pressed onto the shafts. A crank fits only on the teeth of
-//! its shaft, so the drawing also shows the remaining error and the trim that corrects it.
+//! `lizard draw --horns`: the angles at which the cranks are pressed onto the shafts, in place of horns. A crank fits
+//! only on the teeth of its shaft, so the drawing also shows the remaining error and the trim that corrects it.
 
 use lizard_kinematics::{Vector, sin_cos};
 use lizard_robot::Robot;
@@ -75,9 +75,9 @@ fn to_page_point(point: Vector, scale: f64) -> (f64, f64) {
     (x + scale * point.x, y - scale * point.y)
 }
 
-/// Returns the point at a distance and in a direction (degrees counter-clockwise) from another point, on the page.
-pub(super) fn offset_point(start: (f64, f64), degrees: f64, distance: f64) -> (f64, f64) {
-    let (sin, cos) = sin_cos(degrees);
+/// Returns the point at a distance and in a direction (deg, counter-clockwise) from another point, on the page.
+pub(super) fn offset_point(start: (f64, f64), angle_deg: f64, distance: f64) -> (f64, f64) {
+    let (sin, cos) = sin_cos(angle_deg);
     (start.0 + distance * cos, start.1 - distance * sin)
 }
 
@@ -129,13 +129,13 @@ fn draw_chassis(robot: &Robot) -> Group {
         group = group.add(case.set("rx", 3).set("fill-opacity", 0.25));
     }
     let (x, y) = ROBOT_CENTRE;
-    let (tail, tip) = ((x, y + 44.0), (x, y - 30.0));
+    let (start, end) = ((x, y + 44.0), (x, y - 30.0));
     group
-        .add(line(tail, tip, GREY, 3.0))
-        .add(line(tip, (tip.0 - 8.0, tip.1 + 12.0), GREY, 3.0))
-        .add(line(tip, (tip.0 + 8.0, tip.1 + 12.0), GREY, 3.0))
-        .add(text_middle("head", (tip.0, tip.1 - 10.0), 15.0))
-        .add(text_middle("tail", (tail.0, tail.1 + 20.0), 15.0))
+        .add(line(start, end, GREY, 3.0))
+        .add(line(end, (end.0 - 8.0, end.1 + 12.0), GREY, 3.0))
+        .add(line(end, (end.0 + 8.0, end.1 + 12.0), GREY, 3.0))
+        .add(text_middle("head", (end.0, end.1 - 10.0), 15.0))
+        .add(text_middle("tail", (start.0, start.1 + 20.0), 15.0))
 }
 
 /// Draws a servo's crank with its angle and its name.
@@ -150,12 +150,12 @@ fn draw_crank(robot: &Robot, servo: usize) -> Group {
         true => tip_point.1 - 56.0,
         false => tip_point.1 + 28.0,
     };
-    let line_point = |offset: f64| (tip_point.0, first_line_y + offset);
+    let text_point = |offset: f64| (tip_point.0, first_line_y + offset);
     let ray_end = (shaft_point.0 + 36.0, shaft_point.1);
     let zero_ray = line(shaft_point, ray_end, DARK, 1.2);
     let crank = line(shaft_point, tip_point, colour, 11.0);
-    let name_text = text(name, line_point(0.0), 18.0, colour, Anchor::Middle);
-    let angle_text = text_middle(&format!("{angle_deg:.2}°"), line_point(37.0), 16.0);
+    let name_text = text(name, text_point(0.0), 18.0, colour, Anchor::Middle);
+    let angle_text = text_middle(&format!("{angle_deg:.2}°"), text_point(37.0), 16.0);
     Group::new()
         .add(zero_ray.set("stroke-dasharray", "3 3"))
         .add(crank.set("id", format!("crank-{name}")))
@@ -164,7 +164,7 @@ fn draw_crank(robot: &Robot, servo: usize) -> Group {
         .add(circle(shaft_point, 8.0, DARK))
         .add(circle(shaft_point, 3.0, "white"))
         .add(name_text.set("font-weight", "bold"))
-        .add(text_middle(SERVO_POSITIONS[servo], line_point(18.0), 14.0))
+        .add(text_middle(SERVO_POSITIONS[servo], text_point(18.0), 14.0))
         .add(angle_text.set("id", format!("angle-{name}")))
 }
 
@@ -186,9 +186,9 @@ fn draw_example(robot: &Robot) -> Group {
         "corrects it: + counter-clockwise,".into(),
         "\u{2212} clockwise, seen from above.".into(),
     ];
-    let point_at = |degrees: f64, radius: f64| offset_point(SPLINE_CENTRE, degrees, radius);
-    let draw_example_crank = |degrees: f64, colour: &str, width: f64| {
-        let end = point_at(degrees, EXAMPLE_CRANK_LENGTH);
+    let point_at = |angle_deg: f64, radius: f64| offset_point(SPLINE_CENTRE, angle_deg, radius);
+    let draw_example_crank = |angle_deg: f64, colour: &str, width: f64| {
+        let end = point_at(angle_deg, EXAMPLE_CRANK_LENGTH);
         line(SPLINE_CENTRE, end, colour, width)
     };
     let fitted_crank = draw_example_crank(fitted_deg, GREY, 13.0).set("id", "fitted-crank");
@@ -208,17 +208,17 @@ fn draw_example(robot: &Robot) -> Group {
         .add(draw_tooth_mark(fitted_deg - 9.0 * TOOTH_PITCH_DEG));
     for (index, line_text) in lines.iter().enumerate() {
         let point = (TEXT_X, SPLINE_CENTRE.1 + 102.0 + 19.0 * index as f64);
-        let mut line = text_start(line_text, point, 14.0);
+        let mut element = text_start(line_text, point, 14.0);
         if line_text.starts_with("trim") {
-            line = line.set("font-weight", "bold");
+            element = element.set("font-weight", "bold");
         }
-        group = group.add(line);
+        group = group.add(element);
     }
     group
 }
 
-/// Draws the enlarged spline with a tooth at the angle `degrees`.
-fn draw_spline(degrees: f64) -> Polygon {
+/// Draws the enlarged spline with a tooth at the angle `angle_deg`.
+fn draw_spline(angle_deg: f64) -> Polygon {
     let corners: Vec<String> = (0..4 * TOOTH_COUNT)
         .map(|corner| {
             // A tooth has two corners at its tip; two more lie between the teeth.
@@ -227,8 +227,8 @@ fn draw_spline(degrees: f64) -> Polygon {
                 true => tip_radius,
                 false => root_radius,
             };
-            let corner_degrees = degrees + TOOTH_PITCH_DEG / 4.0 * (corner as f64 - 0.5);
-            let (x, y) = offset_point(SPLINE_CENTRE, corner_degrees, radius);
+            let corner_deg = angle_deg + TOOTH_PITCH_DEG / 4.0 * (corner as f64 - 0.5);
+            let (x, y) = offset_point(SPLINE_CENTRE, corner_deg, radius);
             format!("{},{}", round_hundredths(x), round_hundredths(y))
         })
         .collect();
@@ -240,16 +240,16 @@ fn draw_spline(degrees: f64) -> Polygon {
         .set("stroke-width", 1.5)
 }
 
-/// Draws a mark for the angle from the tooth at `degrees` to the next tooth.
-fn draw_tooth_mark(degrees: f64) -> Group {
+/// Draws a mark for the angle from the tooth at `angle_deg` to the next tooth.
+fn draw_tooth_mark(angle_deg: f64) -> Group {
     let (inner_radius, outer_radius) = (SPLINE_RADII.1 + 3.0, SPLINE_RADII.1 + 26.0);
-    let point_at = |degrees: f64, radius: f64| offset_point(SPLINE_CENTRE, degrees, radius);
-    let draw_ray = |degrees| {
-        let [start, end] = [inner_radius, outer_radius].map(|radius| point_at(degrees, radius));
+    let point_at = |angle_deg: f64, radius: f64| offset_point(SPLINE_CENTRE, angle_deg, radius);
+    let draw_ray = |angle_deg| {
+        let [start, end] = [inner_radius, outer_radius].map(|radius| point_at(angle_deg, radius));
         line(start, end, DARK, 1.2)
     };
-    let arc_ends = [degrees, degrees + TOOTH_PITCH_DEG];
-    let (text_x, text_y) = point_at(degrees + TOOTH_PITCH_DEG / 2.0, outer_radius + 3.0);
+    let arc_ends = [angle_deg, angle_deg + TOOTH_PITCH_DEG];
+    let (text_x, text_y) = point_at(angle_deg + TOOTH_PITCH_DEG / 2.0, outer_radius + 3.0);
     let label = format!("{TOOTH_PITCH_DEG}°");
     Group::new()
         .add(draw_ray(arc_ends[0]))
@@ -266,13 +266,13 @@ fn draw_compass_rose() -> Group {
         .add(text_middle("angles, seen from above", caption, 14.0))
         .add(add_outline(circle(centre, 46.0, "none"), GREY, 1.2))
         .add(draw_arrow(centre, 30.0, [0.0, 70.0]));
-    for (degrees, label, anchor, offset) in [
+    for (angle_deg, label, anchor, offset) in [
         (0.0, "0° right", Anchor::Start, (8.0, 5.0)),
         (90.0, "90° head", Anchor::Middle, (0.0, -8.0)),
         (180.0, "180°", Anchor::End, (-8.0, 5.0)),
         (270.0, "270°", Anchor::Middle, (0.0, 19.0)),
     ] {
-        let end = offset_point(centre, degrees, 52.0);
+        let end = offset_point(centre, angle_deg, 52.0);
         let point = (end.0 + offset.0, end.1 + offset.1);
         group = group
             .add(line(centre, end, GREY, 1.2))

@@ -20,16 +20,16 @@ pub struct Firmware {
     pub image: Image,
 }
 
-/// Reads the program of an ELF or HEX file.
+/// Reads the image in an ELF or HEX file.
 ///
 /// # Errors
 /// Fails if the file cannot be read, or is not a program for an AVR.
 pub fn read_image(path: &Path) -> Result<Image, Failure> {
-    Image::read(record_input(path)).map_err(|error| read_failure(path, &error))
+    Image::read(record_input(path)).map_err(|error| load_failure(path, &error))
 }
 
 /// Returns the failure for a file that cannot be read, or is not a program for an AVR.
-fn read_failure(path: &Path, error: &LoadError) -> Failure {
+fn load_failure(path: &Path, error: &LoadError) -> Failure {
     let problem = describe_load_error(path, error);
     Failure::Input(format!("{problem}; `make firmware` builds the firmware"))
 }
@@ -96,7 +96,7 @@ pub(crate) fn check_robot(
     Ok(())
 }
 
-/// Returns the size of the code in an image with this robot, bytes, without the erased flash up to the section.
+/// Counts the bytes of code in an image with this robot, without the erased flash up to the section.
 pub(crate) fn count_code_bytes(image: &Image, robot: &Robot) -> u32 {
     let code_end = image
         .symbol("__code_end")
@@ -125,15 +125,14 @@ pub(crate) fn remove_contacts(mut image: Image, robot: &Robot) -> Image {
     image
 }
 
-/// Reads the program of an ELF or HEX file and replaces the file's robot by `robot`. A program without a robot
-/// stays unchanged.
+/// Reads the image in an ELF or HEX file and replaces its robot by `robot`. An image without a robot stays unchanged.
 ///
 /// # Errors
 /// Fails if the file cannot be read, or is not a program for an AVR.
 pub fn read_with_robot(path: &Path, robot: &Robot) -> Result<Image, Failure> {
     let mut image = read_image(path)?;
     if find_robot(&image.flash()).is_some() {
-        replace_robot(&mut image, robot).map_err(|error| read_failure(path, &error))?;
+        replace_robot(&mut image, robot).map_err(|error| load_failure(path, &error))?;
     }
     Ok(image)
 }

@@ -52,9 +52,10 @@ pub struct ServoReport {
 /// The smallest margin in a run, and its time.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MinMargin {
-    /// The margin's name.
-    pub margin: String,
-    /// The margin's value.
+    /// The name of the check that has this margin.
+    #[serde(rename = "margin")]
+    pub check: String,
+    /// The margin, a sine.
     pub value: f64,
     /// Seconds from power-on to the frame with the margin.
     pub seconds: f64,
@@ -77,7 +78,7 @@ pub struct Safety {
 
 /// The robot's displacement during one command, according to the contact model.
 #[derive(Debug, Clone, Serialize)]
-pub struct CommandPath {
+pub struct CommandDisplacement {
     /// The command in effect, and its time span.
     #[serde(flatten)]
     pub span: Span,
@@ -225,36 +226,37 @@ impl Safety {
             Err(infeasible) => return Some(infeasible.to_string()),
             Ok(solution) => solution,
         };
-        let (margin, value) = solution.margins.min();
+        let (check, value) = solution.margins.min();
         let min_margin = self.min_margin.as_ref();
         if min_margin.is_none_or(|min| value < min.value) {
             self.min_margin = Some(MinMargin {
-                margin: margin.to_string(),
+                check: check.to_string(),
                 value,
                 seconds,
             });
         }
-        for travel in [solution.left.s, solution.right.s] {
-            self.stroke = [self.stroke[0].min(travel), self.stroke[1].max(travel)];
+        for slider_travel in [solution.left.s, solution.right.s] {
+            let [min, max] = self.stroke;
+            self.stroke = [min.min(slider_travel), max.max(slider_travel)];
         }
         let violation = robot.limits().violations(&solution).next();
         violation.map(|violation| violation.to_string())
     }
 }
 
-/// Computes the displacement during each command with the contact model; the last entry is the complete run. Legs are
-/// rigid here, so that repeated pairs of frames are computed only once; in `lizard twin`, legs lag. Feet are never
-/// lifted; see [`lizard_robot::GroundContact`].
-pub fn compute_command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
-    let mut travel_cache = HashMap::new();
+/// Computes the displacement during each command with the contact model; the last entry is the complete run. The
+/// legs are rigid here, so a frame's displacement depends only on its own pulses and the next frame's, and each pair is
+/// computed only once; in `lizard twin`, legs lag. Feet are never lifted; see [`lizard_robot::GroundContact`].
+pub fn compute_command_displacements(run: Run<'_>, spans: &[Span]) -> Vec<CommandDisplacement> {
+    let mut cache = HashMap::new();
     let mut total = NO_TRAVEL;
     let mut are_all_determined = [true; 3];
     let mut determined_by_command = HashMap::new();
-    let mut paths = Vec::with_capacity(spans.len() + 1);
+    let mut displacements = Vec::with_capacity(spans.len() + 1);
     for span in spans {
         let mut travel = NO_TRAVEL;
         for index in run.log.index_at(span.start_s)..run.log.index_at(span.end_s) {
-            let frame_travel = compute_frame_travel(run, index, &mut travel_cache);
+            let frame_travel = compute_frame_travel(run, index, &mut cache);
             travel = compose_travel(travel, frame_travel);
             total = compose_travel(total, frame_travel);
         }
@@ -262,21 +264,21 @@ pub fn compute_command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
             .entry(span.command.as_str())
             .or_insert_with(|| find_determined_components(run.robot, &span.command));
         are_all_determined = std::array::from_fn(|i| are_all_determined[i] && are_determined[i]);
-        paths.push(CommandPath {
+        displacements.push(CommandDisplacement {
             span: span.clone(),
             displacement: Displacement::from_travel(travel, are_determined),
         });
     }
     let end_s = spans.last().map_or(0.0, |span| span.end_s);
-    paths.push(CommandPath {
+    displacements.push(CommandDisplacement {
         span: Span::new("all", 0.0, end_s),
         displacement: Displacement::from_travel(total, are_all_determined),
     });
-    paths
+    displacements
 }
 
-/// Returns true for each component of a command's path (forward, left, turn) that the contact model determines. A
-/// component that depends on a tie is not determined.
+/// Returns true for each component of a command's displacement (forward, left, turn) that the contact model determines.
+/// A component is not determined if it depends on a tie: two feet pull with equal force against the other two.
 fn find_determined_components(robot: &Robot, command: &str) -> [bool; 3] {
     robot.find_gait_in_line(command).map_or([true; 3], |gait| {
         Displacement::from(robot.predict(gait)).are_determined()
@@ -291,11 +293,11 @@ const NO_TRAVEL: Travel = Travel {
 };
 
 /// Computes the displacement from frame `index` to the next; zero while the robot rests, and for the last frame.
-/// `travels` caches the displacements by the pulse widths of both frames, because a gait repeats its frames.
+/// `cache` has the displacements by the pulse widths of both frames, because a gait repeats its frames.
 fn compute_frame_travel(
     run: Run<'_>,
     index: usize,
-    travels: &mut HashMap<[[u16; 4]; 2], Travel>,
+    cache: &mut HashMap<[[u16; 4]; 2], Travel>,
 ) -> Travel {
     /// Largest number of frame pairs in the cache, a few megabytes.
     const MAX_CACHED_PAIRS: usize = 100_000;
@@ -304,14 +306,14 @@ fn compute_frame_travel(
         return NO_TRAVEL;
     };
     let pair = [frames[index], *next];
-    if let Some(travel) = travels.get(&pair) {
+    if let Some(travel) = cache.get(&pair) {
         return *travel;
     }
     let servo_frames = run.servo_frames_in(index..index + 2);
     let sweeps = servo_frames.filter_map(|servo_frame| servo_frame.sweeps);
     let travel = run.robot.ground().with_rigid_drive().travel(sweeps);
-    if travels.len() < MAX_CACHED_PAIRS {
-        travels.insert(pair, travel);
+    if cache.len() < MAX_CACHED_PAIRS {
+        cache.insert(pair, travel);
     }
     travel
 }

@@ -176,7 +176,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         wall_seconds: recording.wall_time.as_secs_f64(),
         servos: analysis::compute_servo_reports(run, commanded_widths.as_deref()),
         safety: analysis::check_safety(run),
-        paths: analysis::compute_command_paths(run, &spans),
+        displacements: analysis::compute_command_displacements(run, &spans),
         max_pins_high: run.log.max_pins_high,
         asleep_percent: 100.0 * uno.sleep_cycles() as f64 / uno.cycle().max(1) as f64,
         flash: firmware::count_code_bytes(uno.image(), &robot) + robot.section().len() as u32,

@@ -6,7 +6,7 @@ use lizard_robot::UNDETERMINED_NOTE;
 use serde::Serialize;
 use simulated_uno::Uno;
 
-use super::analysis::{CommandPath, Run, Safety, ServoReport};
+use super::analysis::{CommandDisplacement, Run, Safety, ServoReport};
 use super::session::DialogueLine;
 use crate::shared::number::{format_or_dash, round_to_decimals};
 
@@ -29,7 +29,7 @@ pub struct Report<'a> {
     pub safety: Safety,
     /// The predicted displacement during each command; the last entry is the complete run.
     #[serde(rename = "way")]
-    pub paths: Vec<CommandPath>,
+    pub displacements: Vec<CommandDisplacement>,
     /// Largest number of servo pins that are high at the same time.
     #[serde(rename = "most_pins_high")]
     pub max_pins_high: u32,
@@ -60,7 +60,7 @@ impl Report<'_> {
     /// Fails if writing fails.
     pub fn print(&self, out: &mut impl Write) -> io::Result<()> {
         self.print_servos(out)?;
-        self.print_paths(out)?;
+        self.print_displacements(out)?;
         self.print_summary(out)
     }
 
@@ -98,12 +98,12 @@ impl Report<'_> {
         writeln!(out)
     }
 
-    fn print_paths(&self, out: &mut impl Write) -> io::Result<()> {
+    fn print_displacements(&self, out: &mut impl Write) -> io::Result<()> {
         writeln!(
             out,
             "predicted path       from      to   forward      left      turn"
         )?;
-        for path in &self.paths {
+        for row in &self.displacements {
             let format_cell = |value: Option<f64>, decimals: usize| {
                 let rounded = value.map(|value| round_to_decimals(value, decimals as i32));
                 format_or_dash(rounded, decimals)
@@ -111,12 +111,12 @@ impl Report<'_> {
             writeln!(
                 out,
                 "{:<16} {:>6.2} s {:>5.2} s {:>6} mm {:>6} mm {:>6} deg",
-                path.span.command,
-                path.span.start_s,
-                path.span.end_s,
-                format_cell(path.displacement.forward, 1),
-                format_cell(path.displacement.left, 1),
-                format_cell(path.displacement.turn, 2)
+                row.span.command,
+                row.span.start_s,
+                row.span.end_s,
+                format_cell(row.displacement.forward, 1),
+                format_cell(row.displacement.left, 1),
+                format_cell(row.displacement.turn, 2)
             )?;
         }
         if self.frames.robot.drive().can_lag() {
@@ -125,8 +125,9 @@ impl Report<'_> {
                 "Here the legs follow their servos exactly; in `lizard twin` they lag."
             )?;
         }
-        let is_undetermined = |path: &CommandPath| path.displacement.components().contains(&None);
-        if self.paths.iter().any(is_undetermined) {
+        let is_undetermined =
+            |row: &CommandDisplacement| row.displacement.components().contains(&None);
+        if self.displacements.iter().any(is_undetermined) {
             write!(out, "{UNDETERMINED_NOTE}")?;
         }
         writeln!(out)
@@ -138,7 +139,7 @@ impl Report<'_> {
                 out,
                 "smallest margin {:.3} ({}) at {:.2} s; slider travel {:+.1} to {:+.1} mm",
                 min_margin.value,
-                min_margin.margin,
+                min_margin.check,
                 min_margin.seconds,
                 round_to_decimals(self.safety.stroke[0], 1),
                 round_to_decimals(self.safety.stroke[1], 1)

@@ -5,7 +5,7 @@
 
 use lizard_core::control::supply::Reading;
 use lizard_core::numbers::supplies::Supplies;
-use lizard_robot::{Robot, healthy_rail_mv};
+use lizard_robot::{Robot, healthy_rail_pin_mv};
 use simulated_uno::{Pin, Uno};
 
 /// The board's supply, mV.
@@ -16,7 +16,7 @@ const FULL_SCALE_COUNTS: f64 = 1_024.0;
 /// Returns the analogue pin that measures the servo rail, and the voltage at this pin with a healthy rail, mV. `None`
 /// if no pin measures the rail.
 pub fn healthy_rail(robot: &Robot) -> Option<(Pin, u16)> {
-    let mv = healthy_rail_mv(&robot.firmware().supplies())?;
+    let mv = healthy_rail_pin_mv(&robot.firmware().supplies())?;
     Some((Pin::arduino(robot.firmware().rail_pin()?), mv as u16))
 }
 
@@ -36,6 +36,6 @@ pub(super) fn healthy_reading(supplies: &Supplies) -> Reading {
     let to_counts = |mv: f64| (FULL_SCALE_COUNTS * mv / BOARD_MV) as u16;
     Reading {
         reference: to_counts(f64::from(supplies.reference_mv)),
-        rail: healthy_rail_mv(supplies).map_or(0, to_counts),
+        rail: healthy_rail_pin_mv(supplies).map_or(0, to_counts),
     }
 }

@@ -52,10 +52,10 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     /// Then simulate each gait N more times, at least 2, with random friction, loads, mounting,
-    /// hips, feet, springs and play, and print the spread of the displacements and the
-    /// utilisation of the servos' torque-speed line
-    #[arg(long, value_name = "N", value_parser = whole_number_parser::<u32>(2, 100_000))]
-    robust: Option<u32>,
+    /// hips, feet, springs and play, and print the spread of the displacements and how close
+    /// the servos come to the limit of their torque at each speed
+    #[arg(long = "robust", value_name = "N", value_parser = whole_number_parser::<u32>(2, 100_000))]
+    variation_count: Option<u32>,
     #[command(flatten)]
     robot: RobotArgs,
 }
@@ -63,10 +63,10 @@ pub struct Args {
 /// The model of the servos, as named on the command line.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum ServoArg {
-    /// With the torque, rate, rotor and dead band from `[servo]` in robot.toml
+    /// Servos with the torque, rate, spin-up time and dead band from `[servo]` in robot.toml
     #[default]
     Own,
-    /// Follows its pulse at once under any load
+    /// Servos that follow their pulses at once under any load
     Ideal,
 }
 
@@ -108,7 +108,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
             write!(out, "\n{OPEN_INPUTS_NOTE}")?;
         }
     }
-    if let Some(variation_count) = args.robust {
+    if let Some(variation_count) = args.variation_count {
         robust::run(&robot, &replay, model, variation_count, args.json, &mut out)?;
     }
     Ok(out.flush()?)
@@ -143,7 +143,7 @@ fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     })
 }
 
-/// Standing time before and after the motion of a built-in script, ms.
+/// Standing time before and after the motion of a built-in script, and time for the move to a gait's first pose, ms.
 const STAND_MS: u64 = 1000;
 
 /// Builds a script for one round of a routine. The round starts after a second of standing, and the script ends two
@@ -158,8 +158,8 @@ fn build_round_script(robot: &Robot, routine: &Routine) -> Script {
     Script::new(steps, round_end_ms + 2 * STAND_MS)
 }
 
-/// Builds a script of three cycles of each gait, each after a second for taking the gait's first pose. The robot stands
-/// for a second before the first gait and after the last gait.
+/// Builds a script that runs three cycles of each gait, after a second in which the robot moves to the gait's first
+/// pose. The robot stands for a second before the first gait and after the last gait.
 pub(crate) fn build_walk_script(robot: &Robot, gaits: &[&str]) -> Script {
     const CYCLES_PER_GAIT: f64 = 3.0;
     let mut ms = STAND_MS;

@@ -20,7 +20,7 @@ fn every_element_is_on_the_page_and_large_enough_to_read() {
             let drawing = Drawing::parse(&svg);
             let page = &drawing.elements[0];
             let [width, height] = ["width", "height"].map(|key| page.parse_number(key));
-            assert!(width <= 700.0, "{name}: wider than a README");
+            assert!(width <= 700.0, "{name}: wider than GitHub shows a README");
             for element in &drawing.elements[1..] {
                 let mut points = element.points();
                 if element.tag == "text" {

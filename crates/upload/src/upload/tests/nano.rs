@@ -70,7 +70,7 @@ fn an_image_that_reaches_into_a_nanos_boot_section_is_rejected_for_a_possible_na
         ..unknown_model
     };
     let message = reject(BoardDouble::blank(), possible_nano);
-    let reason = "; according to its USB chip, this board may be a Nano. Nothing";
+    let reason = "; the USB chip of this board is used on both UNOs and Nanos. Nothing";
     assert!(message.contains(reason), "{message}");
     let small_image = firmware_image("paper");
     for (image, target) in [

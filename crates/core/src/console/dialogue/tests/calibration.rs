@@ -80,7 +80,7 @@ fn a_calibration_moves_only_its_servo_and_at_most_at_the_slew_limit() {
         let widths_before = run_frame_and_read_widths(&mut dialogue);
         dialogue.expect_accepted(change);
         let motion = dialogue.motion();
-        let expected_widths = motion.held_pulses().0.map(|width| width.0);
+        let expected_widths = motion.pose_pulses().0.map(|width| width.0);
         let gain = f64::from(motion.calibration()[0].gain).abs() / 16384.0;
         let max_change = f64::from(motion.robot().slew().per_frame) * gain;
         let mut last_widths = widths_before;
@@ -106,7 +106,7 @@ fn a_calibration_interrupts_a_gait_until_the_pulses_have_settled() {
     assert_eq!(dialogue.status_value("gait"), "sway");
     assert_ne!(dialogue.motion().phase(), phase_before);
     let motion = dialogue.motion();
-    assert_eq!(*motion.sent_pulses(), motion.held_pulses());
+    assert_eq!(*motion.sent_pulses(), motion.pose_pulses());
 }
 
 #[test]

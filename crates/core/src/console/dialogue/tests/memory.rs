@@ -79,7 +79,7 @@ fn after_power_on_servos_wake_one_by_one_in_the_rest_pose_before_the_robot_stand
     let mut restarted_dialogue = dialogue.power_on_copy();
     restarted_dialogue.read_lines();
     restarted_dialogue.expect_status(&[("pose", "140.00,50.00,311.00,224.50")]);
-    let rest_pulses = restarted_dialogue.motion().held_pulses();
+    let rest_pulses = restarted_dialogue.motion().pose_pulses();
     for servo in 0..4 {
         for _ in 0..5 {
             let widths = run_frame_and_read_widths(&mut restarted_dialogue);

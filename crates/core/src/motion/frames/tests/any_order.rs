@@ -55,7 +55,7 @@ proptest! {
                 let pulses = motion.advance_frame();
                 let clearance = Clearance::measure(&motion.robot, motion.pose());
                 prop_assert_eq!(clearance.first_hazard(&motion.robot), None);
-                for (actual, held_width) in pulses.0.into_iter().zip(motion.held_pulses().0) {
+                for (actual, held_width) in pulses.0.into_iter().zip(motion.pose_pulses().0) {
                     prop_assert!(actual == PulseWidth(0) || actual == held_width);
                 }
                 if !was_cycling {

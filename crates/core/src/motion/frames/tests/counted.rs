@@ -53,7 +53,7 @@ fn every_counted_gait_ends_within_two_frames_of_its_count_at_any_pace() {
                 let case = format!("{name} {count} at {speed}: {excess_frames} excess frames");
                 assert!(ALLOWED_EXCESS.contains(&excess_frames), "{case}");
                 assert_eq!(motion.activity(), Activity::Stop);
-                let held_pulses = motion.held_pulses();
+                let held_pulses = motion.pose_pulses();
                 for _ in 0..50 {
                     assert_eq!(motion.advance_frame(), held_pulses);
                     let is_reported_again = motion.has_come_to_standstill();
@@ -107,13 +107,13 @@ fn a_counted_gait_brakes_like_a_gait_replaced_by_another() {
         assert_eq!(endless_motion.advance_frame(), pulses);
         assert!(!counted_motion.has_come_to_standstill());
     }
-    let last_pulses = counted_motion.held_pulses();
+    let last_pulses = counted_motion.pose_pulses();
     assert_eq!(counted_motion.advance_frame(), last_pulses);
     assert!(counted_motion.has_come_to_standstill());
 }
 
 #[test]
-fn a_count_ordered_for_a_running_gait_begins_at_its_current_phase() {
+fn a_count_commanded_for_a_running_gait_begins_at_its_current_phase() {
     for (start_frames, count) in [(60, 1), (95, 2), (110, 3)] {
         let mut motion = Motion::in_gait("sway", start_frames);
         motion.start_for("sway", count);

@@ -28,7 +28,7 @@ fn a_gait_or_a_pose_first_wakes_the_servos_in_the_rest_pose() {
             motion.advance_frame();
             assert_eq!(motion.pose(), &pose_before);
         }
-        assert_eq!(motion.advance_frame(), motion.held_pulses());
+        assert_eq!(motion.advance_frame(), motion.pose_pulses());
         assert!(motion.is_in_move());
         motion.run(TRANSITION_FRAMES);
         if is_pose {
@@ -51,7 +51,7 @@ fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
     assert_eq!(interrupted_motion.advance_frame(), Pulses::default());
     interrupted_motion.start("stand");
     for mut motion in [new_motion, woken_motion, interrupted_motion] {
-        let held_pulses = motion.held_pulses();
+        let held_pulses = motion.pose_pulses();
         let mut first_frames = [0; 4];
         for frame in 1..=FRAMES_TO_WAKE {
             for (index, width) in motion.advance_frame().0.into_iter().enumerate() {
@@ -79,8 +79,8 @@ fn after_stop_during_waking_the_servos_wake_but_do_not_move() {
     motion.run(TRANSITION_FRAMES);
     assert_eq!(motion.activity(), Activity::Stop);
     assert_eq!(motion.pose(), &pose);
-    assert_eq!(motion.advance_frame(), motion.held_pulses());
-    let widths = motion.held_pulses().0;
+    assert_eq!(motion.advance_frame(), motion.pose_pulses());
+    let widths = motion.pose_pulses().0;
     assert!(widths.iter().all(|width| *width > PulseWidth(0)));
 }
 

@@ -19,7 +19,7 @@ pub(super) enum Step {
     Limit(usize),
     /// Walks as a test.
     Walk,
-    /// Shows the calibration before it is saved.
+    /// Shows the calibration and offers to save it.
     Save,
     /// Confirms that the calibration is saved.
     Saved,

@@ -1,10 +1,10 @@
-//! The height of the board's top, on which the deck's card lies.
+//! The height of the robot's deck, the top of its board, on which the card lies.
 
 use lizard_parts::Assembly;
 use lizard_robot::Robot;
 
-/// Computes the height of the board's top above the floor from the robot's parts, mm.
-pub fn compute_board_height(robot: &Robot) -> f64 {
+/// Computes the deck's height above the floor from the robot's parts, mm.
+pub fn compute_deck_height(robot: &Robot) -> f64 {
     let assembly = Assembly::new(robot);
     let board = assembly.body("board").into_iter();
     let top_heights = board.flat_map(|body| &body.prisms).map(|prism| prism.z[1]);

@@ -23,7 +23,7 @@ const REFUSED_LINES: [&str; 9] = [
     "pose 170 130 309.64 226.18",
 ];
 
-/// Yields random bytes like those that a person, a faulty program or a broken cable sends.
+/// Yields random bytes like those from a person, a faulty program or a broken cable.
 fn any_bytes() -> impl Strategy<Value = Vec<u8>> {
     let mut lines = GAIT_NAMES.to_vec();
     lines.extend([
@@ -48,8 +48,8 @@ fn any_bytes() -> impl Strategy<Value = Vec<u8>> {
     prop::collection::vec(piece, 0..12).prop_map(|pieces| pieces.concat())
 }
 
-/// Counts the final lines that these bytes must get as answers.
-fn count_expected_answers(bytes: &[u8]) -> usize {
+/// Counts the final lines that these bytes must get.
+fn count_expected_final_lines(bytes: &[u8]) -> usize {
     let mut line = Line::new();
     let ends_line = |byte: &&u8| line.push(**byte).is_some();
     bytes.iter().filter(ends_line).count()
@@ -59,20 +59,20 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn every_random_line_gets_one_final_line_at_any_speed_of_the_bytes(
+    fn every_random_line_gets_one_final_line_however_slowly_its_bytes_arrive(
         bytes in any_bytes(),
-        frames_between in 0u32..3,
+        frames_between_bytes in 0u32..3,
     ) {
         let (mut burst_dialogue, mut bytewise_dialogue) = (wake_asymmetric_robot(), wake_asymmetric_robot());
         let keep_final_lines = |lines: Vec<String>| -> Vec<String> {
             lines.into_iter().filter(|line| is_answer(line)).collect()
         };
         let burst_lines = keep_final_lines(burst_dialogue.send(&bytes));
-        prop_assert_eq!(burst_lines.len(), count_expected_answers(&bytes));
+        prop_assert_eq!(burst_lines.len(), count_expected_final_lines(&bytes));
         let mut bytewise_lines = Vec::new();
         for byte in &bytes {
             bytewise_lines.extend(bytewise_dialogue.send(&[*byte]));
-            bytewise_lines.extend(bytewise_dialogue.run_frames(frames_between));
+            bytewise_lines.extend(bytewise_dialogue.run_frames(frames_between_bytes));
         }
         // Only the answer to `status` depends on time, and no other answer contains `=`.
         let omit_status = |lines: Vec<String>| -> Vec<String> {
