@@ -394,7 +394,7 @@ const PADS_TEXT: &str = "Print all four pads in TPU (95A) from one roll: the fla
 
 /// The guide's text about the servos.
 const SERVOS_TEXT: &str = "Use plain analog servos, all four of one make. According to the model, digital servos lose \
-                     15 % of `walk`'s distance, and servos with a light rotor more than half.";
+                     13 % of `walk`'s distance, and servos with a light rotor more than half.";
 
 /// Formats items to buy as a Markdown table.
 pub fn format_buying_table(items: &[Item]) -> String {
@@ -443,7 +443,7 @@ const SIZES_TEXT: &str = "
 | lock nuts | DIN 985: 5.5 over flats, 4 high (M3) |
 | standoffs | 5.5 over flats at most, thread in both ends: Harwin R30-100; Wuerth WA-SSTII (~5) |
 | fuse | IEC 60127: 5 x 20 of glass; ISO 8820-3: mini blade |
-| cable ties | HellermannTyton T18R: 2.5 x 100; Panduit PLT1M: ~2.5 x 99 |
+| cable ties | HellermannTyton T18I: 2.5 x 140; Panduit PLT1.5M: ~2.5 x 142 |
 | servos | TowerPro SG90: 22.2 x 11.8 x 31, copies ~22.8 x 12.6; MG90S: ~22.8 x 12.2 x 28.5; measure yours for `[parts.servo]` |
 | board | Arduino UNO R3: 68.6 x 53.4; Elegoo UNO R3: the same outline, holes and sockets |
 ";

@@ -184,7 +184,7 @@ impl Assembly {
                 && !crate::layers::stack::is_common_screw_length(length)
             {
                 return refuse(format!(
-                    "{} must be {length:.1} mm long, which is not a standard length; decrease parts.thickness or parts.plate",
+                    "{} must be {length:.1} mm long, which is not a standard length; change parts.thickness or parts.plate",
                     body.name
                 ));
             }

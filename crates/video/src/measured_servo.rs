@@ -422,7 +422,9 @@ impl HornPath {
                 cycles: lost_angles,
                 systematic_error: 0.0,
             }]);
-            Estimate::new(mean.value, mean.standard_error.hypot(DEAD_BAND_SIGMA))
+            // Overshoot and noise may exceed a narrow dead band, but robot.toml allows no negative width.
+            let width = mean.value.max(0.0);
+            Estimate::new(width, mean.standard_error.hypot(DEAD_BAND_SIGMA))
         });
         DeadBand {
             width,

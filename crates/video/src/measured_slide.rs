@@ -14,7 +14,7 @@ use crate::camera::Camera;
 use crate::estimate::Estimate;
 use crate::frame_tags::FrameTags;
 use crate::least_squares;
-use crate::mean::small_sample_factor;
+use crate::mean::{self, small_sample_factor};
 use crate::path::PathPoint;
 
 /// Time at the start of the video during which the board is level, s.
@@ -172,18 +172,21 @@ impl MeasuredSlide {
         let rest_position = [0, 1].map(|i| {
             let positions = observations[..level_count].iter();
             let coordinates = positions.map(|observation| observation.position[i]);
-            coordinates.sum::<f64>() / level_count as f64
+            // The median, because somebody may still touch the robot.
+            mean::median(coordinates.collect()).unwrap_or_default()
         });
         let distance = |observation: &Observation| {
             (observation.position[0] - rest_position[0])
                 .hypot(observation.position[1] - rest_position[1])
         };
         let has_slid = |observation: &Observation| distance(observation) > MIN_SLIDE;
-        let Some(sliding_index) = observations.iter().position(has_slid) else {
-            let distance = observations.iter().map(distance).fold(0.0, f64::max);
+        let later = &observations[level_count..];
+        let Some(later_index) = later.iter().position(has_slid) else {
+            let distance = later.iter().map(distance).fold(0.0, f64::max);
             let tilt = max_tilt(&observations).to_degrees();
             return Err(SlideError::NoSlide { distance, tilt });
         };
+        let sliding_index = level_count + later_index;
         let has_rested = |observation: &Observation| distance(observation) < FIT_RANGE[0];
         let last_rest = observations[..sliding_index].iter().rposition(has_rested);
         let first_index = last_rest.map_or(0, |index| index + 1);

@@ -43,7 +43,7 @@ pub enum Action {
 
 /// The lines that the search sends. For each command word that begins none of these lines, the search also sends the
 /// word's example.
-const LINES: [&str; 30] = [
+const LINES: [&str; 31] = [
     "stand",
     "walk",
     "trot",
@@ -72,6 +72,7 @@ const LINES: [&str; 30] = [
     "deadman 20",
     "deadman 0",
     "status",
+    "watch 1",
     "cal",
     "nonsense",
 ];

@@ -198,8 +198,9 @@ impl Observer {
         self.check_pulse_promises(pulse.servo);
         let change = pulse.width.abs_diff(servo.last_complete_width);
         let is_complete = !pulse.is_cut && !pulse.is_end_late;
-        let is_comparable =
-            servo.last_complete_pulse_start > NEVER && !(is_first && servo.is_recalibrated);
+        // Without a reset, the first pulse after a rest repeats the last one, even with new settings.
+        let is_comparable = servo.last_complete_pulse_start > NEVER
+            && (servo.interruption == Interruption::Nothing || !servo.is_recalibrated);
         if is_complete && is_comparable && change > self.limits.max_change_cycles[pulse.servo] {
             let observation = format!(
                 "{name} gets pulses of {} and then {} cycles",

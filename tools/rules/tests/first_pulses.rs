@@ -110,6 +110,17 @@ fn servos_without_pulses_long_after_blocked_interrupts_must_wake_one_by_one() {
 }
 
 #[test]
+fn new_settings_at_rest_do_not_allow_a_servo_to_wake_with_a_jump() {
+    let mut observer = observer_of_awake_robot();
+    observer.limits.max_change_cycles = [100; 4];
+    observer.observe(450 * MS, accepted_command(Effect::Rest));
+    observer.observe(600 * MS, Event::CalibrationChanged { is_saved: false });
+    observer.observe(700 * MS, accepted_command(Effect::Motion));
+    observer.observe(800 * MS, Event::Pulse(Pulse::exact(0, 25_000)));
+    assert_eq!(take_violated_rules(&mut observer), [Rule::SlewLimit]);
+}
+
+#[test]
 fn a_rest_report_that_may_have_been_queued_before_a_command_does_not_forbid_its_pulses() {
     for (printed_from_ms, expected) in [(640, &[][..]), (700, &[Rule::PulsesPermitted])] {
         let mut observer = observer_of_awake_robot();

@@ -93,14 +93,14 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
 fn format_report(proof: &Proof, sample: PairSample) -> String {
     let mut text =
-        "                                      largest error          decisions differ within\n\
-         part        servos          pairs   type-2   type-1      mm    margin      mm   wrong\n"
+        "                                        largest error          decisions differ within\n\
+         part        servos          pairs type-2/leg   type-1      mm    margin      mm   wrong\n"
             .to_owned();
     for finding in &proof.findings {
         let tally = &finding.tally;
         _ = writeln!(
             text,
-            "{:<11} {:<7} {:>13} {:>8} {:>8} {:>7} {:>9} {:>7} {:>7}",
+            "{:<11} {:<7} {:>13} {:>10} {:>8} {:>7} {:>9} {:>7} {:>7}",
             finding.part,
             finding.servos.join(" "),
             group_digits(tally.pair_count as f64, 0),

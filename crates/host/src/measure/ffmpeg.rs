@@ -4,6 +4,7 @@
 //! of each frame, because the frames of a phone's video are not evenly spaced in time. ffmpeg sends the frames as
 //! YUV4MPEG2: a header line with the size, then, for each frame, a header line and its grey pixels.
 
+use std::ffi::OsString;
 use std::io::{BufRead, BufReader, ErrorKind};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -42,7 +43,7 @@ pub(super) fn for_each_frame(
     };
     let mut ffmpeg = Command::new("ffmpeg")
         .args(["-v", "error", "-nostdin", "-i"])
-        .arg(video)
+        .arg(file_url(video))
         .args(FFMPEG_ARGUMENTS.split(' '))
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
@@ -60,6 +61,14 @@ pub(super) fn for_each_frame(
     result
 }
 
+/// Returns the URL of a file. In a bare name such as `10:30.mp4`, ffmpeg would take the part before the colon for a
+/// protocol.
+fn file_url(path: &Path) -> OsString {
+    let mut url = OsString::from("file:");
+    url.push(path);
+    url
+}
+
 /// Calls `handle_frame` with each frame in a YUV4MPEG2 stream and the frame's time, s.
 fn read_frames(
     mut stream: impl BufRead,
@@ -70,7 +79,8 @@ fn read_frames(
     let mut line = String::new();
     let header = stream.read_line(&mut line).ok();
     let frame_size = header.and_then(|_| parse_size(&line));
-    let [width, height] = frame_size.ok_or_else(|| unreadable("it has no frames"))?;
+    let [width, height] =
+        frame_size.ok_or_else(|| unreadable("it has no frames, or ffmpeg is older than 5.1"))?;
     for index in 0.. {
         line.clear();
         let header = stream.read_line(&mut line);
@@ -93,7 +103,7 @@ fn read_frames(
 fn read_frame_times(video: &Path) -> Result<Vec<f64>, Failure> {
     let output = Command::new("ffprobe")
         .args(FFPROBE_ARGUMENTS.split(' '))
-        .arg(video)
+        .arg(file_url(video))
         .output()
         .map_err(|error| spawn_failure("ffprobe", &error))?;
     let text = String::from_utf8_lossy(&output.stdout);

@@ -9,7 +9,8 @@ use crate::Failure;
 /// File extensions of frames.
 const FRAME_EXTENSIONS: [&str; 3] = ["png", "jpg", "jpeg"];
 
-/// Lists the frames in a folder in the order of the numbers in their names, each with its time, s.
+/// Lists the frames in a folder, each with its time, s: in the order of the numbers in their names if `frame_rate`
+/// gives the times, otherwise in the order of the times in their names.
 ///
 /// # Errors
 /// Fails if the folder cannot be read or has no frames, or if neither `frame_rate` nor the names give the times.
@@ -51,7 +52,10 @@ pub(super) fn list_frames(
         let seconds = seconds.ok_or_else(unknown_time)?;
         Ok((seconds, path))
     };
-    files.into_iter().enumerate().map(to_timed_frame).collect()
+    let frames = files.into_iter().enumerate().map(to_timed_frame);
+    let mut frames = frames.collect::<Result<Vec<_>, Failure>>()?;
+    frames.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(frames)
 }
 
 /// Returns a file's name without its extension.
@@ -105,9 +109,19 @@ mod tests {
     }
 
     #[test]
+    fn frames_are_sorted_by_the_times_in_their_names() {
+        let folder = tempfile::tempdir().expect("a temporary folder is created");
+        for name in ["0.1s.png", "0.067s.png", "33ms.png"] {
+            fs::write(folder.path().join(name), "").expect("the file is written");
+        }
+        let frames = list_frames(folder.path(), None).expect("the names give the times");
+        let times: Vec<f64> = frames.into_iter().map(|(seconds, _)| seconds).collect();
+        assert_eq!(times, [0.033, 0.067, 0.1]);
+    }
+
+    #[test]
     fn split_for_sorting_puts_10_after_9() {
         assert!(split_for_sorting("frame-9") < split_for_sorting("frame-10"));
-        assert!(split_for_sorting("0.9s") < split_for_sorting("0.10s"));
         assert!(split_for_sorting("a2b1") < split_for_sorting("a2b3"));
     }
 }

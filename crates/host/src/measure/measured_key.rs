@@ -61,6 +61,11 @@ impl MeasuredKey {
             scale: 1.0 / supply_factor,
         }
     }
+
+    /// Returns the measured value, its standard error and the value in robot.toml, all as robot.toml gives them.
+    fn file_values(&self) -> [f64; 3] {
+        [self.value, self.standard_error, self.robot_value].map(|value| value * self.scale)
+    }
 }
 
 /// Formats the measured keys as a table.
@@ -78,7 +83,7 @@ pub(super) fn format_table(keys: &[MeasuredKey]) -> String {
     text
 }
 
-/// Formats the measured keys as lines for robot.toml.
+/// Formats the measured keys as lines for robot.toml, for the supply voltage at which its values are given.
 pub(super) fn format_toml_lines(keys: &[MeasuredKey]) -> String {
     let mut text = String::new();
     let mut table = "";
@@ -87,11 +92,11 @@ pub(super) fn format_toml_lines(keys: &[MeasuredKey]) -> String {
             table = &key.table;
             let _ = writeln!(text, "[{table}]");
         }
-        let decimals = key.decimals;
+        let (name, decimals) = (key.name, key.decimals);
+        let [value, error, old_value] = key.file_values();
         let _ = writeln!(
             text,
-            "{} = {:.decimals$} # measured, +- {:.decimals$}; was {:.decimals$}",
-            key.name, key.value, key.standard_error, key.robot_value
+            "{name} = {value:.decimals$} # measured, +- {error:.decimals$}; was {old_value:.decimals$}"
         );
     }
     text
@@ -121,8 +126,7 @@ pub(super) fn with_measured_keys(
     for key in keys.iter().filter(|key| !key.agrees) {
         let name = format!("{}.{}", key.table, key.name);
         let decimals = key.decimals;
-        let [value, error, old_value] =
-            [key.value, key.standard_error, key.robot_value].map(|value| value * key.scale);
+        let [value, error, old_value] = key.file_values();
         let rounded: f64 = format!("{value:.decimals$}").parse().unwrap_or(value);
         robot_toml = with_number(&robot_toml, &name, rounded)?;
         let comment =

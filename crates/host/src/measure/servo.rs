@@ -261,13 +261,12 @@ impl Report {
                 "The servo turns in the opposite direction: the sign of us_per_degree changes.\n";
         }
         let toml_lines = measured_key::format_toml_lines(&self.keys);
-        let volts = self.volts;
-        let _ = write!(text, "\n{toml_lines}Also under [servo]: at_volts = {volts}");
+        let _ = write!(text, "\n{toml_lines}");
         let _ = match self.is_volts_measured {
-            true => writeln!(text, ", volts = {volts}"),
+            true => writeln!(text, "Also under [servo]: volts = {}", self.volts),
             false => writeln!(
                 text,
-                " (measure the supply at the servo while it moves, and give it with --volts)"
+                "Measure the supply at the servo while it moves, and give it with --volts."
             ),
         };
         if !self.is_spin_up_known {

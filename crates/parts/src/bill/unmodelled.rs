@@ -20,7 +20,7 @@ pub(super) const UNPLACED_ITEMS: [Row; 12] = [
         0.4,
         B,
     ),
-    (10, "cable tie, 2.5 mm wide, 100 mm long", 0.3, A),
+    (10, "cable tie, 2.5 mm wide, 140 mm long", 0.3, A),
     (1, "double-sided foam tape, 20 mm wide, 40 cm", 2.0, B),
     (1, "heat-shrink tube, 3 mm, 20 cm", 0.5, A),
     (1, "filament, PLA, 250 g", 0.0, C),

@@ -162,7 +162,7 @@ fn format_part_notes(parts: &[Part]) -> String {
     let hole_texts: Vec<_> = parts.iter().filter_map(format_holes).collect();
     format!(
         "Some holes are closed by one printed layer of {PRINT_LAYER_MM} mm, because a pocket is below them during printing. Open them with a 3 mm drill \
-         or a screw: {}. Parts that exist in two mirrored forms have the numbers of their servos engraved: 13 is for A1 and A3.",
+         or a screw: {}. Parts that exist in two mirrored forms have the numbers of their servos engraved, such as 13 for A1 and A3.",
         hole_texts.join(", ")
     )
 }

@@ -98,6 +98,32 @@ fn the_pages_quote_the_lists_of_the_bill() {
     for word in ["strap", "wire", "switch", "fuse", "strip", "plug"] {
         assert!(buying_list.contains(word), "{word}");
     }
+    let limits = read_file("docs/limits.md");
+    let mut rows = limits.lines().map(|line| line.split_whitespace());
+    let row = rows.find(|row| row.clone().take(2).eq(["digital", "servos"]));
+    // The first column after the range is the loss of `walk`.
+    let loss = row.and_then(|mut row| row.find_map(|word| word.strip_prefix('-')));
+    let sentence = format!("digital servos lose {} % of `walk`", loss.expect("a loss"));
+    for text in [bill.to_string(), read_file("docs/quickstart.md")] {
+        assert!(text.contains(&sentence), "{sentence}");
+    }
+}
+
+#[test]
+fn the_converter_is_set_after_the_wires_are_checked_and_before_the_servos_get_power() {
+    let steps = build_steps(false);
+    let [board_step, flash_step] = [2, 3].map(|index| &steps[index].instructions);
+    let (_, text_after_check) = board_step.split_once("no contact").expect(board_step);
+    assert!(text_after_check.contains("set the converter to 5.0 V"));
+    assert!(flash_step.contains("switch on the servos' supply"));
+}
+
+#[test]
+fn the_steps_name_no_mark_that_a_robot_without_equal_parts_lacks() {
+    for step in build_steps(false) {
+        let has_mark = step.instructions.contains("marked 1");
+        assert!(!has_mark, "{}", step.title);
+    }
 }
 
 #[test]

@@ -78,12 +78,32 @@ impl ModelInputs {
     }
 }
 
-/// An assumption: its description, its unit, its range, and the inputs that it varies.
+/// An assumption: its description, its unit, its range for the paper's robot, and the inputs that it varies.
 struct Assumption {
     description: &'static str,
     unit: &'static str,
     range: [f64; 2],
     variation: Variation,
+}
+
+impl Assumption {
+    /// Returns the plausible range for a robot with this value. If the value is outside the range for the paper's
+    /// robot, this range is scaled or, if it does not lie above 0, shifted until the value is in its middle.
+    fn range_for(&self, value: f64) -> [f64; 2] {
+        let [min, max] = self.range;
+        if (min..=max).contains(&value) {
+            return self.range;
+        }
+        let middle = f64::midpoint(min, max);
+        self.range.map(|bound| {
+            let moved_bound = match min > 0.0 {
+                true => bound * value / middle,
+                false => bound + value - middle,
+            };
+            // Rounded to hundredths for the table.
+            (100.0 * moved_bound).round() / 100.0
+        })
+    }
 }
 
 /// The way in which an assumption changes the inputs.
@@ -218,9 +238,11 @@ impl Assumptions {
         let nominal = ModelInputs::for_robot(robot);
         let gaits = nominal.find_distinct_gaits(robot);
         let compute_row = |assumption: &Assumption| {
+            let nominal_value = assumption.variation.nominal_value(nominal);
+            let range = assumption.range_for(nominal_value);
             let compute_changes = |(gait, displacement): &(&CheckedGait, Travel)| {
                 let component = principal_component(displacement);
-                assumption.range.map(|value| {
+                range.map(|value| {
                     let inputs = assumption.variation.apply(nominal, value);
                     let changed_displacement = inputs.simulate_cycle(robot, gait, 1.0);
                     100.0 * (component(&changed_displacement) / component(displacement) - 1.0)
@@ -229,8 +251,8 @@ impl Assumptions {
             Row {
                 description: assumption.description,
                 unit: assumption.unit,
-                nominal: assumption.variation.nominal_value(nominal),
-                range: assumption.range,
+                nominal: nominal_value,
+                range,
                 changes: gaits.iter().map(compute_changes).collect(),
             }
         };
@@ -283,7 +305,7 @@ impl MovementRange {
             max: nominal_extreme,
         };
         for assumption in &ASSUMPTIONS {
-            for value in assumption.range {
+            for value in assumption.range_for(assumption.variation.nominal_value(nominal)) {
                 let inputs = assumption.variation.apply(nominal, value);
                 let extreme = Extreme {
                     movement: component(&inputs.simulate_cycle(robot, gait, pace)),
@@ -387,5 +409,19 @@ mod tests {
         let text = text_before_gaits("paper") + stand;
         let robot = Robot::parse(&text).expect("the robot is valid");
         assert_starts_with(&Assumptions::compute(&robot).to_string(), "no gait moves");
+    }
+
+    #[test]
+    fn a_value_outside_the_range_for_the_papers_robot_is_in_the_middle_of_its_own_range() {
+        for (description, value, range) in [
+            ("hips ahead of the middle", 51.0, [50.0, 60.0]),
+            ("hips ahead of the middle", 82.5, [75.0, 90.0]),
+            ("front left foot too long", 1.5, [0.5, 2.5]),
+        ] {
+            let has_description = |assumption: &&Assumption| assumption.description == description;
+            let assumption = ASSUMPTIONS.iter().find(has_description);
+            let assumption = assumption.expect(description);
+            assert_eq!(assumption.range_for(value), range, "{description}");
+        }
     }
 }

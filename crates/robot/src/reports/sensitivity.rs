@@ -25,7 +25,7 @@ const PARAMETERS: [Parameter; 5] = [
     // Ratio of a pad's backward friction to its forward friction: below 1 for pads mounted in reverse, 1 for equal
     // friction.
     Parameter {
-        title: "friction",
+        title: "back/forward",
         values: &[0.8, 1.0, 1.1, 1.25, 1.5, 2.0],
         apply: |ground, ratio| ground.friction_ratio = ratio,
     },

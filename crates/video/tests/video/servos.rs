@@ -187,6 +187,24 @@ fn a_servo_that_ignores_all_small_steps_has_only_a_largest_ignored_step() {
 }
 
 #[test]
+fn a_servo_that_overshoots_its_small_steps_has_no_negative_dead_band() {
+    let servo = Servo {
+        dead_band: 0.0,
+        ..Servo::default()
+    };
+    let mut path = simulate_path(120.0, &servo, &mut Rng::with_seed(9));
+    // The small steps begin 29 s after the first command, at 15 deg from neutral.
+    let start = (servo.neutral_heading + 15.0).to_radians();
+    for point in &mut path {
+        if point.seconds > servo.first_command_s + 28.9 {
+            point.pose.heading += 0.5 * (point.pose.heading - start);
+        }
+    }
+    let width = measure(&path).dead_band.width;
+    assert_eq!(width.map(|width| width.value), Some(0.0));
+}
+
+#[test]
 fn a_horn_that_does_not_follow_all_steps_is_rejected_with_the_reason() {
     let mut rng = Rng::with_seed(6);
     let mut angle = 0.0;

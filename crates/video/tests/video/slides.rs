@@ -7,7 +7,7 @@ use lizard_studio::board::{EVENLY_LIFTED_BOARD, LiftedBoard, small_studio};
 use lizard_studio::render::{Studio, random_normal};
 use lizard_video::{Estimate, MeasuredSlide, SlideError, Video};
 
-use crate::studio::{add_frame, analyse};
+use crate::studio::{add_frame, analyse, record_robot};
 
 /// Records a board while it is lifted.
 fn record_board(board: &LiftedBoard, studio: &Studio, frame_rate: f64) -> Video {
@@ -81,6 +81,15 @@ fn a_video_without_a_measurable_slide_is_rejected_with_the_reason() {
     let video = record_board(&SLIPPERY_BOARD, &small_studio(), 5.0);
     let result = MeasuredSlide::from_video(&analyse(&video));
     assert_matches!(result, Err(SlideError::TooFewFrames { .. }));
+}
+
+#[test]
+fn a_robot_that_is_put_straight_in_the_first_second_has_not_slid() {
+    let pose_at = |seconds: f64| [if seconds < 0.25 { 90.0 } else { 55.0 }, 5.0, 0.0];
+    let mut rng = Rng::with_seed(4);
+    let video = record_robot(&small_studio(), 1.5, 10.0, pose_at, &mut rng);
+    let result = MeasuredSlide::from_video(&analyse(&video));
+    assert_matches!(result, Err(SlideError::NoSlide { distance, .. }) if distance < 1.0);
 }
 
 /// Run by `make measure-test`. The level board has a standard error of 0.3 deg, as with a spirit level.

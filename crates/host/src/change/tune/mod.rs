@@ -119,11 +119,11 @@ fn find_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failur
     })
 }
 
-/// Refuses a name that is invalid or that a gait of robot.toml already has.
+/// Refuses a name that is invalid or that a gait or routine of robot.toml already has.
 fn check_name(robot: &Robot, name: &str) -> Result<(), Failure> {
     let refuse = |reason: String| Err(Failure::Input(format!("--name {name}: {reason}")));
-    if robot.gait(name).is_some() {
-        return refuse("robot.toml already has a gait with this name".to_owned());
+    if robot.gait(name).is_some() || robot.routine(name).is_some() {
+        return refuse("robot.toml already has a gait or routine with this name".to_owned());
     }
     let gait_toml = format!("[gait.{name:?}]\nperiod = 1.0\nwaveform = \"still\"\n");
     match robot.with_gait(&gait_toml) {
@@ -237,7 +237,7 @@ mod tests {
             ("--rate fast", "it is not a number"),
             (
                 "--name walk",
-                "--name walk: robot.toml already has a gait with this name",
+                "--name walk: robot.toml already has a gait or routine with this name",
             ),
             (
                 "--name Fast",
@@ -253,5 +253,14 @@ mod tests {
             let message = run_tune(arguments).expect_err(arguments);
             assert!(message.contains(reason), "{arguments}: {message}");
         }
+    }
+
+    #[test]
+    fn the_name_of_a_routine_is_refused() {
+        let routine = "[routine.patrol]\nsteps = [\"walk 4\"]\n";
+        let robot = Robot::parse(&format!("{PAPER_TOML}\n{routine}"));
+        let robot = robot.expect("the robot is valid");
+        assert!(check_name(&robot, "patrol").is_err());
+        assert!(check_name(&robot, "tuned").is_ok());
     }
 }

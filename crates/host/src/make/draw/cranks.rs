@@ -91,15 +91,12 @@ fn draw_arc(centre: (f64, f64), radius: f64, [start_deg, end_deg]: [f64; 2]) -> 
     curve(&points.collect::<Vec<_>>(), DARK, 1.6)
 }
 
-/// Draws a dark arc with an arrowhead at its end.
+/// Draws a dark, counter-clockwise arc with an arrowhead at its end.
 fn draw_arrow(centre: (f64, f64), radius: f64, [start_deg, end_deg]: [f64; 2]) -> Group {
     const BARB_LENGTH: f64 = 8.0;
     let tip = offset_point(centre, end_deg, radius);
     // The backward direction of the arc at its end; the barbs lie on both sides of this direction.
-    let back_deg = match end_deg > start_deg {
-        true => end_deg - 90.0,
-        false => end_deg + 90.0,
-    };
+    let back_deg = end_deg - 90.0;
     let barb_end = |lean_deg: f64| offset_point(tip, back_deg + lean_deg, BARB_LENGTH);
     Group::new()
         .add(draw_arc(centre, radius, [start_deg, end_deg]))

@@ -81,6 +81,8 @@ fn a_video_of_a_horn_yields_the_keys_of_a_reversed_servo() {
     // The file states the time at 4.8 V, but the video was recorded at 4.5 V.
     let error_s = find_value("s_per_60_deg") - true_seconds * 4.5 / 4.8;
     assert!(error_s.abs() < 0.003, "{changed_text}");
+    let printed_s = read_value(&output, "s_per_60_deg").parse::<f64>();
+    assert_eq!(printed_s, Ok(find_value("s_per_60_deg")), "{output}");
     assert_eq!(find_value("volts"), 4.5);
     assert_contains(&changed_text, ", was 10.00");
     // Only the measured keys, a table header and blank lines were added.
