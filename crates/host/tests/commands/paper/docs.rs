@@ -160,12 +160,12 @@ fn docs_paper_states_the_computed_movements_of_the_papers_gaits() {
         let words = row.expect(name).split_whitespace();
         words.filter_map(|word| word.parse().ok()).collect()
     };
-    // The third mount column is for 41.4 deg, and the fourth friction column is for a ratio of 1.25. The row of a turn
-    // has two numbers in each column.
+    // The third mount column is for 41.4 deg, and the fourth column of friction ratios for 1.25. The row of a turn has
+    // two numbers in each column.
     let mounted_walk_mm = find_numbers("mount, deg", "walk")[2];
     let mounted_turn_deg = find_numbers("mount, deg", "left")[5];
     assert!(table.contains("41.4") && table.contains("1.25"));
-    let uneven_walk_mm = find_numbers("friction", "walk")[3];
+    let uneven_walk_mm = find_numbers("back/forward", "walk")[3];
     for phrase in [
         format!("25 cycles of `walk` are {:.0} mm", 25.0 * walk_mm),
         format!("`left` turns {left_deg:.1} deg per cycle"),
