@@ -59,7 +59,7 @@ testPage('a lost "stop" is repeated until the robot answers, and the page is red
   assert.ok(await isStopping(page));
   assert.equal(await readText(page, '#doing'), 'walk', 'the robot has reported no other gait');
   await page.clock.runFor(700);
-  await page.locator('#alarm', { hasText: /^No answer: the robot may still walk\. The page repeats "stop" until it answers\. 1\.\d s$/ }).waitFor();
+  await page.locator('#alarm', { hasText: /^No answer: the robot may still walk\. The page repeats "stop" until the robot answers\. 1\.\d s$/ }).waitFor();
   await restoreLink(page);
   await runUntil(page, 'the stop is answered', async () => (await page.locator('#log div', { hasText: /^ok stop$/ }).count()) > 0);
   await page.clock.runFor(100);

@@ -1,4 +1,4 @@
-"""Learns a gait in about a minute: the amplitude, the duty factor, and the start of each leg's swing.
+"""Learns a gait in about a minute: the amplitude, the duty factor, and the start of each leg's stance.
 
 The cross-entropy method tries gaits in `Lizard-v0`, keeps the best gaits, and tries similar gaits. It begins without
 any knowledge of walking: all legs start at random times. Usage: learn_gait.py [OUTPUT.toml [SEED]]

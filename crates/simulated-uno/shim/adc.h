@@ -1,6 +1,6 @@
-/* The ADC according to the ATmega328P's data sheet, chapter 24. It measures relative to AVCC, which
- * may change, the bandgap needs time to settle, the first conversion takes 25 ADC clocks and each
- * later one 13, and reading a result's low byte locks the result until the high byte is read.
+/* The ADC according to the ATmega328P's data sheet, chapter 24. AVCC, the usual reference, may
+ * change; the bandgap needs time to settle; the first conversion takes 25 ADC clocks and each later
+ * one 13; reading a result's low byte locks the result until the high byte is read.
  *
  * Not modelled: triggers other than free running, the sleep mode ADC Noise Reduction, the settling
  * of the reference after a switch, the errors caused by an ADC clock above 200 kHz.

@@ -16,8 +16,8 @@ pub trait Board {
     /// Fails if the bytes cannot be sent, or the connection is lost.
     fn write(&mut self, bytes: &[u8]) -> impl Future<Output = Result<(), BoardError>>;
 
-    /// Reads until `bytes` is full or the time limit has passed; returns the number of bytes read. Never reads further
-    /// bytes, since they may be for another reader.
+    /// Reads until `bytes` is full or the time limit has passed; returns the number of bytes read. Takes no more bytes
+    /// from the connection than fit into `bytes`, since the rest may be for another reader.
     ///
     /// # Errors
     /// Fails if the connection is lost.

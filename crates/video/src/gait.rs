@@ -42,8 +42,8 @@ impl Gait {
         pose
     }
 
-    /// Finds the phase around which the predicted movement changes least: there, interpolation between frames is most
-    /// accurate.
+    /// Finds the phase around which the robot is predicted to move least and most evenly: there, interpolation between
+    /// frames is most accurate.
     pub(crate) fn find_calm_phase(&self) -> f64 {
         let count = 50;
         let roughness_at = |i: usize| {

@@ -12,7 +12,7 @@ use simulated_uno::Fidelity;
 use crate::reference_run::ReferenceRun;
 use crate::{FRAMES_PER_SECOND, for_each_in_parallel};
 
-/// Lines that move no servo, each sent at the full rate of the serial line.
+/// Bytes that move no servo; each flood repeats one of these texts at the full rate of the serial line.
 const FLOODS: [&str; 5] = ["status\n", "help\n", "cal\n", "?\r", "x"];
 
 /// Runs a gait for two seconds during a flood of serial input, and asserts that each frame has the widths that the core

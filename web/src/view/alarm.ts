@@ -10,7 +10,7 @@ export function setUpAlarm({ state }: Session): () => void {
   let lineSentAt = 0;
   const update = () => {
     if (box.hidden) return;
-    const message = state.isStopping.value ? 'No answer: the robot may still walk. The page repeats "stop" until it answers.' : 'No answer from the robot.';
+    const message = state.isStopping.value ? 'No answer: the robot may still walk. The page repeats "stop" until the robot answers.' : 'No answer from the robot.';
     setText(element('alarm-message'), message);
     element('alarm-age').textContent = `${((performance.now() - lineSentAt) / 1000).toFixed(1)} s`;
   };

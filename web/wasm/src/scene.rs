@@ -32,7 +32,7 @@ pub struct LegScene {
     pub joints: [Point; 2],
     /// Position of the foot.
     pub foot: Point,
-    /// Anchors of the strut: on the servo's crank, and on the leg's crank.
+    /// Anchors of the strut: on the servo's link, and on the leg's crank.
     pub strut: [Point; 2],
     /// True if the strut has a spring; false if it is rigid.
     pub has_spring: bool,

@@ -317,7 +317,7 @@ fn the_link_to_a_simulated_board_replaces_no_other_file_and_ends_with_the_board(
     // A killed run leaves a broken link, which a new run replaces.
     std::os::unix::fs::symlink("/dev/pts/999999", &board_link).expect("the link is created");
     let line = format!("sim --pty {}", board_link.display());
-    // The board does not end because nothing can be printed.
+    // A standard output that cannot be written to must not end the board.
     let child = lizard_command(&folder, &line).stdout(full_device()).spawn();
     let mut child = child.expect("the program starts");
     TIME_LIMIT.wait_for("a port at the end of the link", || board_link.exists());

@@ -18,11 +18,11 @@ const UPPER_ROW_Y: f64 = 20.0;
 /// Height of the lower row of pins above the board's lower edge, in tenths of an inch.
 const LOWER_ROW_Y: f64 = 1.0;
 
-/// Distance of the power header's first pin from the left edge, tenths of an inch.
+/// Distance of IOREF from the left edge, tenths of an inch; the other power pins are counted from IOREF.
 const POWER_HEADER_X: f64 = 12.0;
 /// The names printed beside the pins of the power header.
 const POWER_PINS: [&str; 7] = ["IOREF", "RESET", "3.3V", "5V", "GND", "GND", "VIN"];
-/// Distance from the left edge, tenths of an inch, of the first pin to the left of D13.
+/// Distance of SCL from the left edge, tenths of an inch; SDA, AREF and GND are counted from SCL.
 const REFERENCE_HEADER_X: f64 = 7.4;
 /// The names printed beside the pins to the left of D13, including the analogue reference.
 const REFERENCE_PINS: [&str; 4] = ["SCL", "SDA", "AREF", "GND"];
