@@ -80,7 +80,7 @@ fn setting_a_bandgap_outside_the_data_sheet_range_panics() {
 }
 
 #[test]
-#[should_panic(expected = "D9 is not an analogue pin")]
+#[should_panic(expected = "D9 is not an analog pin")]
 fn setting_the_voltage_of_a_digital_pin_panics() {
     new_uno(program(BANDGAP_PROGRAM)).set_analog_mv(Pin::d(9), 1);
 }
