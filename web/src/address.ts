@@ -22,7 +22,7 @@ export class Address {
     /** The name of the robot file that the page loads if the address names no robot. */
     private readonly defaultFile: string,
   ) {
-    session.followRobot(() => this.scheduleUpdate());
+    session.robot.follow(() => this.scheduleUpdate());
   }
 
   /** Starts updating the address after each change of the robot; called once the initial address is read. */
@@ -38,11 +38,11 @@ export class Address {
   }
 
   private async update(): Promise<void> {
-    const { toml, original, file } = this.session;
+    const { toml, original, file } = this.session.robot;
     // A robot that cannot be packed, for example because it is too long, is not in the address.
     const robot = toml === original ? null : await pack(toml).catch(() => null);
     // If the robot has changed meanwhile, another update is scheduled.
-    if (this.session.toml !== toml) return;
+    if (this.session.robot.toml !== toml) return;
     const parameters = new URLSearchParams();
     const room = parseFragment(location.hash).get('room');
     if (room) parameters.set('room', room);

@@ -1,6 +1,6 @@
 // A second robot on the same floor, which can walk another gait. It has its own instance of the firmware's core.
 import { isRefused, type Frame, Robot } from './robot';
-import type { Session } from './session';
+import type { ShownRobot } from './shown-robot';
 
 /** Number of frames between power-on and standing. */
 const WAKE_FRAME_COUNT = 200;
@@ -17,7 +17,7 @@ export class Companion {
    * Creates a companion that stands at the start, with the floor, the servo model and the supply voltage of the
    * session. Throws an error with a message for the user.
    */
-  constructor(toml: string, { floor, servos, volts }: Session) {
+  constructor(toml: string, { floor, servos, volts }: ShownRobot) {
     this.volts = volts;
     const result = this.robot.load(toml);
     if (isRefused(result)) throw new Error(result.reason);

@@ -11,7 +11,7 @@ import type { Link } from './link/link';
 import { hasSerial, NO_SERIAL_MESSAGE, PortLink } from './link/port-link';
 import { installServiceWorker } from './offline';
 import { Predictor } from './predictor';
-import { canLag, load } from './robot';
+import { canLag, loadModule } from './robot';
 import { workerFailure } from './robot-requests';
 import { Session } from './session';
 import type { BoardBanner } from './session-state';
@@ -68,7 +68,7 @@ workerFailure.subscribe((message) => problems.setMessage('page', message));
 
 async function start(): Promise<void> {
   const [module, choice] = await Promise.all([files.robotModule(), files.robots().then((robots) => new RobotChoice(robots))]);
-  const session = new Session(load(module), {
+  const session = new Session(loadModule(module), {
     onFrame(frame, widths, seconds) {
       floor.addToTrack(frame.place);
       recordView.addFrame(frame, widths, seconds);
@@ -98,7 +98,7 @@ async function start(): Promise<void> {
       if (cause === 'fault' && message !== null) vibrate();
       // The page offers to write this firmware to a board without it.
       const remedy = { label: 'Write firmware and robot to it', action: () => flash.write('all') };
-      problems.setMessage(cause, message, cause === 'board' && session.link.kind !== 'radio' ? remedy : null);
+      problems.setMessage(cause, message, cause === 'board' && session.board.link.kind !== 'radio' ? remedy : null);
     },
   });
 
@@ -109,12 +109,12 @@ async function start(): Promise<void> {
   const scope = new ScopeView(session);
   const margins = new MarginsView(session);
   const maps = [new SingularityMapView(session, 0), new SingularityMapView(session, 1)];
-  const log = new LogView((line) => void session.ask(line));
+  const log = new LogView((line) => void session.board.ask(line));
   const floor = new FloorView(() => {
-    session.returnToStart();
+    session.robot.returnToStart();
     floor.clearTracks();
   });
-  session.followRobot(() => floor.clearTracks());
+  session.robot.follow(() => floor.clearTracks());
   const isSetupOpen = () => setup.isOpen;
   const drive = new DriveView(session, predictor);
   setUpPace(session);
@@ -139,22 +139,26 @@ async function start(): Promise<void> {
   });
   new GestureEditorView(session, writer);
   const flash = new FlashView(session, writer);
-  const setup: SetupDialog = new SetupDialog(session, writer, () => connectBoard());
+  const setup: SetupDialog = new SetupDialog(session, writer, () => toggleBoard());
   const address = new Address(session, choice.chosenFile);
   // The view of the room Measure is loaded when the room is opened.
   let measure: MeasureView | null = null;
   const openMeasure = async () => {
-    if (element('room-measure').hidden || measure || !session.description) return;
-    const { MeasureView } = await import('./view/measure');
-    measure ??= new MeasureView(session, predictor, isSetupOpen);
+    if (element('room-measure').hidden || measure || !session.robot.description) return;
+    try {
+      const { MeasureView } = await import('./view/measure');
+      measure ??= new MeasureView(session, predictor, isSetupOpen);
+    } catch (error) {
+      problems.setMessage('page', `The room Measure cannot be opened (${getMessage(error)}). Reload the page to try again.`);
+    }
   };
   document.addEventListener(ROOM_OPENED, () => void openMeasure());
-  session.followRobot(() => void openMeasure());
+  session.robot.follow(() => void openMeasure());
   warnOfBoardRobot(session, problems, ({ file, toml }) => {
     choice.select(file);
     void replaceRobot(async () => {
       await loadChosenFile();
-      if (session.toml !== toml) await session.change(toml);
+      if (session.robot.toml !== toml) await session.robot.change(toml);
     });
   });
 
@@ -162,43 +166,45 @@ async function start(): Promise<void> {
   let isIntroOver = matchMedia('(prefers-reduced-motion: reduce)').matches;
   const startIntroWalk = () => {
     const gait = chooseGait({ forward: 1, left: 0 }, predictor.gaits);
-    if (isIntroOver || !gait || isSetupOpen() || session.isBoardReal || session.gait !== session.description.gaits[0]?.command) return;
+    if (isIntroOver || !gait || isSetupOpen() || session.board.isReal || session.board.gait !== session.robot.description.gaits[0]?.command) return;
     isIntroOver = true;
-    void session.drive(`${WORDS.speed} 50`).then(() => session.drive(gait));
+    void session.board.drive(`${WORDS.speed} 50`).then(() => session.board.drive(gait));
   };
   // Pressing a pointer or a key ends the intro.
   for (const eventName of ['pointerdown', 'keydown']) document.addEventListener(eventName, () => (isIntroOver = true), { once: true });
   // On a slow machine, the predictions may arrive before the robot's banner.
-  follow([session.state.banner, predictor.predictions], () => session.banner && startIntroWalk());
+  follow([session.state.banner, predictor.predictions], () => session.board.banner && startIntroWalk());
 
-  session.followRobot(({ words }) => {
+  session.robot.follow(({ words }) => {
     const missingWords = findUnknownWords([...drive.commands], words);
     if (missingWords.length > 0) problems.setMessage('page', `The page sends words that the core does not have: ${missingWords.join(', ')}.`);
   });
   effect(() => {
-    const { link, banner, description, isBoardReal } = session;
+    const { link, banner, isReal } = session.board;
     if (!link) return;
+    const { description } = session.robot;
     const isBusy = writer.isBusy.value;
     setText(element('where'), describeBoard(link.name, banner, description.hash));
     // Reserves the row's height for the text that most likely follows.
     const { version, name, hash } = description;
     element('where').parentElement!.dataset.longestText = describeBoard(link.name, { version, robot: { name, hash } }, hash);
-    element('heard').hidden = !isBoardReal;
+    element('heard').hidden = !isReal;
     element<HTMLButtonElement>('reset').disabled = isBusy || link.kind === 'radio';
-    connectButton.textContent = isBoardReal ? 'Back to the simulation' : 'Connect a board…';
+    connectButton.textContent = isReal ? 'Back to the simulation' : 'Connect a board…';
     // While the boot loader uses the line, no other action may use it.
-    connectButton.disabled = isBusy || (!isBoardReal && !hasSerial());
+    connectButton.disabled = isBusy || (!isReal && !hasSerial());
     radioButton.disabled = isBusy;
-    radioButton.hidden = isBoardReal || findBluetoothProblem() !== null;
+    radioButton.hidden = isReal || findBluetoothProblem() !== null;
     choice.list.disabled = isBusy;
   });
   session.state.link.subscribe(() => (latestCycle = 0));
-  session.state.gait.subscribe(() => session.description && updateNumbers());
+  session.state.gait.subscribe(() => session.robot.description && updateNumbers());
   function updateNumbers(): void {
-    const { last, gait } = session;
+    const { last } = session.robot;
+    const { gait } = session.board;
     updateAlarm();
     setText(element('doing'), gait || '–');
-    setText(element('age'), `${session.secondsSinceLine.toFixed(1)} s ago`);
+    setText(element('age'), `${session.board.secondsSinceLine.toFixed(1)} s ago`);
     if (last) {
       const { x, y, heading } = last.place;
       // Avoids -0.
@@ -207,11 +213,11 @@ async function start(): Promise<void> {
       setText(element('sideways'), `${round(x, 0)} mm`);
       setText(element('heading'), `${round(heading, 1)}°`);
     }
-    const [measured, prediction] = [session.measured(), predictor.predictions.value.get(gait) ?? null];
+    const [measured, prediction] = [session.robot.measureCycle(), predictor.predictions.value.get(gait) ?? null];
     setText(element('cycle'), formatDisplacement(measured) || '–');
     setText(element('predicted'), formatDisplacement(prediction) || '–');
     // Rigid legs without play do not lag.
-    const mayLag = canLag(session.floor);
+    const mayLag = canLag(session.robot.floor);
     for (const box of document.querySelectorAll<HTMLElement>('.sprung')) box.hidden = !mayLag;
     setText(element('lag'), measured ? `${measured.lag.toFixed(1)}°` : '–');
     setText(element('share'), prediction?.fraction == null ? '–' : `${(100 * prediction.fraction).toFixed(0)} %`);
@@ -220,42 +226,42 @@ async function start(): Promise<void> {
 
   const loadChosenFile = async () => {
     try {
-      await session.loadFile(choice.chosenFile);
+      await session.robot.loadFile(choice.chosenFile);
       problems.setMessage('robot', null);
     } catch (error) {
-      choice.select(session.file);
-      if (!session.link) element('where').textContent = 'No robot is loaded.';
+      choice.select(session.robot.file);
+      if (!session.board.link) element('where').textContent = 'No robot is loaded.';
       problems.setMessage('robot', getMessage(error));
     }
   };
   const ownRobots = new OwnRobots(session, problems, (file) => (choice.select(file), loadChosenFile()), (names) => choice.showOwn(names));
   /** Loads another robot with `loadRobot`, and puts the user's changed robot aside. */
   const replaceRobot = async (loadRobot: () => Promise<unknown>) => {
-    const { changes } = session;
+    const { changes } = session.robot;
     await loadRobot();
     ownRobots.putAside(changes);
   };
   choice.list.addEventListener('change', () => void (choice.chosenOwnIndex === null ? replaceRobot(loadChosenFile) : ownRobots.restore(choice.chosenOwnIndex)));
 
-  element('reset').addEventListener('click', () => void session.reset());
+  element('reset').addEventListener('click', () => void session.board.reset());
 
   if (!hasSerial()) showMessage(element('no-serial'), IPHONE_ADVICE ?? NO_SERIAL_MESSAGE);
-  async function connectBoard(open: () => Promise<Link | null> = () => PortLink.open()): Promise<void> {
+  async function toggleBoard(open: () => Promise<Link | null> = () => PortLink.open()): Promise<void> {
     try {
-      if (session.isBoardReal) await session.disconnect();
+      if (session.board.isReal) await session.disconnect();
       else if (await session.connect(await open())) setup.openNeededStep();
     } catch (error) {
       problems.setMessage('port', `No board is connected: ${getMessage(error)}`);
     }
   }
-  connectButton.addEventListener('click', () => void connectBoard());
-  radioButton.addEventListener('click', () => void connectBoard(() => BluetoothLink.open()));
-  document.addEventListener('visibilitychange', () => document.hidden && session.stopIfWalking());
+  connectButton.addEventListener('click', () => void toggleBoard());
+  radioButton.addEventListener('click', () => void toggleBoard(() => BluetoothLink.open()));
+  document.addEventListener('visibilitychange', () => document.hidden && session.board.stopIfWalking());
   // Closing the page would leave a walking board: the page stops the board, and the browser asks the user to confirm.
   // The browser also asks while an image is being written to a board.
   addEventListener('beforeunload', (event) => {
-    if (session.isBoardWalking) void session.stop();
-    else if (!(writer.isBusy.value && session.isBoardReal)) return;
+    if (session.board.isWalking) void session.board.stop();
+    else if (!(writer.isBusy.value && session.board.isReal)) return;
     event.preventDefault();
   });
 
@@ -268,7 +274,7 @@ async function start(): Promise<void> {
   if (addressFile !== null && !isKnownFile) reportMissing(addressFile);
   // The robot in the address takes precedence over a stored robot.
   const isRobotInAddress = addressFile !== null || parseFragment(location.hash).has('robot');
-  if (saved && session.file === saved.file && !(await session.restoreSaved(saved)) && !isRobotInAddress) {
+  if (saved && session.robot.file === saved.file && !(await session.robot.restoreSaved(saved)) && !isRobotInAddress) {
     const remedy = { label: 'Download the changed robot', action: () => void downloadRobot(saved.toml, saved.floor) };
     const message = `${saved.file}.toml has changed since the last visit; your changes to the previous file are not applied.`;
     problems.setMessage('robot', message, remedy);
@@ -301,14 +307,14 @@ async function start(): Promise<void> {
     },
     () => {
       steer.readGamepads();
-      if (!session.description) return;
-      if (!parts.is3d || floor.drawsAlways) floor.draw(session.description.plate, recordView.chooseFrame(session.last), recordView.companionFrame);
+      if (!session.robot.description) return;
+      if (!parts.is3d || floor.drawsAlways) floor.draw(session.robot.description.plate, recordView.chooseFrame(session.robot.last), recordView.companionFrame);
       recordView.afterDrawing();
-      parts.render(session.last);
+      parts.render(session.robot.last);
       frameCount += 1;
       if (frameCount % FRAMES_PER_DRAWING === 0) {
         scope.draw(latestCycle);
-        margins.draw(session.last?.scene ?? null);
+        margins.draw(session.robot.last?.scene ?? null);
         for (const map of maps) map.draw();
       }
       if (msSinceNumbers >= 1000 / NUMBER_UPDATES_PER_SECOND) {
@@ -316,8 +322,8 @@ async function start(): Promise<void> {
         updateNumbers();
         recordView.updateNumbers();
         measure?.updateNumbers();
-        scope.updateNumbers(session.last?.scene ?? null);
-        margins.updateNumbers(session.last?.scene ?? null);
+        scope.updateNumbers(session.robot.last?.scene ?? null);
+        margins.updateNumbers(session.robot.last?.scene ?? null);
       }
     },
     (error) => {

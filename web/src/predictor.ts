@@ -23,14 +23,14 @@ export class Predictor {
   private callCount = 0;
 
   constructor(private readonly session: Session) {
-    session.followRobot(() => (this.predictions.value = new Map()));
+    session.robot.follow(() => (this.predictions.value = new Map()));
     const { description, floor, servos } = session.state;
     follow([description, floor, servos], () => description.value && void this.predict().catch(reportWorkerFailure));
   }
 
   /** The gaits with a prediction, in the robot's order. */
   get gaits(): PredictedGait[] {
-    return this.session.description.gaits.flatMap(({ command }) => {
+    return this.session.robot.description.gaits.flatMap(({ command }) => {
       const displacement = this.predictions.value.get(command);
       return displacement ? [{ command, displacement }] : [];
     });
@@ -38,7 +38,8 @@ export class Predictor {
 
   /** Predicts every gait, starting with the robot's current gait; a later call cancels this call. */
   private async predict(): Promise<void> {
-    const { toml, floor, servos, description, filePredictions, gait: currentGait } = this.session;
+    const { toml, floor, servos, description, filePredictions } = this.session.robot;
+    const { gait: currentGait } = this.session.board;
     const { gaits } = description;
     const callNumber = ++this.callCount;
     filePredictions?.forEach((prediction, gait) => this.put(gaits[gait].command, prediction));

@@ -1,14 +1,14 @@
 // The worker that `startRobotWorker` starts. It has its own instance of the WebAssembly robot.
 import { expose } from 'comlink';
 
-import { type EditedGait, type Edits, type Four, isRefused, load, type OnFloor, Robot, type Scene } from './robot';
+import { type EditedGait, type Edits, type Four, isRefused, loadModule, type RobotOnFloor, Robot, type Scene } from './robot';
 
 let robot: Robot;
 /** The robot.toml of the loaded robot; empty before the first robot. */
 let loadedToml = '';
 
 /** Loads a robot, its floor and its servos; returns false if the robot is refused. */
-function loadRobot({ toml, floor, servos }: OnFloor): boolean {
+function loadRobot({ toml, floor, servos }: RobotOnFloor): boolean {
   if (toml !== loadedToml) {
     if (isRefused(robot.load(toml))) return false;
     loadedToml = toml;
@@ -29,17 +29,17 @@ function loadNeutralScene(toml: string): Scene | null {
 const api = {
   /** Loads the WebAssembly module; must be called first. */
   load(module: WebAssembly.Module): void {
-    robot = load(module);
+    robot = loadModule(module);
   },
 
   /** Predicts the gait with the index `gait`; returns null if the robot is refused. */
-  predict: (request: OnFloor & { gait: number }) => (loadRobot(request) ? robot.predict(request.gait) : null),
+  predict: (request: RobotOnFloor & { gait: number }) => (loadRobot(request) ? robot.predict(request.gait) : null),
 
   /** Tries an edited gait; returns null if the robot is refused, or if a drawn line has no length. */
-  tryGait: (request: OnFloor & { gait: EditedGait }) => (loadRobot(request) ? robot.tryGait(request.gait) : null),
+  tryGait: (request: RobotOnFloor & { gait: EditedGait }) => (loadRobot(request) ? robot.tryGait(request.gait) : null),
 
   /** Simulates the path of a routine's round; returns null if the robot is refused or has no such routine. */
-  simulateRound: (request: OnFloor & { routine: string }) => (loadRobot(request) ? robot.simulateRound(request.routine) : null),
+  simulateRound: (request: RobotOnFloor & { routine: string }) => (loadRobot(request) ? robot.simulateRound(request.routine) : null),
 
   /**
    * Tries other lengths; if they are accepted, returns the scene of the neutral pose. `isLast` is true at the end of a

@@ -15,22 +15,23 @@ export type GaitParameter = RefusedTrial['alternatives'][number]['parameter'];
 /** The predictions of a robot's gaits, in the robot's order; null for a gait that could not be predicted. */
 export type Predictions = (GaitPrediction | null)[];
 
-/** A robot.toml with the floor and the servo model, by the model's name in the description. */
-export interface OnFloor {
+/** A robot.toml on a floor, with a servo model. */
+export interface RobotOnFloor {
   toml: string;
   floor: Floor;
+  /** The servo model's name in the description. */
   servos: string;
 }
 
-/** Initialises the WebAssembly module and creates an instance without a robot. */
-export function load(module: WebAssembly.Module): Robot {
+/** Initialises the WebAssembly module, and creates a `Robot` that has no robot.toml yet. */
+export function loadModule(module: WebAssembly.Module): Robot {
   initSync({ module });
   return new Robot();
 }
 
 export const isRefused = (result: object): result is Refusal => 'reason' in result;
 
-/** Makes a refusal by the page itself. */
+/** Makes a refusal that comes from the page, not from the WebAssembly module. */
 export const refuse = (reason: string): Refusal => ({ reason, consequence: null, line: null, key: '' });
 
 /** Returns true if a leg can lag behind its servo. */

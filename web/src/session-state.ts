@@ -18,6 +18,8 @@ export class SessionState {
   readonly floor = signal<Floor | null>(null);
   /** The servo model's name in the description. */
   readonly servos = signal('own');
+  /** Supply voltage of the simulated board, V. */
+  readonly volts = signal(5);
   readonly link = signal<Link | null>(null);
   /** The board's firmware and robot; undefined until known. */
   readonly banner = signal<BoardBanner | undefined>(undefined);

@@ -66,6 +66,16 @@ testPage('a robot whose link is cut stops, and the page reconnects by itself', (
   await radio.runUntil('the robot walks again', async () => (await readGait(page)) === 'walk');
 });
 
+testPage('the page does not connect again to a module that it has left out of range', () => openWalking(HM10), async (page) => {
+  await radio.takeOutOfRange();
+  await radio.run(1000);
+  await page.locator('#connect').click();
+  await radio.runUntil('the board is left', async () => (await readText(page, '#where')).includes('simulated UNO'));
+  await radio.bringIntoRange();
+  await radio.run(1500);
+  assert.equal(await page.evaluate(() => window.notifyingCharacteristic.service.device.gatt.connected), false);
+});
+
 testPage('after a failed attempt to reconnect, each byte is received once', () => openWalking(HM10), async (page) => {
   await radio.takeOutOfRange();
   await radio.run(1000);

@@ -66,7 +66,7 @@ testPage('choosing another robot keeps the board connected', openWalking, async 
   await chooseRobot(page, 'robot');
   assert.match(await readText(page, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
   await page.clock.runFor(500);
-  assert.ok(await page.evaluate(() => window.lizard.isBoardReal && window.lizard.last.place.y > 1), 'the robot is tracked');
+  assert.ok(await page.evaluate(() => window.lizard.board.isReal && window.lizard.robot.last.place.y > 1), 'the robot is tracked');
 });
 
 testPage('the page reports a board with another robot, and one press shows that robot', () => openWithBoard('large'), async (page) => {
@@ -74,28 +74,28 @@ testPage('the page reports a board with another robot, and one press shows that 
   await offer.waitFor();
   assert.match(await readText(page, '#problems'), /^The board on USB has another robot, large, but the page draws and predicts robot\.toml\./);
   await offer.click();
-  await page.waitForFunction(() => window.lizard.file === 'large' && window.lizard.hasThisRobot);
+  await page.waitForFunction(() => window.lizard.robot.file === 'large' && window.lizard.program.hasThisRobot);
   assert.match(await readText(page, '#where'), /^on a board on USB, robot large [0-9a-f]{8}$/);
   await page.locator('#problems', { hasText: 'another robot' }).waitFor({ state: 'detached' });
-  assert.equal(await page.evaluate(() => window.lizard.isBoardReal), true);
+  assert.equal(await page.evaluate(() => window.lizard.board.isReal), true);
   // From here on, no file of the page has this robot.
-  await page.evaluate(() => window.lizard.change(window.lizard.toml.replace('name = "large"', 'name = "longer"').replace('period = 1.25', 'period = 1.3')).then(() => null));
+  await page.evaluate(() => window.lizard.robot.change(window.lizard.robot.toml.replace('name = "large"', 'name = "longer"').replace('period = 1.25', 'period = 1.3')).then(() => null));
   await page.locator('#problems', { hasText: 'but the page draws and predicts large.toml with your changes' }).waitFor();
   await page.evaluate(() => {
     const { lizard } = window;
-    lizard.banner.robot.hash = '00000000';
-    return lizard.change(lizard.toml.replace('period = 1.3', 'period = 1.35')).then(() => null);
+    lizard.board.banner.robot.hash = '00000000';
+    return lizard.robot.change(lizard.robot.toml.replace('period = 1.3', 'period = 1.35')).then(() => null);
   });
   await page.locator('#problems', { hasText: 'It is not among the page’s robots: open its robot.toml in Build, or write this robot.' }).waitFor();
 });
 
 testPage('the alarm for a board that is out of range ends when the board is gone', openWithBoard, async (page) => {
   await page.evaluate(() => {
-    const { link } = window.lizard;
+    const { link } = window.lizard.board;
     link.onRange(false);
     link.onGone('The test has taken it away.');
   });
-  await page.waitForFunction(() => !window.lizard.isBoardReal);
+  await page.waitForFunction(() => !window.lizard.board.isReal);
   assert.equal(await page.locator('#alarm').isHidden(), true);
 });
 
@@ -105,6 +105,21 @@ testPage('disconnecting a board stops it', openWalking, async (page) => {
   await page.locator('#log div', { hasText: /^ok stop$/ }).waitFor();
   assert.match(await page.evaluate(() => window.receivedText), /\nstop\n(deadman 0\n)?$/, 'the last lines from the page');
   assert.match(await readText(page, '#where'), /simulated UNO/);
+});
+
+testPage('a gait that is pressed while the page leaves a board is not sent', openWalking, async (page) => {
+  await page.evaluate(() => {
+    const { attachedBoard } = window;
+    const { send } = attachedBoard;
+    window.sentText = '';
+    attachedBoard.send = (bytes) => {
+      window.sentText += String.fromCharCode(...bytes);
+      send.call(attachedBoard, bytes);
+    };
+    for (const selector of ['#connect', '#gaits button[data-command="left"]']) document.querySelector(selector).click();
+  });
+  await waitForText(page, '#where', /simulated UNO/);
+  assert.match(await page.evaluate(() => window.sentText), /stop\n(deadman 0\n)?$/);
 });
 
 testPage('a press of the button while the port is closing has no effect', openWalking, async (page) => {
@@ -128,7 +143,7 @@ testPage('the simulated UNO has the robot that was changed while the port was cl
     const { close } = port;
     port.close = async () => {
       const { lizard } = window;
-      await lizard.change(lizard.toml.replace('name = "paper"', 'name = "mine"'));
+      await lizard.robot.change(lizard.robot.toml.replace('name = "paper"', 'name = "mine"'));
       await close();
     };
   });
@@ -145,6 +160,16 @@ testPage('a trim that is set while the settings are read stays on the screen', o
   await trim.fill('0.5');
   await page.clock.runFor(3000);
   assert.equal(await trim.inputValue(), '0.5');
+});
+
+testPage('the panel of the calibration shows the settings of a board after its restart', openWithBoard, async (page) => {
+  await unfold(page, '#calibrate');
+  const trim = page.locator('#calibration fieldset').first().getByLabel('trim');
+  await runUntil(page, 'the trim is read', () => trim.isVisible());
+  await trim.fill('5');
+  await waitForLine(page, /^ok trim 1 5/);
+  await page.evaluate(() => window.attachedBoard.reset('external'));
+  await runUntil(page, 'the trim is read again', async () => (await trim.inputValue()) === '0');
 });
 
 testPage('the page reports a board that does not confirm the stop', openWalking, async (page) => {
@@ -226,7 +251,7 @@ testPage('a HEX file of another program is written only after the user confirms'
 });
 
 testPage('the page removes the refusal by a board when the board is gone', openWithBoard, async (page) => {
-  await page.evaluate(() => void window.lizard.drive('pose 0 0 0 0'));
+  await page.evaluate(() => void window.lizard.board.drive('pose 0 0 0 0'));
   await waitForText(page, '#drive-message', /^pose 0 0 0 0: /);
   await page.evaluate(() => window.unplug());
   await waitForText(page, '#where', /simulated UNO/);

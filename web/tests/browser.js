@@ -236,15 +236,15 @@ export const readBox = (page, selector) => page.evaluate((selector) => document.
 
 export async function chooseRobot(page, name) {
   await page.locator('#robot').selectOption(name);
-  await page.waitForFunction((name) => window.lizard?.file === name, name);
+  await page.waitForFunction((name) => window.lizard?.robot.file === name, name);
 }
 
 /** Returns a length of the robot, mm. */
-export const readLength = (page, key) => page.evaluate((key) => window.lizard.description.lengths.find((length) => length.key === key).value, key);
+export const readLength = (page, key) => page.evaluate((key) => window.lizard.robot.description.lengths.find((length) => length.key === key).value, key);
 
 /** Waits until a length of the robot has a value. */
 export const waitForLength = (page, key, mm) =>
-  page.waitForFunction(([key, mm]) => window.lizard.description.lengths.find((length) => length.key === key).value === mm, [key, mm]);
+  page.waitForFunction(([key, mm]) => window.lizard.robot.description.lengths.find((length) => length.key === key).value === mm, [key, mm]);
 
 /** Types a length into its box and presses Enter. */
 export async function typeLength(page, key, mm) {
@@ -278,20 +278,20 @@ export const hidePage = (page) =>
 export const readText = (page, selector) => page.locator(selector).innerText();
 
 /** Returns the text of the page's robot. */
-export const readToml = (page) => page.evaluate(() => window.lizard.toml);
+export const readToml = (page) => page.evaluate(() => window.lizard.robot.toml);
 /** Returns the robot's running gait, or its last command. */
-export const readGait = (page) => page.evaluate(() => window.lizard.gait);
-export const waitForGait = (page, gait) => page.waitForFunction((gait) => window.lizard.gait === gait, gait);
+export const readGait = (page) => page.evaluate(() => window.lizard.board.gait);
+export const waitForGait = (page, gait) => page.waitForFunction((gait) => window.lizard.board.gait === gait, gait);
 /** Returns the place of the robot on the floor, mm. */
-export const readPlace = (page) => page.evaluate(() => window.lizard.last.place);
+export const readPlace = (page) => page.evaluate(() => window.lizard.robot.last.place);
 export const findGaitButton = (page, command) => page.locator(`#gaits button[data-command="${command}"]`);
 
 /** Returns the page's prediction for a gait, and the body's displacement in the last cycle. */
 export const readDisplacements = (page, name) =>
   page.evaluate((name) => {
-    const { robot, description } = window.lizard;
-    const index = description.gaits.findIndex(({ command }) => command === name);
-    return { predicted: robot.predict(index), measured: window.lizard.measured() };
+    const { robot } = window.lizard;
+    const index = robot.description.gaits.findIndex(({ command }) => command === name);
+    return { predicted: robot.wasm.predict(index), measured: robot.measureCycle() };
   }, name);
 
 /** Waits until the gait editor shows the prediction of its gait. */
@@ -387,7 +387,7 @@ export async function openUnfolded(panel, options) {
 
 /** Waits until the robot has a new gait, whose table in robot.toml is given, and walks with it. */
 export async function waitForNewGait(page, name, table) {
-  await page.waitForFunction((table) => window.lizard.toml.includes(table), table);
+  await page.waitForFunction((table) => window.lizard.robot.toml.includes(table), table);
   await advance(page, 3000);
   await waitForGait(page, name);
 }

@@ -59,7 +59,7 @@ testPage('after any cut, the page reports a calibration as saved only if the boa
   const press = (name) => setup.getByRole('button', { name, exact: true }).click();
   const openStep = (name) => setup.getByRole('list', { name: 'Steps' }).getByRole('button', { name: new RegExp(`${name}$`) }).click();
   const readMessage = () => readText(page, '#setup-message');
-  const readTrim = () => page.evaluate(async () => (await window.lizard.ask('cal')).notes.find((line) => line.startsWith('# A3 trim')).split(' ')[3]);
+  const readTrim = () => page.evaluate(async () => (await window.lizard.board.ask('cal')).notes.find((line) => line.startsWith('# A3 trim')).split(' ')[3]);
   const counts = { saved: 0, kept: 0 };
   await setup.scrollIntoViewIfNeeded();
   for (const ms of makeRandomMomentsMs(8, 300)) {

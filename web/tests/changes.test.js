@@ -71,10 +71,10 @@ testPage('a length is accepted after a button drops the gait that forbids it', o
   assert.deepEqual(await typeRefusedLength(page, 'links.l2', 60), ['60 mm is too long: in "look" the left front leg would lock.', 'Drop “look”']);
   await page.locator('#lengths-alternatives button', { hasText: 'Drop' }).click();
   await waitForLength(page, 'links.l2', 60);
-  const gaits = await page.evaluate(() => window.lizard.description.gaits.map(({ name }) => name));
+  const gaits = await page.evaluate(() => window.lizard.robot.description.gaits.map(({ name }) => name));
   assert.ok(!gaits.includes('look') && gaits.includes('walk'), gaits.join());
   await page.locator('#robot-undo').click();
-  await page.waitForFunction(() => window.lizard.description.gaits.some(({ name }) => name === 'look'));
+  await page.waitForFunction(() => window.lizard.robot.description.gaits.some(({ name }) => name === 'look'));
 });
 
 testPage('the download of an unchanged robot equals its file', () => openUnfolded('#lengths-panel'), async (page) => {
@@ -86,7 +86,7 @@ testPage('a reload keeps the user\'s changes', openWithChanges, async (page) => 
   await page.locator('#servos').selectOption('ideal');
   await reload(page);
   const { floor, lengths, servos } = await page.evaluate(() => {
-    const { floor, description, servos } = window.lizard;
+    const { floor, description, servos } = window.lizard.robot;
     return { floor, lengths: description.lengths, servos };
   });
   const { rate, ...settings } = floor;
@@ -183,9 +183,9 @@ testPage('with rigid legs and ideal servos, sliders without an effect are disabl
 });
 
 testPage('a slider changes no value but its own', openStanding, async (page) => {
-  await page.evaluate(() => window.lizard.change(window.lizard.toml, { ...window.lizard.floor, friction: 0.53 }));
+  await page.evaluate(() => window.lizard.robot.change(window.lizard.robot.toml, { ...window.lizard.robot.floor, friction: 0.53 }));
   await setSlider(page, 'Mass', '412');
-  const { mass, friction } = await page.evaluate(() => window.lizard.floor);
+  const { mass, friction } = await page.evaluate(() => window.lizard.robot.floor);
   assert.deepEqual({ mass, friction }, { mass: 412, friction: 0.53 });
 });
 
@@ -197,8 +197,8 @@ testPage('the page has stored predictions for unchanged robots, and computes new
   for (const name of robots) {
     await chooseRobot(page, name);
     const predicted = await page.evaluate(() => {
-      const { robot, description } = window.lizard;
-      return description.gaits.map((_, gait) => robot.predict(gait));
+      const { wasm, description } = window.lizard.robot;
+      return description.gaits.map((_, gait) => wasm.predict(gait));
     });
     const shownNotes = await readNotes();
     for (const [n, { forward, turn }] of predicted.entries()) {

@@ -18,9 +18,9 @@
 export function installFakeSerial() {
   let board;
   const makeImage = async (robotName) => {
-    const { robot, image } = window.lizard;
+    const { wasm, image } = window.lizard.robot;
     // A second instance, so that the page's own robot stays unchanged.
-    const secondRobot = new robot.constructor();
+    const secondRobot = new wasm.constructor();
     const { start } = secondRobot.load(await (await fetch(`files/${robotName}.toml`)).text());
     const section = secondRobot.section();
     const flash = new Uint8Array(start + section.length);
@@ -36,7 +36,7 @@ export function installFakeSerial() {
       // The page opens a port again to change its baud rate.
       const isSameBoard = window.isSameBoard || (board && (baudRate !== 115_200 || port.baudRate !== 115_200));
       port.baudRate = baudRate;
-      const { board: pageBoard } = window.lizard.link;
+      const { board: pageBoard } = window.lizard.board.link;
       const robotName = window.flashedRobot === undefined ? 'robot' : window.flashedRobot;
       if (!isSameBoard) board = new pageBoard.constructor(robotName && (await makeImage(robotName)), new Uint8Array(await (await fetch('files/optiboot.bin')).arrayBuffer()));
       if (window.moduleBaud) board.baud = window.moduleBaud;

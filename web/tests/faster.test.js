@@ -83,7 +83,7 @@ testPage('the search finds the gait of lizard tune with the same seed, which the
   await waitForFoundGait(page);
   assert.ok((await readToml(page)).includes(tuneResult.fragment));
   await page.locator('#robot-undo').click();
-  await page.waitForFunction(() => !window.lizard.toml.includes('[gait.mine]'));
+  await page.waitForFunction(() => !window.lizard.robot.toml.includes('[gait.mine]'));
 });
 
 testPage('a search stopped midway returns the best gait so far, and the page can search again', () => openEditor({ rounds: 200 }), async (page) => {
@@ -144,7 +144,7 @@ testPage('changing the robot ends the search for the previous robot', () => open
   await startSearch(page);
   await waitForTriedGaits(page, 1);
   await typeLength(page, 'links.l12', 46);
-  await page.waitForFunction(() => window.lizard.toml !== window.lizard.original);
+  await page.waitForFunction(() => window.lizard.robot.toml !== window.lizard.robot.original);
   await waitForSearchEnd(page);
   assert.equal(await readText(page, '#faster-message'), 'The robot has changed; the search for the previous robot has ended.');
   assert.ok((await page.locator('#faster-progress').isHidden()) && (await page.locator('#faster-result').isHidden()));

@@ -114,13 +114,13 @@ testPage('an edited gait is added to robot.toml and walks as far as predicted', 
   await page.locator('#gait-try').click();
   await waitForNewGait(page, 'stride', '[gait.stride]');
   await advance(page, 5000);
-  const walkedMm = await page.evaluate(() => window.lizard.measured().forward);
+  const walkedMm = await page.evaluate(() => window.lizard.robot.measureCycle().forward);
   assert.ok(Math.abs(walkedMm - predictedMm) < 0.03 * predictedMm, `distance per cycle: ${walkedMm} mm, predicted ${predictedMm} mm`);
   const toml = await readToml(page);
   assert.ok(toml.includes(await readEditorText(page, 'table')), toml.slice(-400));
   // The reset button of the lengths restores the previous robot.
   await page.locator('#lengths-reset').click();
-  await page.waitForFunction(() => !window.lizard.toml.includes('[gait.stride]'));
+  await page.waitForFunction(() => !window.lizard.robot.toml.includes('[gait.stride]'));
 });
 
 testPage('a backward gait can be edited, and any gait can be reversed', openEditor, async (page) => {

@@ -28,7 +28,7 @@ const computeScreenPoint = (page, [x, y]) =>
 /** Draws a circle around the head's neutral point with the mouse. */
 async function drawCircle(page, radiusMm, cornerCount = 40) {
   await page.locator('#gesture-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
-  const [x, y] = await page.evaluate(() => window.lizard.robot.workspace(0).neutral);
+  const [x, y] = await page.evaluate(() => window.lizard.robot.wasm.workspace(0).neutral);
   for (let n = 0; n <= cornerCount; n++) {
     const angle = (2 * Math.PI * n) / cornerCount;
     const corner = [x + radiusMm * Math.cos(angle), y + radiusMm * Math.sin(angle)];
@@ -39,7 +39,7 @@ async function drawCircle(page, radiusMm, cornerCount = 40) {
 }
 
 /** Returns the head's point relative to the middle of the chassis, mm, as the page draws it. */
-const readHeadPoint = (page) => page.evaluate(() => window.lizard.last.scene.points[0]);
+const readHeadPoint = (page) => page.evaluate(() => window.lizard.robot.last.scene.points[0]);
 
 testPage('a drawn circle is added to robot.toml as the path of the head', openPanel, async (page) => {
   await drawCircle(page, 6);

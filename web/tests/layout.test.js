@@ -43,7 +43,7 @@ for (const [letters, height] of [['narrow', 0.45], ['wide', 0.62]]) {
       allowPredictions();
       await page.waitForFunction(() => {
         const getDistanceText = (gait) => document.querySelector(`#gaits button[data-command="${gait.command}"] small`).textContent;
-        return window.lizard.description.gaits.filter(({ moves }) => moves).every(getDistanceText);
+        return window.lizard.robot.description.gaits.filter(({ moves }) => moves).every(getDistanceText);
       });
       assert.deepEqual(await readBounds(page), firstBounds, 'the predictions are shown');
     });

@@ -129,7 +129,7 @@ testPage('a gait that ended during a silence is shown as ended', openWalking, as
 testPage('"stop" is repeated for the simulated UNO, too', openStanding, async (page) => {
   await clickAndAdvance(page, '#gaits button[data-command="walk"]', 400);
   await page.evaluate(() => {
-    const { board } = window.lizard.link;
+    const { board } = window.lizard.board.link;
     const { send } = board;
     let sendCount = 0;
     board.send = (bytes) => (++sendCount > 5 ? send.call(board, bytes) : undefined);
@@ -156,7 +156,7 @@ async function isMoving(page, ms) {
   const observedWidths = [];
   for (let remainingMs = ms; remainingMs > 0; remainingMs -= 20) {
     // The LED's pin belongs to no servo.
-    observedWidths.push(await page.evaluate(() => window.lizard.description.servos.map(({ pin }) => window.pulseWidthsUs[pin])));
+    observedWidths.push(await page.evaluate(() => window.lizard.robot.description.servos.map(({ pin }) => window.pulseWidthsUs[pin])));
     await page.clock.runFor(20);
   }
   return observedWidths.some((widths) => widths.some((width, servo) => Math.abs(width - observedWidths[0][servo]) > 1));
@@ -200,6 +200,48 @@ testPage('stopping the robot restores its own deadman', openWithBoard, async (pa
   assert.match(await readReceivedText(page), /deadman 901\n[^]*save\n[^]*deadman 901\n[^]*stop\n[^]*deadman 5000\n(status\n)*$/);
 });
 
+testPage('a board gets its own deadman back after a walk in which its settings were replaced', openWalking, async (page) => {
+  await sendToBoard(page, 'factory');
+  await page.clock.runFor(1000);
+  await pressEscape(page, 1000);
+  assert.match(await readReceivedText(page), /\nfactory\n[^]*\ndeadman 0\n/);
+});
+
+testPage('a walk keeps its deadman if the settings are read before its answer', openWithBoard, async (page) => {
+  await page.evaluate(() => {
+    const { attachedBoard, lizard } = window;
+    const { send } = attachedBoard;
+    attachedBoard.send = (bytes) => {
+      send.call(attachedBoard, bytes);
+      if (String.fromCharCode(...bytes) === 'walk\n') void lizard.board.ask('cal', true);
+    };
+  });
+  await startWalk(page);
+  await page.clock.runFor(1000);
+  assert.match(await readReceivedText(page), /\nwalk\n[^]*deadman 0\ncal\n[^]*deadman 901\n/);
+});
+
+testPage('a walk whose answer is lost keeps its deadman until it ends', openWithBoard, async (page) => {
+  await page.evaluate(() => {
+    const { attachedBoard } = window;
+    const { onByte } = attachedBoard;
+    let line = [];
+    attachedBoard.onByte = (byte) => {
+      line.push(byte);
+      if (byte !== 10) return;
+      if (!String.fromCharCode(...line).startsWith('ok walk')) line.forEach(onByte);
+      line = [];
+    };
+  });
+  await findGaitButton(page, 'walk').click();
+  await waitForText(page, '#problems', /no answer to "walk"/);
+  await waitForText(page, '#doing', /^walk$/);
+  await page.clock.runFor(1000);
+  assert.doesNotMatch(await readReceivedText(page), /\nwalk\n[^]*deadman 0\n/);
+  await pressEscape(page, 1000);
+  assert.match(await readReceivedText(page), /\nstop\n[^]*deadman 0\n/);
+});
+
 testPage('a deadman left behind by a page is not mistaken for the robot\'s own', openWithBoard, async (page) => {
   await page.evaluate(() => window.attachedBoard.send([...'deadman 901\n'].map((letter) => letter.charCodeAt(0))));
   await page.clock.runFor(500);
@@ -239,7 +281,7 @@ testPage('a gait that waits for the confirmation of deadman does not start on a 
 
 testPage('no gait starts on a hidden page', openWithBoard, async (page) => {
   await hidePage(page);
-  await page.evaluate(() => void window.lizard.drive('walk'));
+  await page.evaluate(() => void window.lizard.board.drive('walk'));
   await page.clock.runFor(3000);
   assert.doesNotMatch(await readReceivedText(page), /^walk$/m);
   assert.match(await readText(page, '#problems'), /"walk" was not sent, because the page is hidden\./);
@@ -250,7 +292,7 @@ const cutSupply = (page) => page.evaluate(() => window.attachedBoard.reset('powe
 
 testPage('a gait that waits for an answer does not start after a restart of the robot', openWalking, async (page) => {
   await dropLines(page, ['trim']);
-  await page.evaluate(() => void window.lizard.ask('trim 1 1'));
+  await page.evaluate(() => void window.lizard.board.ask('trim 1 1'));
   await findGaitButton(page, 'left').click();
   await cutSupply(page);
   await page.clock.runFor(3500);

@@ -34,7 +34,7 @@ afterEach(() => closePages().finally(closeBrowser));
 /** Opens the room with the paper's robot, and waits until it stands. */
 async function openRoom() {
   const page = await openPage({}, undefined, `${address()}#room=measure&file=paper`);
-  await page.waitForFunction(() => window.lizard?.gait === 'stand' && window.lizard.mayAsk);
+  await page.waitForFunction(() => window.lizard?.board.gait === 'stand' && window.lizard.board.mayAsk);
   await page.locator('#measure-height').pressSequentially('95');
   return page;
 }
@@ -195,7 +195,7 @@ testPage('a stop or a hidden page before the first walk ends the measurement', (
   // The robot is stopped while the previous video is still being cleared.
   await page.evaluate(() => {
     document.querySelector('#measure-start').click();
-    void window.lizard.ask('stop');
+    void window.lizard.board.ask('stop');
   });
   await waitForMessage(page, 'message', 'it was stopped');
   await page.getByRole('button', { name: 'Drive and measure' }).click();
@@ -232,7 +232,7 @@ testPage('after the link is cut, the board is no longer driven, the room reports
   await page.evaluate(installFakeSerial);
   // For a robot with a Bluetooth module, the page does not open the dialog of the first connection.
   await connect(page, { flashedRobot: 'paper', boardKeepsRunning: true, bluetoothService: '00001101-0000-1000-8000-00805f9b34fb' });
-  await page.waitForFunction(() => window.lizard.isBoardReal && window.lizard.gait === 'stand' && window.lizard.mayAsk);
+  await page.waitForFunction(() => window.lizard.board.isReal && window.lizard.board.gait === 'stand' && window.lizard.board.mayAsk);
   // At the start of the video the robot is near the end of the sheet, and the page would first drive it back.
   await startDriving(page, ['walk', 'left'], 8, 2500);
   await waitForMessage(page, 'message', '1 of 2: walk');

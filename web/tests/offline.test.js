@@ -40,7 +40,7 @@ test('the page works without a server, with any of its robots, once it was opene
   await chooseRobot(page, 'large');
   await advance(page, 3000);
   await clickAndAdvance(page, '#gaits button[data-command="walk"]', 3000);
-  assert.ok((await page.evaluate(() => window.lizard.last.place.y)) > 20);
+  assert.ok((await page.evaluate(() => window.lizard.robot.last.place.y)) > 20);
   assert.equal(await page.locator('#problems').isVisible(), false);
   await page.goto(licenceAddress);
   assert.match(await page.locator('body').innerText(), /^MIT License/);

@@ -29,7 +29,7 @@ testPage('the log shows the banner of the image', openStanding, async (page) => 
 
 testPage('the console shows the latest lines when it is opened', openStanding, async (page) => {
   await page.evaluate(() => {
-    for (let n = 0; n < 16; n++) void window.lizard.ask('speed 100');
+    for (let n = 0; n < 16; n++) void window.lizard.board.ask('speed 100');
   });
   await advance(page, 2000);
   await unfold(page, '#console');
@@ -53,8 +53,8 @@ testPage('a gait started while a status is pending is not reverted', openStandin
     const { lizard } = window;
     window.reportedGaits = [];
     lizard.state.gait.subscribe((gait) => window.reportedGaits.push(gait));
-    void lizard.status();
-    void lizard.ask('walk');
+    void lizard.board.status();
+    void lizard.board.ask('walk');
   });
   await advance(page, 500);
   assert.deepEqual(await page.evaluate(() => window.reportedGaits), ['stand', 'walk']);
@@ -66,11 +66,11 @@ testPage('a pace set while a status is pending is not reverted', openStanding, a
     window.reportedPaces = [];
     lizard.state.pace.subscribe((percent) => window.reportedPaces.push(percent));
     // All lines arrive at once, as from a port that was busy.
-    const { link } = lizard;
+    const { link } = lizard.board;
     const { onBytes } = link;
     const receivedBytes = [];
     link.onBytes = (bytes) => receivedBytes.push(...bytes);
-    void lizard.status();
+    void lizard.board.status();
     lizard.advance(30);
     link.board.send([...'speed 60\n'].map((letter) => letter.charCodeAt(0)));
     lizard.advance(60);
@@ -84,7 +84,7 @@ testPage('a pace set while a status is pending is not reverted', openStanding, a
 
 testPage('a pace that the robot has not confirmed does not stay on the slider', openStanding, async (page) => {
   await page.evaluate(() => {
-    window.lizard.link.write = async () => {};
+    window.lizard.board.link.write = async () => {};
     const slider = document.querySelector('#speed');
     slider.value = '50';
     for (const name of ['input', 'change']) slider.dispatchEvent(new Event(name));
@@ -107,7 +107,7 @@ testPage('a singular pose shows its refusal', openStanding, async (page) => {
 
 testPage('changed lengths change the gaits', openStanding, async (page) => {
   const previousPrediction = (await readDisplacements(page, 'walk')).predicted;
-  const hash = await page.evaluate(() => window.lizard.description.hash);
+  const hash = await page.evaluate(() => window.lizard.robot.description.hash);
   // Shorter legs make shorter steps.
   const crank = await typeLength(page, 'leg.crank', 35);
   await waitForLength(page, 'leg.crank', 35);
@@ -127,7 +127,7 @@ testPage('changed lengths change the gaits', openStanding, async (page) => {
 
   await page.locator('#lengths-reset').click();
   await waitForLength(page, 'leg.crank', 45);
-  assert.equal(await page.evaluate(() => window.lizard.description.hash), hash);
+  assert.equal(await page.evaluate(() => window.lizard.robot.description.hash), hash);
   assert.equal(await crank.inputValue(), '45');
 });
 
@@ -136,9 +136,9 @@ testPage('every robot of robots/ can be chosen, and the running image contains i
   assert.ok(names.length >= 5, names.join());
   for (const name of names) {
     await page.locator('#robot').selectOption({ label: name });
-    await page.waitForFunction((name) => `${window.lizard.file}.toml` === name, name);
+    await page.waitForFunction((name) => `${window.lizard.robot.file}.toml` === name, name);
     await advance(page, 2500);
-    const { name: robotName, hash } = await page.evaluate(() => window.lizard.description);
+    const { name: robotName, hash } = await page.evaluate(() => window.lizard.robot.description);
     assert.equal(await readText(page, '#where'), `on a simulated UNO, robot ${robotName} ${hash}`);
     await page.locator('#log div', { hasText: ` ${hash}, send help` }).last().waitFor();
   }
@@ -213,7 +213,7 @@ testPage('an image is written through the real boot loader', openStanding, async
   assert.ok(!previousLog.includes(banner), banner);
   assert.match(await readText(page, '#where'), /with another robot, robot large [0-9a-f]{8}:/);
   const image = await makeImage('large');
-  const writtenBytes = await page.evaluate((length) => Array.from(window.lizard.link.board.flash.subarray(0, length)), image.length);
+  const writtenBytes = await page.evaluate((length) => Array.from(window.lizard.board.link.board.flash.subarray(0, length)), image.length);
   assert.deepEqual(writtenBytes, Array.from(image));
 });
 
@@ -295,7 +295,7 @@ testPage('weak springs shorten the walk as the contact model predicts', openStan
     assertNear(predicted.fraction, predicted.forward / rigidMm, 0.03, 'fraction of the distance with rigid legs');
     await page.locator('#share', { hasText: `${(100 * predicted.fraction).toFixed(0)} %` }).waitFor();
     await page.waitForFunction((lag) => document.querySelector('#lag').textContent === lag, `${measured.lag.toFixed(1)}°`);
-    const hasSprings = await page.evaluate(() => window.lizard.last.scene.legs.every(({ has_spring }) => has_spring));
+    const hasSprings = await page.evaluate(() => window.lizard.robot.last.scene.legs.every(({ has_spring }) => has_spring));
     assert.ok(hasSprings, 'each leg shows its spring');
   }
   // The legs of a heavy robot lag more.

@@ -62,8 +62,8 @@ testPage('the page reports an unprintable length with the nearest length that li
   const makeParts = async (mm) => {
     const path = join(trialFolder, 'robot.toml');
     const toml = await page.evaluate((mm) => {
-      const { robot, toml } = window.lizard;
-      return robot.constructor.tryLengths(toml, [['leg.crank', mm], ['leg.follower', mm]], false).text;
+      const { wasm, toml } = window.lizard.robot;
+      return wasm.constructor.tryLengths(toml, [['leg.crank', mm], ['leg.follower', mm]], false).text;
     }, mm);
     await writeFile(path, toml);
     return runLizard('parts', join(trialFolder, 'parts'), '--corner', '--robot', path).then(() => 'made', ({ stderr }) => stderr);
@@ -134,7 +134,7 @@ testPage('colliding parts are red in 3D while a length is dragged, and the page 
 
 testPage('the page lists the files that a changed length affects, and downloads only these files', () => openUnfolded('#parts'), async (page) => {
   assert.ok(await page.locator('#parts-changed').isHidden(), 'nothing is changed');
-  assert.equal(await page.evaluate(() => window.lizard.change(window.lizard.robot.constructor.tryLengths(window.lizard.toml, [['leg.crank', 46], ['leg.follower', 46]], false).text)), null);
+  assert.equal(await page.evaluate(() => window.lizard.robot.change(window.lizard.robot.wasm.constructor.tryLengths(window.lizard.robot.toml, [['leg.crank', 46], ['leg.follower', 46]], false).text)), null);
   const savedFile = await download(page, page.locator('#parts-changed'));
   assert.equal(savedFile.name, 'robot-changed-parts.zip');
   const archive = unzipSync(savedFile.bytes);
@@ -285,7 +285,7 @@ testPage('the parts move with the robot', openParts, async (page) => {
 
 testPage('the page gives the reason why a robot cannot be built', openParts, async (page) => {
   const lowPartsToml = '\n[parts]\nheight = 10.0\n';
-  assert.equal(await page.evaluate((lowPartsToml) => window.lizard.change(window.lizard.toml + lowPartsToml), lowPartsToml), null);
+  assert.equal(await page.evaluate((lowPartsToml) => window.lizard.robot.change(window.lizard.robot.toml + lowPartsToml), lowPartsToml), null);
   await page.getByText(/Cannot make the parts of this robot: parts\.height must be at least .* but is 10 mm/).waitFor();
 });
 

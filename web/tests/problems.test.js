@@ -20,7 +20,7 @@ testPage('the message about an unreadable robot file stays while the previous ro
   await unfold(page, '#power');
   await page.locator('#health dd', { hasText: 'power' }).waitFor();
   assert.ok(await message.isVisible(), 'answers of the robot do not remove the message');
-  assert.equal(await page.evaluate(() => window.lizard.file), 'robot');
+  assert.equal(await page.evaluate(() => window.lizard.robot.file), 'robot');
   await page.unroute('**/files/large.toml');
   await chooseRobot(page, 'large');
   assert.equal(await findProblems(page).isVisible(), false, 'a readable robot file removes the message');
@@ -34,7 +34,7 @@ testPage('the robot in use keeps its name if a second choice fails while the fir
   await page.locator('#robot').selectOption('large');
   await page.locator('#robot').selectOption('paper');
   await findProblems(page).getByText('files/paper.toml is missing (status 404)').waitFor();
-  assert.equal(await page.evaluate(() => window.lizard.file), 'robot');
+  assert.equal(await page.evaluate(() => window.lizard.robot.file), 'robot');
   // The browser also reports the missing file, as expected.
   dropBrowserErrors(/404/);
 });
@@ -55,7 +55,7 @@ testPage('the page reports an unreadable first robot and accepts another robot',
 
 testPage('a failure of the simulation is reported, and another robot then walks', openStanding, async (page) => {
   await page.evaluate(() => {
-    window.lizard.link.board.run = () => {
+    window.lizard.board.link.board.run = () => {
       throw new Error('unknown instruction');
     };
   });
@@ -73,7 +73,7 @@ testPage('an error while drawing is reported once, and the simulation continues'
     CanvasRenderingContext2D.prototype.setTransform = () => {
       throw new Error('no memory');
     };
-    void window.lizard.ask('walk');
+    void window.lizard.board.ask('walk');
   });
   await findProblems(page).getByText('The page cannot draw everything (no memory)').waitFor();
   await page.getByRole('button', { name: 'Dismiss' }).click();
@@ -84,17 +84,25 @@ testPage('an error while drawing is reported once, and the simulation continues'
   dropBrowserErrors(/no memory/);
 });
 
+testPage('the page reports a room that cannot be opened, for example because its files belong to another version', openStanding, async (page) => {
+  await page.route('**/measure-*.js', (route) => route.fulfill({ status: 404 }));
+  await page.locator('nav a', { hasText: 'Measure' }).click();
+  await findProblems(page).getByText('The room Measure cannot be opened').waitFor();
+  // The browser also reports the missing file, as expected.
+  dropBrowserErrors(/404/);
+});
+
 testPage('the page reports once that its predictions cannot be computed', openStanding, async (page) => {
   await page.evaluate(() => {
     const { Worker } = window;
     window.Worker = function () {
       return new Worker('missing.js', { type: 'module' });
     };
-    window.lizard.setServos('ideal');
+    window.lizard.robot.setServos('ideal');
   });
   await findProblems(page).getByText('The page cannot compute predictions').waitFor();
   await page.getByRole('button', { name: 'Dismiss' }).click();
-  await page.evaluate(() => window.lizard.setServos('copy'));
+  await page.evaluate(() => window.lizard.robot.setServos('copy'));
   await advance(page, 500);
   assert.equal(await findProblems(page).isVisible(), false);
   // The browser also reports the missing worker, as expected.

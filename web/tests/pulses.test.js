@@ -1,5 +1,5 @@
-// The page's image equals the compiler's, byte for byte, and its pulses equal those of the simulated UNO on libsimavr,
-// width for width, even for a robot that only the page has.
+// The page's image equals the compiler's, byte for byte, and its pulses equal those of `lizard sim` on libsimavr, width
+// for width, even for a robot that was edited in the page.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
@@ -14,7 +14,7 @@ useBrowser();
 
 const ROOT = new URL('../../', import.meta.url).pathname;
 const ROBOT_FILE = join(ROOT, 'robot.toml');
-/** The image of the same robot from the compiler. */
+/** The compiler's image of the robot in `ROBOT_FILE`. */
 const HEX_FILE = join(ROOT, 'target/avr-atmega328p/release/lizard.hex');
 
 /** Script of a run: ms since power-on, and the line sent then. */
@@ -32,7 +32,7 @@ const END_MS = 16_011;
 const CYCLE_DEG = 1 / 160;
 
 /** Returns the servo angles of each frame, which `lizard sim` computes from the pulses at the pins. */
-async function simulate(toml) {
+async function runLizardSim(toml) {
   const folder = await makeFolder();
   try {
     const scriptPath = join(folder, 'script');
@@ -55,7 +55,7 @@ async function simulate(toml) {
 testPage('the image of robot.toml equals that of the compiler, byte for byte', openPage, async (page) => {
   const flash = new Uint8Array(32 * 1024).fill(0xff);
   loadHex(readFileSync(HEX_FILE, 'utf8'), flash);
-  const image = await page.evaluate(() => Array.from(window.lizard.image));
+  const image = await page.evaluate(() => Array.from(window.lizard.robot.image));
   assert.ok(image.length > 0x6e00 + 1000, `${image.length} bytes`);
   assert.deepEqual(image, Array.from(flash.subarray(0, image.length)));
   assert.ok(flash.subarray(image.length).every((byte) => byte === 0xff));
@@ -72,21 +72,22 @@ amplitude = 12.0
 start = { LF = 0.0, RF = 0.5, RH = 0.2, LH = 0.7 }
 `;
 
-for (const [robotName, toml] of [['robot.toml', TOML], ['a robot that was typed into the page', EDITED_TOML]]) test(`every pulse width of ${robotName} equals that of the simulated UNO`, async () => {
-  // The page's clock is paused, so that only this test advances the simulation.
+for (const [robotName, toml] of [['robot.toml', TOML], ['a robot that was edited in the page', EDITED_TOML]]) test(`the servo angles of ${robotName} equal those of lizard sim`, async () => {
+  // With an init script, even an empty one, the page's clock is paused: only this test advances the simulation.
   const page = await openPage({}, () => {});
-  if (toml !== TOML) assert.equal(await page.evaluate((toml) => window.lizard.change(toml), toml), null);
+  if (toml !== TOML) assert.equal(await page.evaluate((toml) => window.lizard.robot.change(toml), toml), null);
   const { frames, rises } = await page.evaluate(
     ([script, end]) => {
       const { lizard } = window;
-      const { board } = lizard.link;
-      const { pin } = lizard.description.servos[3];
+      const { board } = lizard.board.link;
+      const { pin } = lizard.robot.description.servos[3];
       const frames = [];
       const rises = [];
-      // Records the frames that the page itself computes.
-      lizard.robot.setServoModel('ideal');
-      const originalFollowPulses = lizard.robot.followPulses.bind(lizard.robot);
-      lizard.robot.followPulses = (widths) => {
+      // Ideal servos have the angles of their pulses.
+      lizard.robot.wasm.setServoModel('ideal');
+      // Records the angles that the page itself computes.
+      const originalFollowPulses = lizard.robot.wasm.followPulses.bind(lizard.robot.wasm);
+      lizard.robot.wasm.followPulses = (widths) => {
         const frame = originalFollowPulses(widths);
         if (widths.every((width) => width > 0)) frames.push(frame.scene.angles);
         return frame;
@@ -96,24 +97,24 @@ for (const [robotName, toml] of [['robot.toml', TOML], ['a robot that was typed 
         if (pulsePin === pin) rises.push(rise);
         originalOnPulse(pulsePin, rise, width);
       };
-      // The page may have advanced the simulation before its clock was paused.
+      // The page may have advanced the simulation while it loaded.
       let currentMs = board.cycle / 16_000;
       for (const [ms, line] of [...script, [end, '']]) {
         lizard.advance(ms - currentMs);
         currentMs = ms;
-        if (line !== '') void lizard.link.write(new TextEncoder().encode(`${line}\n`));
+        if (line !== '') void lizard.board.link.write(new TextEncoder().encode(`${line}\n`));
       }
       return { frames, rises };
     },
     [SCRIPT, END_MS],
   );
-  const expected = await simulate(toml);
+  const expectedFrames = await runLizardSim(toml);
   assert.ok(frames.length > 600, `${frames.length} frames`);
-  assert.equal(frames.length, expected.length);
+  assert.equal(frames.length, expectedFrames.length);
   frames.forEach((angles, frame) =>
     angles.forEach((angle, servo) => {
-      const deviation = Math.abs(angle - expected[frame][servo]);
-      assert.ok(deviation < CYCLE_DEG / 100, `frame ${frame}, A${servo + 1}: ${angle} and ${expected[frame][servo]}`);
+      const deviation = Math.abs(angle - expectedFrames[frame][servo]);
+      assert.ok(deviation < CYCLE_DEG / 100, `frame ${frame}, A${servo + 1}: ${angle} and ${expectedFrames[frame][servo]}`);
     }),
   );
   const periods = new Set(rises.slice(1).map((rise, n) => (rise - rises[n]) % 320_000));

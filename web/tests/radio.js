@@ -42,8 +42,8 @@ function prepareRadio() {
     window.notifyingCharacteristic.dispatchEvent(new Event('characteristicvaluechanged'));
   };
   window.powerOnBoard = () => {
-    const { link, image } = window.lizard;
-    const board = new link.board.constructor(image, null, null);
+    const { board: pageBoard, robot } = window.lizard;
+    const board = new pageBoard.link.board.constructor(robot.image, null, null);
     // A new module, with its default name.
     board.baud = 9600;
     board.run(16_000 * 4000);
@@ -52,7 +52,7 @@ function prepareRadio() {
     window.lastMoveMs = 0;
     window.readBoardMs = () => board.cycle / 16_000;
     const widths = {};
-    const pins = window.lizard.description.servos.map(({ pin }) => pin);
+    const pins = robot.description.servos.map(({ pin }) => pin);
     board.onPulse = (pin, rise, width) => {
       if (pins.includes(pin) && Math.abs(widths[pin] - width) > 16) {
         window.lastMoveMs = performance.now();

@@ -10,10 +10,10 @@ const openRecordPanel = () => openUnfolded('#keep');
 /** CPU cycles of the simulated board in a frame of 20 ms. */
 const CYCLES_PER_FRAME = 320_000;
 /** Returns the number of frames since the board was switched on. */
-const countFrames = (page) => page.evaluate((cycles) => window.lizard.link.board.cycle / cycles, CYCLES_PER_FRAME);
+const countFrames = (page) => page.evaluate((cycles) => window.lizard.board.link.board.cycle / cycles, CYCLES_PER_FRAME);
 /** Waits until the page itself has simulated `count` more frames. */
 const waitForFrames = async (page, count) =>
-  page.waitForFunction((end) => window.lizard.link.board.cycle > end, CYCLES_PER_FRAME * ((await countFrames(page)) + count));
+  page.waitForFunction((end) => window.lizard.board.link.board.cycle > end, CYCLES_PER_FRAME * ((await countFrames(page)) + count));
 const findButton = (page, name) => page.locator('#keep').getByRole('button', { name, exact: true });
 
 const saveFile = (page, buttonName) => download(page, findButton(page, buttonName));
@@ -29,7 +29,7 @@ testPage('the table of a run has the pose, the position and the pulses of every 
   const startFrameCount = await countFrames(page);
   await findButton(page, 'Record').click();
   await advance(page, 3000);
-  const angles = await page.evaluate(() => window.lizard.last.scene.angles);
+  const angles = await page.evaluate(() => window.lizard.robot.last.scene.angles);
   await advance(page, 100);
   await findButton(page, 'Stop recording').click();
   const passedFrameCount = (await countFrames(page)) - startFrameCount;
@@ -113,7 +113,7 @@ testPage('two robots walk side by side, each as far as alone', openRecordPanel, 
 testPage('if the robot is changed while two robots are being started, no second robot appears', openRecordPanel, async (page) => {
   await page.evaluate(async () => {
     document.querySelector('#both').click();
-    await window.lizard.change(window.lizard.toml.replace('amplitude = 15.0', 'amplitude = 14.0'));
+    await window.lizard.robot.change(window.lizard.robot.toml.replace('amplitude = 15.0', 'amplitude = 14.0'));
   });
   await advance(page, 500);
   assert.ok(await findButton(page, 'Remove the second robot').isDisabled());

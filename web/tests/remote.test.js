@@ -68,8 +68,8 @@ testPage('the remote drives and stops, and keeps the screen on while it is open'
 });
 
 testPage('the phone vibrates when the robot stops by itself', openRemote, async (page) => {
-  await page.evaluate(() => window.lizard.ask('walk'));
-  await page.evaluate(() => window.lizard.setSupply(3));
+  await page.evaluate(() => window.lizard.board.ask('walk'));
+  await page.evaluate(() => window.lizard.robot.setSupply(3));
   await advance(page, 2000);
   assert.ok((await page.evaluate(() => window.vibrationCount)) > 0);
 });

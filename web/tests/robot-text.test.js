@@ -16,7 +16,10 @@ const LARGE_PATH = new URL('../../robots/large.toml', import.meta.url).pathname;
 useBrowser();
 
 const findTextBox = (page) => page.locator('#robot-text');
-const waitForRobot = (page, text) => page.waitForFunction((text) => window.lizard?.toml === text, text);
+const waitForRobot = (page, text) => page.waitForFunction((text) => window.lizard?.robot.toml === text, text);
+
+/** Returns the names of the user's own robots in the list. */
+const readOwnNames = (page) => page.locator('#robot optgroup[label="your own"] option').allInnerTexts();
 
 /** Types a robot.toml and makes it the page's robot. */
 async function applyText(page, toml) {
@@ -59,7 +62,7 @@ testPage('a valid text replaces the robot, and undo and redo work step by step',
     await findTextBox(page).press('Control+Enter');
     await waitForRobot(page, text);
   }
-  assert.equal(await page.evaluate(() => window.lizard.description.gaits.find(({ name }) => name === 'trot').period), 1.5);
+  assert.equal(await page.evaluate(() => window.lizard.robot.description.gaits.find(({ name }) => name === 'trot').period), 1.5);
   const undo = page.locator('#robot-undo');
   const redo = page.locator('#robot-redo');
   const pressAndWait = async (button, ...texts) => {
@@ -110,7 +113,7 @@ async function copyLink(page) {
 
 /** Waits until the page has the robot that a text describes. Comments may differ, because a link omits them. */
 async function waitForRobotIgnoringComments(page, expectedToml) {
-  await page.waitForFunction((name) => window.lizard?.toml.includes(`name = "${name}"`), parse(expectedToml).name);
+  await page.waitForFunction((name) => window.lizard?.robot.toml.includes(`name = "${name}"`), parse(expectedToml).name);
   assert.deepEqual(parse(await readToml(page)), parse(expectedToml));
 }
 
@@ -214,7 +217,7 @@ testPage('after every change the address contains the shown robot', openTextEdit
   await page.locator('#robot').selectOption('large');
   await page.waitForFunction(() => location.hash === '#room=build&file=large');
   await otherPage.goto(await page.evaluate(() => location.href));
-  await otherPage.waitForFunction(() => window.lizard.file === 'large');
+  await otherPage.waitForFunction(() => window.lizard.robot.file === 'large');
   // The address is overwritten before the page handles the change.
   await otherPage.evaluate(() => {
     location.hash = '#file=nothing';
@@ -229,7 +232,7 @@ testPage('a hostile file runs no script', openTextEditor, async (page) => {
   const hostileGait = '[gait."<img src=x onerror=alert(1)>"]\nperiod = 1.0\nwaveform = "still"\n';
   const hostileToml = `${await readToml(page)}\n${hostileGait}`;
   await applyText(page, hostileToml);
-  await page.waitForFunction((text) => window.lizard.toml === text || !document.querySelector('#robot-refusal').hidden, hostileToml);
+  await page.waitForFunction((text) => window.lizard.robot.toml === text || !document.querySelector('#robot-refusal').hidden, hostileToml);
   assert.equal(await page.locator('img').count(), 0);
   assert.deepEqual(dialogs, []);
 });
@@ -242,16 +245,16 @@ testPage('a button restores the user\'s own robot after a link or another robot 
   // A link from somebody else, opened in another tab.
   await page.goto('about:blank');
   await page.goto(`${address()}#file=large`);
-  await page.waitForFunction(() => window.lizard?.file === 'large');
+  await page.waitForFunction(() => window.lizard?.robot.file === 'large');
   await backButton.click();
   await waitForRobot(page, ownToml);
   // The same in this tab, after the address was updated.
   await page.waitForFunction(() => location.hash.startsWith('#robot='));
   await page.evaluate(() => (location.hash = '#file=large'));
-  await page.waitForFunction(() => window.lizard.file === 'large');
+  await page.waitForFunction(() => window.lizard.robot.file === 'large');
   await backButton.waitFor();
   await page.reload();
-  await page.waitForFunction(() => window.lizard?.file === 'large');
+  await page.waitForFunction(() => window.lizard?.robot.file === 'large');
   await page.locator('#robot').selectOption({ label: 'paper' });
   await waitForRobot(page, ownToml);
   await chooseRobot(page, 'large');
@@ -281,14 +284,13 @@ testPage('the list has the names of the user\'s own robots, and restores each un
   const firstToml = await readToml(page);
   const makeToml = (name) => firstToml.replace('name = "paper"', `name = "${name}"`);
   const list = page.locator('#robot');
-  const readNames = () => page.locator('#robot optgroup[label="your own"] option').allInnerTexts();
   for (const name of ['anna', 'bert']) {
     await chooseRobot(page, 'large');
     await chooseRobot(page, 'robot');
     await applyText(page, makeToml(name));
     await waitForRobot(page, makeToml(name));
   }
-  assert.deepEqual(await readNames(), ['anna']);
+  assert.deepEqual(await readOwnNames(page), ['anna']);
   await list.selectOption({ label: 'anna' });
   await waitForRobot(page, makeToml('anna'));
   // The address takes priority over the stored robot, so the test waits until the address is updated.
@@ -298,13 +300,13 @@ testPage('the list has the names of the user\'s own robots, and restores each un
     const text = new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'))).text();
     return (await text.catch(() => '')) === expectedText;
   }, makeToml('anna'));
-  assert.deepEqual(await readNames(), ['bert'], 'the previous robot is stored');
+  assert.deepEqual(await readOwnNames(page), ['bert'], 'the previous robot is stored');
   await page.reload();
   await waitForRobot(page, makeToml('anna'));
-  assert.deepEqual(await readNames(), ['bert']);
+  assert.deepEqual(await readOwnNames(page), ['bert']);
   await list.selectOption({ label: 'bert' });
   await waitForRobot(page, makeToml('bert'));
-  assert.deepEqual(await readNames(), ['anna']);
+  assert.deepEqual(await readOwnNames(page), ['anna']);
 });
 
 testPage('a robot put aside stays stored when another page stores one, or when another robot is chosen before its file is loaded', openTextEditor, async (page) => {
@@ -322,8 +324,7 @@ testPage('a robot put aside stays stored when another page stores one, or when a
   await page.locator('#problems').getByRole('button', { name: 'Back to my own robot' }).click();
   await waitForRobot(page, ownToml);
   await chooseRobot(page, 'large');
-  const readNames = () => page.locator('#robot optgroup[label="your own"] option').allInnerTexts();
-  assert.deepEqual(await readNames(), ['paper', 'paper'], 'the robot of the other page is still stored');
+  assert.deepEqual(await readOwnNames(page), ['paper', 'paper'], 'the robot of the other page is still stored');
   let release;
   const gate = new Promise((resolve) => (release = resolve));
   await page.route('**/files/unequal.toml', (route) => gate.then(() => route.continue()));
@@ -337,6 +338,6 @@ testPage('a robot put aside stays stored when another page stores one, or when a
   // Meanwhile the file of the first chosen robot is loaded.
   await page.waitForTimeout(500);
   release();
-  await page.waitForFunction(() => window.lizard.file === 'unequal');
-  assert.deepEqual(await readNames(), ['paper', 'paper']);
+  await page.waitForFunction(() => window.lizard.robot.file === 'unequal');
+  assert.deepEqual(await readOwnNames(page), ['paper', 'paper']);
 });

@@ -50,7 +50,7 @@ testPage('an address opens its room and its robot, and the tabs, the title and B
   await waitForRoom(page, 'start');
   await page.goto(`${address()}#room=build&file=large`);
   await waitForRoom(page, 'build');
-  await page.waitForFunction(() => window.lizard.file === 'large');
+  await page.waitForFunction(() => window.lizard.robot.file === 'large');
   await findTab(page, 'gaits').focus();
   await page.keyboard.press('Enter');
   await waitForRoom(page, 'gaits');
@@ -102,7 +102,7 @@ testPage('a closed room renders nothing, even if its panels are unfolded', openS
   await page.waitForFunction(() => document.querySelector('#part').length > 10);
   await findTab(page, 'board').click();
   await waitForRoom(page, 'board');
-  await page.evaluate(() => window.lizard.ask('walk'));
+  await page.evaluate(() => window.lizard.board.ask('walk'));
   await page.waitForFunction(() => document.querySelector('#cycle').textContent.endsWith('mm'));
   const drawnNames = await page.evaluate(async () => {
     const drawnNames = [];

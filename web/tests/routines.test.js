@@ -30,7 +30,7 @@ const waitForSteps = (page, expected) =>
     JSON.stringify(expected),
   );
 /** Reads the steps in the text of the robot. */
-const readSteps = (page) => page.evaluate(() => window.lizard.robot.constructor.routines(window.lizard.toml).at(-1)?.steps);
+const readSteps = (page) => page.evaluate(() => window.lizard.robot.wasm.constructor.routines(window.lizard.robot.toml).at(-1)?.steps);
 const waitForRoundPrediction = (page) => page.waitForFunction(() => document.querySelector('#routine-round').textContent !== '');
 const readTrackPath = (page) => page.locator('#routine-path .track').getAttribute('d');
 
@@ -38,7 +38,7 @@ const readTrackPath = (page) => page.locator('#routine-path .track').getAttribut
 async function putRoutine(page, steps, name = 'patrol') {
   await page.evaluate(([name, steps]) => {
     const { lizard } = window;
-    return lizard.change(lizard.robot.constructor.putSteps(lizard.toml, name, steps).text).then(() => null);
+    return lizard.robot.change(lizard.robot.wasm.constructor.putSteps(lizard.robot.toml, name, steps).text).then(() => null);
   }, [name, steps]);
 }
 
@@ -62,7 +62,7 @@ async function runSeconds(page, seconds) {
   const endSeconds = (await readClock()) + seconds;
   for (let n = 0; (await readClock()) < endSeconds - 0.01; n++) {
     // The page asks for the status twice a second of real time, too rarely for a simulation this fast.
-    if (n % 25 === 0) await page.evaluate(() => void window.lizard.status());
+    if (n % 25 === 0) await page.evaluate(() => void window.lizard.board.status());
     await advance(page, 20);
   }
 }
@@ -118,7 +118,7 @@ testPage('the recording follows the robot\'s reports, not the pressed buttons', 
   await press(page, 'Record a drive');
   // A line with three cycles ends by itself; a refused line starts no gait.
   for (const [line, seconds] of [['walk 3', 5], ['rest', 2], ['walk', 1], ['stand', 1.5], ['look', 0.8], ['center', 1]]) {
-    await page.evaluate((line) => void window.lizard.ask(line), line);
+    await page.evaluate((line) => void window.lizard.board.ask(line), line);
     await runSeconds(page, seconds);
   }
   await press(page, 'Stop recording');
@@ -137,11 +137,11 @@ testPage('the recording follows the robot\'s reports, not the pressed buttons', 
 testPage('the recorded number of cycles does not depend on the phase of the previous gait', () => openRoutine(null), async (page) => {
   for (let tenth = 0; tenth < 10; tenth++) {
     await press(page, 'Record a drive');
-    await page.evaluate(() => void window.lizard.ask('stand'));
+    await page.evaluate(() => void window.lizard.board.ask('stand'));
     await runSeconds(page, 0.5 + 0.1 * tenth);
-    await page.evaluate(() => void window.lizard.ask('walk 2'));
+    await page.evaluate(() => void window.lizard.board.ask('walk 2'));
     await advance(page, 60);
-    await page.evaluate(() => void window.lizard.status());
+    await page.evaluate(() => void window.lizard.board.status());
     await runSeconds(page, 3);
     await press(page, 'Stop recording');
     assert.match(await readText(page, '#routine-message'), /^Recorded: walk 2$/, `after ${0.5 + 0.1 * tenth} s`);
@@ -173,7 +173,7 @@ testPage('keys alone can change, move, copy and delete steps, and undo each chan
   const assertSteps = async (edit, expected) => {
     await edit();
     await waitForSteps(page, expected);
-    await page.waitForFunction((expected) => window.lizard.toml.includes(`steps = ${expected}`), `["${expected.join('", "')}"]`);
+    await page.waitForFunction((expected) => window.lizard.robot.toml.includes(`steps = ${expected}`), `["${expected.join('", "')}"]`);
     history.push(expected);
   };
   await assertSteps(async () => {
@@ -211,7 +211,7 @@ testPage('the list of steps follows the text, and the text follows the list and 
   await waitForSteps(page, ['left 12']);
   await page.locator('#routine').selectOption('patrol');
   await press(page, 'Delete step 4');
-  await page.waitForFunction((expected) => window.lizard.toml === expected, editedToml.replace('"left 3", "look 1"', '"left 3"'));
+  await page.waitForFunction((expected) => window.lizard.robot.toml === expected, editedToml.replace('"left 3", "look 1"', '"left 3"'));
   assert.equal(await page.locator('#robot-text').inputValue(), await readToml(page));
   assert.deepEqual(await page.locator('#gaits button').allInnerTexts().then((names) => names.slice(-2).map((name) => name.trim())), ['patrol', 'about']);
 });
@@ -240,7 +240,7 @@ testPage('the page draws the new path while a step is dragged, and changes the t
   await page.mouse.down();
   await page.mouse.move(...(await computeMiddle(2)), { steps: 5 });
   await page.mouse.up();
-  await page.waitForFunction(() => window.lizard.toml.includes('steps = ["left 6", "walk 3", "walk 1"]'));
+  await page.waitForFunction(() => window.lizard.robot.toml.includes('steps = ["left 6", "walk 3", "walk 1"]'));
   await waitForOtherTrack();
 });
 
@@ -254,7 +254,7 @@ test('a finger drags a step, too', async () => {
   await session.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: [{ x, y: fromBox.y + 10 }] });
   for (let fraction = 0; fraction <= 1; fraction += 0.1) await session.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: [{ x, y: fromBox.y + 10 + fraction * (toBox.y - fromBox.y + 5) }] });
   await session.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
-  await page.waitForFunction(() => window.lizard.toml.includes('steps = ["left 6", "walk 3"]'));
+  await page.waitForFunction(() => window.lizard.robot.toml.includes('steps = ["left 6", "walk 3"]'));
 });
 
 testPage('a mistake is shown at its step with its line, and the previous robot stays in use', openRoutine, async (page) => {
@@ -287,7 +287,7 @@ testPage('a mistake is shown at its step with its line, and the previous robot s
 
 testPage('an invalid or existing name is refused, and the recorded steps stay', openRoutine, async (page) => {
   await press(page, 'Record a drive');
-  await page.evaluate(() => void window.lizard.ask('walk 2'));
+  await page.evaluate(() => void window.lizard.board.ask('walk 2'));
   await runSeconds(page, 3);
   await press(page, 'Stop recording');
   assert.equal(await page.locator('#routine-name').inputValue(), 'patrol-2', 'the name patrol is in use');
@@ -303,7 +303,7 @@ testPage('an invalid or existing name is refused, and the recorded steps stay', 
   }
   await page.locator('#routine-name').fill('two steps');
   await press(page, 'Keep it');
-  await page.waitForFunction(() => window.lizard.toml.endsWith('\n[routine.two-steps]\nsteps = ["walk 2"]\n'));
+  await page.waitForFunction(() => window.lizard.robot.toml.endsWith('\n[routine.two-steps]\nsteps = ["walk 2"]\n'));
   assert.equal(await page.locator('#routine').inputValue(), 'two-steps');
 });
 
@@ -358,7 +358,7 @@ testPage('the page reports a board that is unplugged while a routine is written,
 
 testPage('a robot whose format the firmware does not read is reported as missing', openWithBoard, async (page) => {
   await page.evaluate(() => {
-    const { start } = window.lizard.description;
+    const { start } = window.lizard.robot.description;
     window.attachedBoard.flash[start + 4] ^= 1;
     window.attachedBoard.reset('external');
   });
@@ -380,7 +380,7 @@ test('two pages in one browser each keep their own routine', async () => {
   }
   for (const [page, expected] of ownRoutines) {
     await page.reload();
-    await page.waitForFunction(() => window.lizard?.toml.includes('[routine.'));
+    await page.waitForFunction(() => window.lizard?.robot.toml.includes('[routine.'));
     assert.deepEqual(await readSteps(page), expected);
   }
 });
@@ -388,5 +388,5 @@ test('two pages in one browser each keep their own routine', async () => {
 testPage('a routine that was only typed into robot.toml is part of the robot when it is started', () => openRoutine(null), async (page) => {
   await page.locator('#robot-text').fill(`${await readToml(page)}\n[routine.patrol]\nsteps = ["walk 1"]\n`);
   await press(page, 'Start it');
-  await page.waitForFunction(() => window.lizard.toml.includes('[routine.patrol]'));
+  await page.waitForFunction(() => window.lizard.robot.toml.includes('[routine.patrol]'));
 });

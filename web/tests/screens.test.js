@@ -187,7 +187,7 @@ testPage('the page reports a word that the core does not have', openBlankPage, a
 testPage('the core has every word that a button sends', openStanding, async (page) => {
   assert.equal(await page.locator('#problems').isVisible(), false);
   const sentWords = await page.locator('[data-command]').evaluateAll((buttons) => buttons.map(({ dataset }) => dataset.command));
-  const { words, gaits } = await page.evaluate(() => window.lizard.description);
+  const { words, gaits } = await page.evaluate(() => window.lizard.robot.description);
   const knownWords = [...words, ...gaits.map(({ command }) => command)];
   assert.deepEqual(sentWords.filter((command) => !knownWords.includes(command)), []);
   assert.ok(sentWords.length >= 10);

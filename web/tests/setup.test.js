@@ -120,9 +120,9 @@ testPage('the first connection turns a new UNO into a calibrated robot, and liza
   assert.equal(await findDialog(page).getByText('Not checked yet').count(), 0);
   await waitForText(page, '#doing', /^stand$/);
   await pressAndWait(page, 'Walk', /^The robot has started "walk"/);
-  const startY = await page.evaluate(() => window.lizard.last.place.y);
+  const startY = await page.evaluate(() => window.lizard.robot.last.place.y);
   await page.clock.runFor(3000);
-  assert.ok((await page.evaluate(() => window.lizard.last.place.y)) - startY > 10, 'the robot walks');
+  assert.ok((await page.evaluate(() => window.lizard.robot.last.place.y)) - startY > 10, 'the robot walks');
   await pressAndWait(page, 'Stand', /^The robot stands/);
 
   await findDialog(page).getByRole('button', { name: 'Save first', exact: true }).waitFor();

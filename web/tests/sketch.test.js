@@ -85,9 +85,9 @@ testPage('lengths that are still being tried do not replace a robot that is load
     const slider = document.querySelector('#length-slide');
     slider.valueAsNumber += 1;
     slider.dispatchEvent(new Event('change'));
-    await window.lizard.change(window.lizard.toml.replace('amplitude = 15.0', 'amplitude = 14.0'));
+    await window.lizard.robot.change(window.lizard.robot.toml.replace('amplitude = 15.0', 'amplitude = 14.0'));
     slider.removeAttribute('max');
-    return window.lizard.toml;
+    return window.lizard.robot.toml;
   });
   // The last response has the slider's range.
   await page.waitForFunction(() => document.querySelector('#length-slide').max !== '');

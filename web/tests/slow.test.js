@@ -16,7 +16,7 @@ const CPU_SLOWDOWN = 6;
 const WITH_MOTION = { reducedMotion: 'no-preference' };
 
 const openDevToolsSession = (page) => withTimeout('opening the developer-tools session', page.context().newCDPSession(page));
-const isWalking = () => window.lizard?.gait === 'walk';
+const isWalking = () => window.lizard?.board.gait === 'walk';
 
 /** Measures until a time is short enough, at most MAX_MEASUREMENT_COUNT times, and returns the shortest. */
 async function measureShortest(limitMs, measureMs) {
@@ -45,7 +45,7 @@ testPage('on a slow phone, Stop ends the walk with which the page opens within 0
   const timeMs = await measureShortest(STOP_LIMIT_MS, async () => {
     await page.evaluate(() => {
       addEventListener('pointerdown', ({ timeStamp }) => {
-        const poll = () => (window.lizard.gait === 'stop' ? (window.stopDelayMs = performance.now() - timeStamp) : requestAnimationFrame(poll));
+        const poll = () => (window.lizard.board.gait === 'stop' ? (window.stopDelayMs = performance.now() - timeStamp) : requestAnimationFrame(poll));
         poll();
       }, { once: true, capture: true });
       delete window.stopDelayMs;
@@ -53,7 +53,7 @@ testPage('on a slow phone, Stop ends the walk with which the page opens within 0
     await page.locator('button.stop').tap();
     await page.waitForFunction(() => window.stopDelayMs);
     const timeMs = await page.evaluate(() => window.stopDelayMs);
-    await page.evaluate(() => void window.lizard.ask('walk'));
+    await page.evaluate(() => void window.lizard.board.ask('walk'));
     await page.waitForFunction(isWalking);
     return timeMs;
   });

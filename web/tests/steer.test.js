@@ -73,7 +73,7 @@ testPage('the robot walks in the direction of the stick on the screen', openPred
 });
 
 testPage('a stick held half way halves the pace, and its release restores the pace', openPredicted, async (page) => {
-  await page.evaluate(() => window.lizard.ask('speed 80').then(() => null));
+  await page.evaluate(() => window.lizard.board.ask('speed 80').then(() => null));
   const waitForPace = async (percent) => page.waitForFunction((text) => document.querySelector('#speed-out').textContent === text, `${percent} %`);
   const deflectStick = (forward, pressed = false) => setGamepads(page, { axes: [0, -forward], buttons: [{ pressed }] });
   await waitForPace(80);
@@ -100,7 +100,7 @@ testPage('a stick held half way halves the pace, and its release restores the pa
   await deflectStick(0);
   await advance(page, 100);
   await page.evaluate(() => {
-    const { link } = window.lizard;
+    const { link } = window.lizard.board;
     const { onBytes } = link;
     const heldBytes = [];
     link.onBytes = (bytes) => heldBytes.push(bytes);
@@ -108,7 +108,7 @@ testPage('a stick held half way halves the pace, and its release restores the pa
       link.onBytes = onBytes;
       heldBytes.forEach(onBytes);
     };
-    void window.lizard.drive('speed 60');
+    void window.lizard.board.drive('speed 60');
   });
   await deflectStick(0.5);
   await advance(page, 100);
@@ -133,8 +133,9 @@ testPage('a gamepad drives', openPredicted, async (page) => {
 testPage('a gamepad button stops the robot once, and the stick drives again only after its release', openPredicted, async (page) => {
   await page.evaluate(() => {
     window.sentLines = [];
-    const { ask } = window.lizard;
-    window.lizard.ask = (line, ...args) => (window.sentLines.push(line), ask.call(window.lizard, line, ...args));
+    const { board } = window.lizard;
+    const { ask } = board;
+    board.ask = (line, ...args) => (window.sentLines.push(line), ask.call(board, line, ...args));
   });
   await steer(page, 'walk', null, { axes: [0, -1], buttons: [{ pressed: false }] });
   await steer(page, 'stop', null, { axes: [0, -1], buttons: [{ pressed: true }] });

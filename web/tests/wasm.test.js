@@ -5,19 +5,22 @@ import { test } from 'node:test';
 import { readPageFile, Robot } from './wasm.js';
 
 const toml = await readPageFile('robot.toml', 'utf8');
+/** The index of the gait `walk` in robot.toml. */
+const WALK = 1;
 
 test('an invalid argument is refused and changes nothing', () => {
   const robot = new Robot();
-  assert.equal(robot.predict(1), null, 'no prediction without a robot');
+  assert.equal(robot.predict(WALK), null, 'no prediction without a robot');
   const { floor } = robot.load(toml);
-  const firstPrediction = robot.predict(1);
+  const firstPrediction = robot.predict(WALK);
   assert.ok(firstPrediction.forward > 10);
-  for (const wrongFloor of [null, {}, { ...floor, kind: 'soft' }, { ...floor, twist: undefined }]) {
-    assert.throws(() => robot.setFloor(wrongFloor), /Error/, JSON.stringify(wrongFloor));
+  for (const invalidFloor of [null, {}, { ...floor, kind: 'soft' }, { ...floor, twist: undefined }]) {
+    assert.throws(() => robot.setFloor(invalidFloor), /Error/, JSON.stringify(invalidFloor));
   }
   assert.throws(() => robot.followPulses([1, 2, 3]), /Error/);
   assert.match(robot.load('').reason, /./);
-  assert.deepEqual(robot.predict(1), firstPrediction);
+  assert.deepEqual(robot.predict(WALK), firstPrediction);
+  // A valid floor changes the prediction, so the previous comparison can fail.
   robot.setFloor({ ...floor, ratio: 0.5 });
-  assert.notDeepEqual(robot.predict(1), firstPrediction);
+  assert.notDeepEqual(robot.predict(WALK), firstPrediction);
 });

@@ -20,7 +20,7 @@ async function pressAndWait(page, button, pattern) {
 }
 
 /** Returns the servo pins that had a pulse; the LED's pin does not count. */
-const listPulsedPins = (page) => page.evaluate(() => window.lizard.description.servos.map(({ pin }) => pin).filter((pin) => pin in window.pulseWidthsUs));
+const listPulsedPins = (page) => page.evaluate(() => window.lizard.robot.description.servos.map(({ pin }) => pin).filter((pin) => pin in window.pulseWidthsUs));
 
 /** Waits until a write has begun, and then for some pages of the flash, which take 17 ms each. */
 async function waitUntilPartIsWritten(page) {
@@ -33,7 +33,7 @@ async function assertFlash(page, start, expected) {
 }
 
 testPage('a robot is written within 2.5 s, and firmware and saved settings stay unchanged', () => openWithBoard('large'), async (page) => {
-  await page.evaluate(() => window.lizard.ask('trim 1 2').then(() => window.lizard.ask('save')) && null);
+  await page.evaluate(() => window.lizard.board.ask('trim 1 2').then(() => window.lizard.board.ask('save')) && null);
   await page.clock.runFor(1500);
   const codeBytes = await readFlash(page, 0, SECTION_START);
   const savedEeprom = await page.evaluate(() => Array.from(window.attachedBoard.eeprom));
@@ -71,7 +71,7 @@ testPage('a banner that arrives together with the boot loader\'s last answer is 
 testPage('a board is written although the page has not identified it yet', () => openWithBoard(null, 500), async (page) => {
   await page.locator('#flash-write').click();
   // The page's clock stands still until the boot loader uses the line.
-  await page.waitForFunction(() => window.lizard.dialogue.isClosed);
+  await page.waitForFunction(() => window.lizard.board.dialogue.isClosed);
   await waitForMessage(page, /^(not )?written/);
   assert.match(await readText(page, '#flash-message'), /^written and verified in [\d.]+ s$/);
   await waitForText(page, '#where', /^on a board on USB, robot paper [0-9a-f]{8}$/);
@@ -79,7 +79,7 @@ testPage('a board is written although the page has not identified it yet', () =>
 });
 
 testPage('no write begins while the page identifies a board', openWithDeafBoard, async (page) => {
-  await runUntil(page, 'the page calls the boot loader', () => page.evaluate(() => window.lizard.dialogue.isClosed));
+  await runUntil(page, 'the page calls the boot loader', () => page.evaluate(() => window.lizard.board.dialogue.isClosed));
   await pressAndWait(page, '#flash-write', /^not written/);
   assert.match(await readText(page, '#flash-message'), /^not written: the page is already talking to the boot loader/);
   await waitForText(page, '#problems', /no boot loader answers/);
@@ -220,7 +220,7 @@ testPage('a write to the simulated UNO ends if another robot replaces this UNO',
   const findMessage = (pattern) => page.locator('#flash-message', { hasText: pattern });
   await page.locator('#flash-write').click();
   await findMessage(/^reading/).waitFor();
-  await page.evaluate(() => window.lizard.change(window.lizard.toml.replace('name = "paper"', 'name = "mine"')) && null);
+  await page.evaluate(() => window.lizard.robot.change(window.lizard.robot.toml.replace('name = "paper"', 'name = "mine"')) && null);
   await findMessage(/^not written: the board is no longer connected\./).waitFor();
   assert.ok(await page.locator('#flash-write').isEnabled());
 });

@@ -7,7 +7,7 @@ const WAKE_MS = 2500;
 
 /** Puts the gait into the session's robot. A real board has the gait only after the robot is written to it. */
 export async function applyGait(session: Session, gait: EditedGait): Promise<Refusal | null> {
-  return session.change(session.robot.putGait(session.toml, gait));
+  return session.robot.change(session.robot.wasm.putGait(session.robot.toml, gait));
 }
 
 /**
@@ -16,7 +16,7 @@ export async function applyGait(session: Session, gait: EditedGait): Promise<Ref
  */
 export async function driveGait(session: Session, gait: EditedGait): Promise<Refusal | null> {
   const refusal = await restartWithGait(session, gait);
-  if (!refusal) await session.drive(gait.name.replaceAll('-', ' '));
+  if (!refusal) await session.board.drive(gait.name.replaceAll('-', ' '));
   return refusal;
 }
 
@@ -25,10 +25,10 @@ export async function driveGait(session: Session, gait: EditedGait): Promise<Ref
  * board.
  */
 export async function restartWithGait(session: Session, gait: EditedGait): Promise<Refusal | null> {
-  if (session.isBoardReal) return refuse('A real board has only the gaits that were written to it. Write this gait to the board, or return to the simulation to try it.');
+  if (session.board.isReal) return refuse('A real board has only the gaits that were written to it. Write this gait to the board, or return to the simulation to try it.');
   const refusal = await applyGait(session, gait);
   if (refusal) return refusal;
-  const { dialogue } = session;
-  await session.link.wait(WAKE_MS);
+  const { dialogue } = session.board;
+  await session.board.link.wait(WAKE_MS);
   return dialogue.isClosed ? refuse('The gait was not started, because the robot was changed meanwhile.') : null;
 }

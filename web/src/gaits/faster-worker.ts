@@ -2,7 +2,7 @@
 import { expose } from 'comlink';
 
 import { type FoundGait, initSync, Robot, type SearchTask, type Trial } from '../../generated/tune';
-import { isRefused, type OnFloor } from '../robot';
+import { isRefused, type RobotOnFloor } from '../robot';
 
 let robot: Robot;
 
@@ -16,7 +16,7 @@ const api = {
    * Prepares a search. Returns the number of gaits to try, the speed that no servo may exceed, deg/s, and the trial of
    * the gait to beat. Throws an `Error` with the refusal as its message.
    */
-  begin(module: WebAssembly.Module, { toml, floor, servos, task }: OnFloor & { task: SearchTask }) {
+  begin(module: WebAssembly.Module, { toml, floor, servos, task }: RobotOnFloor & { task: SearchTask }) {
     initSync({ module });
     robot = new Robot();
     robot.load(toml);

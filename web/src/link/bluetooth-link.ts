@@ -105,7 +105,8 @@ export class BluetoothLink implements Link {
     this.onRange(false);
     while (!this.isClosing && !this.writeCharacteristic) {
       await sleep(RETRY_MS);
-      await this.connect().catch(() => {});
+      // The page may leave the board during each wait.
+      if (!this.isClosing) await this.connect().catch(() => {});
     }
     if (!this.isClosing) this.onRange(true);
   }

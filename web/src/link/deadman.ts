@@ -17,6 +17,8 @@ export class Deadman {
   private robotSettingMs: number | null = null;
   /** Resolves to true if the robot confirms the page's setting; null while the robot's own setting is in effect. */
   private confirmation: Promise<boolean> | null = null;
+  /** Number of times that the page's setting has ended; a call of `setAndConfirm` is outdated when it changes. */
+  private endCount = 0;
 
   constructor(private readonly dialogue: Dialogue) {}
 
@@ -31,17 +33,17 @@ export class Deadman {
   }
 
   private async setAndConfirm(): Promise<boolean> {
-    if (this.robotSettingMs === null) {
-      await this.readSetting();
-      // Meanwhile the robot has restarted, or a user's line needs the robot's own setting.
-      if (!this.isEngaged) return false;
-    }
+    const { endCount } = this;
+    if (this.robotSettingMs === null) await this.readSetting();
+    // Meanwhile the robot has restarted, or a user's line needs the robot's own setting. A later call may be pending.
+    if (endCount !== this.endCount) return this.confirmation ?? false;
     const ms = this.robotSettingMs ? Math.min(this.robotSettingMs, DRIVING_DEADMAN_MS) : DRIVING_DEADMAN_MS;
     const line = `${WORDS.deadman} ${ms}`;
     const isConfirmed = (await this.askQuietly(line))?.ok ?? false;
-    if (isConfirmed && this.isEngaged) this.dialogue.keepAlive(line, Math.floor(ms / LINES_PER_DEADMAN));
+    if (endCount !== this.endCount) return this.confirmation ?? false;
+    if (isConfirmed) this.dialogue.keepAlive(line, Math.floor(ms / LINES_PER_DEADMAN));
     else this.restore();
-    return this.isEngaged;
+    return isConfirmed;
   }
 
   private async readSetting(): Promise<void> {
@@ -50,12 +52,22 @@ export class Deadman {
     if (ms !== undefined) this.robotSettingMs = Number(ms) === DRIVING_DEADMAN_MS ? 0 : Number(ms);
   }
 
+  /**
+   * Restores the robot's own setting before a user's line that prints, stores or replaces it. Returns true if the
+   * page's setting was in effect; it must be set again after the line while the robot walks.
+   */
+  prepareForUserLine(line: string): boolean {
+    const isReplaced = line === WORDS.load || line === WORDS.factory;
+    const isRestored = this.isEngaged && (isReplaced || line === WORDS.cal || line === WORDS.save);
+    if (isRestored) this.restore();
+    if (isReplaced) this.robotSettingMs = null;
+    return isRestored;
+  }
+
   /** Records a change of the robot's own setting by a user's line, if the robot accepted the line. */
   observeUserLine(line: string, isAccepted: boolean): void {
-    if (!isAccepted) return;
     const [word, ms] = line.split(/\s+/);
-    if (word === WORDS.deadman) this.robotSettingMs = Number(ms);
-    if (word === WORDS.load || word === WORDS.factory) this.robotSettingMs = null;
+    if (isAccepted && word === WORDS.deadman) this.robotSettingMs = Number(ms);
   }
 
   /** Stops repeating the line; the robot then stops by itself unless another sender keeps it walking. */
@@ -68,6 +80,7 @@ export class Deadman {
     this.stopRepeating();
     if (!this.isEngaged) return;
     this.confirmation = null;
+    this.endCount += 1;
     if (this.robotSettingMs !== null) void this.askQuietly(`${WORDS.deadman} ${this.robotSettingMs}`);
   }
 
@@ -75,6 +88,7 @@ export class Deadman {
   reset(): void {
     this.stopRepeating();
     this.confirmation = null;
+    this.endCount += 1;
     this.robotSettingMs = null;
   }
 

@@ -15,18 +15,18 @@ class BoardConsole implements Console {
   private readonly bannerCount: number;
 
   constructor(private readonly session: Session) {
-    this.link = session.link;
+    this.link = session.board.link;
     this.bannerCount = session.state.bannerCount.value;
   }
 
   /** True if the board is still connected and has not restarted. */
   get isCurrent(): boolean {
-    return this.session.link === this.link && this.session.state.bannerCount.value === this.bannerCount;
+    return this.session.board.link === this.link && this.session.state.bannerCount.value === this.bannerCount;
   }
 
   async ask(line: string): Promise<Answer> {
     if (!this.isCurrent) throw new Error(LOST_MESSAGE);
-    const answer = await this.session.ask(line, line === WORDS.status);
+    const answer = await this.session.board.ask(line, line === WORDS.status);
     if (answer) return answer;
     throw new Error(this.isCurrent ? `The robot did not answer "${line}".` : LOST_MESSAGE);
   }

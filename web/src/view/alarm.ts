@@ -3,19 +3,19 @@ import type { Session } from '../session';
 import { SILENCE_MS } from '../link/dialogue';
 import { element, setText } from './elements';
 
-/** Shows the alarm while a line is unanswered; returns the function that updates its message and the line's age. */
+/** Shows the alarm while the robot is silent; returns the function that updates the alarm's message and duration. */
 export function setUpAlarm({ state }: Session): () => void {
   const box = element('alarm');
-  /** The time at which the first unanswered line was sent, on the page's clock, ms. */
-  let lineSentAt = 0;
+  /** The time since which the robot has been silent, on the page's clock, ms. */
+  let silentSince = 0;
   const update = () => {
     if (box.hidden) return;
     const message = state.isStopping.value ? 'No answer: the robot may still walk. The page repeats "stop" until the robot answers.' : 'No answer from the robot.';
     setText(element('alarm-message'), message);
-    element('alarm-age').textContent = `${((performance.now() - lineSentAt) / 1000).toFixed(1)} s`;
+    element('alarm-age').textContent = `${((performance.now() - silentSince) / 1000).toFixed(1)} s`;
   };
   state.isSilent.subscribe((isSilent) => {
-    lineSentAt = performance.now() - SILENCE_MS;
+    silentSince = performance.now() - SILENCE_MS;
     box.hidden = !isSilent;
     update();
   });

@@ -17,11 +17,11 @@ export function warnOfBoardRobot(session: Session, problems: ProblemList, showRo
   /** An instance that only reads robots: an instance has one robot, and the page's instance must keep its robot. */
   const reader = new Robot();
   const update = async () => {
-    const { otherRobot } = session;
-    if (!session.isBoardReal || !otherRobot) return problems.setMessage('other', null);
+    const { otherRobot } = session.program;
+    if (!session.board.isReal || !otherRobot) return problems.setMessage('other', null);
     const knownRobot = await findByHash(reader, otherRobot.hash);
-    if (session.otherRobot?.hash !== otherRobot.hash) return;
-    const message = `The ${session.link.name} has another robot, ${otherRobot.name}, but the page draws and predicts ${formatRobotName(session)}.`;
+    if (session.program.otherRobot?.hash !== otherRobot.hash) return;
+    const message = `The ${session.board.link.name} has another robot, ${otherRobot.name}, but the page draws and predicts ${formatRobotName(session.robot)}.`;
     if (!knownRobot) return problems.setMessage('other', `${message} It is not among the page’s robots: open its robot.toml in Build, or write this robot.`);
     problems.setMessage('other', message, { label: `Show ${otherRobot.name}`, action: () => showRobot(knownRobot) });
   };

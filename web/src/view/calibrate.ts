@@ -1,5 +1,6 @@
 // The servo calibration panel: `cal` reads the settings, the inputs change them, and `save` stores them.
 import { loadBoardModule } from '../board-module';
+import { follow } from '../follow';
 import type { ServoSettings } from '../robot';
 import type { Session } from '../session';
 import { getMessage } from '../problem';
@@ -13,7 +14,7 @@ export function setUpCalibration(session: Session): void {
   const message = element('cal-message');
   /** For each servo, the function that shows its settings; empty before the first settings. */
   let servos: ShowSettings[] = [];
-  /** True after a command without an answer: the shown settings may differ from the robot's settings. */
+  /** True if the robot's settings may differ from the shown ones: after a command without an answer, or a restart. */
   let mayBeOutdated = false;
   /** Number of lines that the panel has sent. */
   let sentCount = 0;
@@ -21,7 +22,7 @@ export function setUpCalibration(session: Session): void {
   /** Reads the robot's settings and shows them. */
   async function read(): Promise<void> {
     const previousCount = sentCount;
-    const answer = await session.ask(WORDS.cal, true);
+    const answer = await session.board.ask(WORDS.cal, true);
     const board = await loadBoardModule().catch((error: unknown) => {
       message.textContent = getMessage(error);
       return null;
@@ -37,7 +38,7 @@ export function setUpCalibration(session: Session): void {
 
   async function send(line: string): Promise<void> {
     sentCount += 1;
-    const answer = await session.ask(line);
+    const answer = await session.board.ask(line);
     message.textContent = answer?.text ?? '';
     mayBeOutdated ||= answer === null;
     if (answer && !answer.ok) await read();
@@ -48,8 +49,10 @@ export function setUpCalibration(session: Session): void {
   for (const word of [WORDS.load, WORDS.factory]) element(`cal-${word}`).addEventListener('click', () => void send(word).then(read));
   const panel = element<HTMLDetailsElement>('calibrate');
   panel.addEventListener('toggle', () => isShown(panel) && void read());
+  const { link, bannerCount, status } = session.state;
+  follow([link, bannerCount], () => (mayBeOutdated ||= servos.length > 0));
   // The robot answers again.
-  session.state.status.subscribe((status) => status && mayBeOutdated && void read());
+  status.subscribe((newStatus) => newStatus && mayBeOutdated && void read());
 }
 
 /** Adds the inputs of a servo, which send its settings; returns the function that shows settings in them. */

@@ -37,11 +37,11 @@ export class DriveView {
   ) {
     document.addEventListener('click', (event) => {
       const button = event.target instanceof Element ? event.target.closest<HTMLElement>('[data-command]') : null;
-      if (button?.dataset.command) void session.drive(button.dataset.command);
+      if (button?.dataset.command) void session.board.drive(button.dataset.command);
     });
-    document.addEventListener('keydown', ({ key }) => key === 'Escape' && void session.drive(WORDS.stop));
+    document.addEventListener('keydown', ({ key }) => key === 'Escape' && void session.board.drive(WORDS.stop));
     session.state.refusal.subscribe((refusal) => showMessage(element('drive-message'), refusal));
-    session.followRobot((description) => this.showRobot(description));
+    session.robot.follow((description) => this.showRobot(description));
     session.state.gait.subscribe((gait) => this.markCurrentCommand(gait));
     effect(() => this.showPredictions());
   }
@@ -62,7 +62,7 @@ export class DriveView {
     });
     this.session.state.refusal.value = '';
     // A connected board continues its gait.
-    this.markCurrentCommand(this.session.gait);
+    this.markCurrentCommand(this.session.board.gait);
   }
 
   /**

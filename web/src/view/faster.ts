@@ -4,7 +4,7 @@ import { CallableWorker } from '../callable-worker';
 import { files } from '../files';
 import type { BestGait, FasterWorkerApi } from '../gaits/faster-worker';
 import { getMessage } from '../problem';
-import type { Bars, OnFloor, Trial } from '../robot';
+import type { Bars, RobotOnFloor, Trial } from '../robot';
 import type { Session } from '../session';
 import { element, setText, tableRow } from './elements';
 import { setUpNumberInput } from './number-input';
@@ -67,7 +67,7 @@ export class FasterView {
 
   /** Ends the search if the robot has changed, because the result would not fit the new robot. */
   endIfRobotChanged(): void {
-    if (this.toml === '' || this.session.toml === this.toml) return;
+    if (this.toml === '' || this.session.robot.toml === this.toml) return;
     this.toml = '';
     this.resultBox.hidden = true;
     if (!this.worker) return this.setMessage('');
@@ -78,7 +78,7 @@ export class FasterView {
   private async startSearch(): Promise<void> {
     const bars = this.editor.gait();
     if (!bars) return this.setMessage('There is no gait to start from.');
-    const { toml, floor, servos } = this.session;
+    const { toml, floor, servos } = this.session.robot;
     this.worker = new CallableWorker<FasterWorkerApi>(new Worker(new URL('../gaits/faster-worker.ts', import.meta.url), { type: 'module' }));
     this.isStopped = false;
     this.toml = toml;
@@ -98,7 +98,7 @@ export class FasterView {
   }
 
   /** Tries gaits until all are tried or the user stops the search; shows the progress and the result. */
-  private async search(worker: CallableWorker<FasterWorkerApi>, request: OnFloor & { task: SearchTask }): Promise<void> {
+  private async search(worker: CallableWorker<FasterWorkerApi>, request: RobotOnFloor & { task: SearchTask }): Promise<void> {
     const module = await files.searchModule();
     const { total, rate, referenceTrial } = await worker.call((search) => search.begin(module, request));
     this.referenceTrial = referenceTrial;
@@ -168,9 +168,9 @@ export class FasterView {
   private async compare(): Promise<void> {
     const { referenceGait, best } = this;
     if (!referenceGait || !best) return;
-    const { robot, toml, isBoardReal } = this.session;
+    const { robot, board } = this.session;
     // The comparison only puts the found gait into the robot; therefore the result stays valid.
-    if (!isBoardReal) this.toml = robot.putGait(toml, best.bars);
+    if (!board.isReal) this.toml = robot.wasm.putGait(robot.toml, best.bars);
     await this.editor.compare(referenceGait, best.bars, element('faster-distances'));
   }
 

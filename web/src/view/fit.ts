@@ -38,7 +38,7 @@ export class FitView {
     private readonly parts: PartsView,
   ) {
     this.showOverlapButton.addEventListener('click', () => this.parts.set3d(true));
-    session.followRobot(({ lengths }) => this.showRobot(lengths));
+    session.robot.follow(({ lengths }) => this.showRobot(lengths));
   }
 
   /** Shows the session's robot with these lengths, and checks its parts if the lengths have changed. */
@@ -47,7 +47,7 @@ export class FitView {
     this.rangeRequest = null;
     this.cancelCheck();
     this.parts.showRobot();
-    const { file, toml, original } = this.session;
+    const { file, toml, original } = this.session.robot;
     // No check for a robot chosen from the list (its file name is empty while it loads), for an unchanged robot, and
     // for changes outside the room Build.
     if (file === '' || toml === original || document.body.dataset.at !== 'room-build') this.fittingLengths = robotLengths;
@@ -78,7 +78,7 @@ export class FitView {
 
   /** True if the parts of the session's robot are known to fit. */
   private get isKnownToFit(): boolean {
-    return this.session.description.lengths.every(({ key, value }) => this.fittingLengths.get(key) === value);
+    return this.session.robot.description.lengths.every(({ key, value }) => this.fittingLengths.get(key) === value);
   }
 
   /** Cancels the scheduled or running check, and clears the message. */
@@ -106,7 +106,7 @@ export class FitView {
   }
 
   private async checkRobot(robotLengths: Lengths, changedLengths: Lengths, signal: AbortSignal): Promise<void> {
-    if (await this.proveAndReport(this.session.toml, signal)) {
+    if (await this.proveAndReport(this.session.robot.toml, signal)) {
       this.fittingLengths = robotLengths;
       return this.searchRange(signal);
     }
@@ -116,10 +116,10 @@ export class FitView {
     const nearest = await this.findNearest(changedLengths, signal);
     if (signal.aborted) return;
     this.message.textContent = refusalText;
-    const { lengths } = this.session.description;
+    const { lengths } = this.session.robot.description;
     const names = lengths.filter(({ key }) => changedLengths.has(key)).map(({ key, label }) => `${label} ${nearest.lengths.get(key)}`);
     this.useButton.textContent = `Use the nearest lengths that fit: ${names.join(', ')}`;
-    this.useButton.onclick = () => void this.session.change(nearest.text);
+    this.useButton.onclick = () => void this.session.robot.change(nearest.text);
     this.useButton.hidden = false;
   }
 
@@ -135,7 +135,7 @@ export class FitView {
     };
     const [shortest, longest] = await Promise.all([findLimit(range[0]), findLimit(range[1])]);
     if (signal.aborted) return;
-    const { unit } = this.session.description.lengths.find(({ key }) => key === keys[0]) ?? { unit: '' };
+    const { unit } = this.session.robot.description.lengths.find(({ key }) => key === keys[0]) ?? { unit: '' };
     show([shortest, longest], `Printable from ${shortest} to ${longest} ${unit}.`);
   }
 
@@ -144,7 +144,7 @@ export class FitView {
    * the target whose parts fit. If `triesTargetFirst`, tries the target lengths first, because they may fit.
    */
   private async findNearest(targetLengths: Lengths, signal: AbortSignal, triesTargetFirst = false): Promise<{ lengths: Lengths; text: string }> {
-    const { toml } = this.session;
+    const { toml } = this.session.robot;
     const makeRobot = (fraction: number) => {
       const lengths: Lengths = new Map([...targetLengths].map(([key, to]) => {
         const from = this.fittingLengths.get(key) ?? to;

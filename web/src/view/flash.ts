@@ -2,7 +2,8 @@
 import { effect } from '@preact/signals-core';
 
 import { loadBoardModule } from '../board-module';
-import { NO_WRITING_BY_RADIO, type Session } from '../session';
+import { NO_WRITING_BY_RADIO } from '../board-program';
+import type { Session } from '../session';
 import { getMessage } from '../problem';
 import { element, onFile } from './elements';
 import { reveal } from './rooms';
@@ -36,7 +37,8 @@ export class FlashView {
 
   /** Updates the controls and the note for the session's link; drops the chosen file. */
   private update(): void {
-    const { link, robotSection, description } = this.session;
+    const { link } = this.session.board;
+    const { section, description } = this.session.robot;
     const isBusy = this.writer.isBusy.value;
     if (!link) return;
     this.dropChosenImage();
@@ -44,7 +46,7 @@ export class FlashView {
     const radioNote = `The page cannot write to the ${link.name}: ${NO_WRITING_BY_RADIO}.`;
     const cableNote =
       `Writes to the ${link.name} through its boot loader, verifies, and starts the board. The firmware is the same for every robot; saved settings stay. ` +
-      `If the board already has firmware ${description.version}, the robot alone (${robotSection.length} bytes) can be written in about a second.`;
+      `If the board already has firmware ${description.version}, the robot alone (${section.length} bytes) can be written in about a second.`;
     this.note.textContent = link.kind === 'radio' ? radioNote : cableNote;
   }
 
@@ -73,7 +75,7 @@ export class FlashView {
       ? 'It is lizard firmware.'
       : 'It is not this firmware: the board will not be a lizard until firmware and robot are written again.';
     element('flash-question-text').textContent =
-      `${file.name}, ${this.chosenImage.length} bytes. ${kindText} Write it to the ${this.session.link.name}?`;
+      `${file.name}, ${this.chosenImage.length} bytes. ${kindText} Write it to the ${this.session.board.link.name}?`;
     this.confirmationBox.hidden = false;
     element('flash-no').focus();
   }

@@ -49,7 +49,7 @@ export class GaitEditorView {
   ) {
     this.trial = new TrialView(session, writer, { prefix: 'gait', editedGait: () => this.gait, change: (key, value) => this.changeGait({ [key]: value }) });
     this.faster = new FasterView(session, { gait: () => this.gait, setGait: (gait) => this.changeGait(gait), compare });
-    session.followRobot(() => this.faster.endIfRobotChanged());
+    session.robot.follow(() => this.faster.endIfRobotChanged());
     followShownRobot(element<HTMLDetailsElement>('gait-editor'), session, (description) => this.showRobot(description));
     this.templateList.addEventListener('change', () => this.editTemplate());
     this.nameInput.addEventListener('input', () => this.changeGait({ name: this.nameInput.value.trim().replaceAll(' ', '-') }));
@@ -62,8 +62,8 @@ export class GaitEditorView {
 
   /** Shows another robot; an edited gait stays. */
   private showRobot({ gaits }: Description): void {
-    const { robot } = this.session;
-    const options = gaits.flatMap(({ name }, index) => (robot.bars(index) ? [new Option(name, String(index))] : []));
+    const { wasm } = this.session.robot;
+    const options = gaits.flatMap(({ name }, index) => (wasm.bars(index) ? [new Option(name, String(index))] : []));
     replaceOptions(this.templateList, options);
     if (!this.gait || this.templateList.value === '') return this.editTemplate();
     this.showGait();
@@ -71,7 +71,7 @@ export class GaitEditorView {
 
   /** Starts editing a copy of the robot's gait that the user chose as a template. */
   private editTemplate(): void {
-    const bars = this.templateList.value === '' ? null : this.session.robot.bars(Number(this.templateList.value));
+    const bars = this.templateList.value === '' ? null : this.session.robot.wasm.bars(Number(this.templateList.value));
     if (!bars) return this.trial.setMessage('This robot has no gait of four bars to start from.');
     this.gait = { ...bars, name: this.nameInput.value || 'mine' };
     this.showGait();

@@ -76,7 +76,7 @@ export class GestureEditorView {
 
   /** Shows the plane of the chosen end with the current line if `keepsLine`, else with the chosen shape. */
   private showPlane(keepsLine = false): void {
-    this.workspace = this.session.robot.workspace(this.gesture.end === 'head' ? 0 : 1);
+    this.workspace = this.session.robot.wasm.workspace(this.gesture.end === 'head' ? 0 : 1);
     if (!this.workspace) return;
     this.drawBackground(this.workspace);
     if (keepsLine) return this.changeGesture({});
@@ -137,7 +137,7 @@ export class GestureEditorView {
     if (document.activeElement !== this.nameInput) this.nameInput.value = gesture.name;
     this.endList.value = gesture.end;
     this.drawnLine.setAttribute('d', this.formatPath(gesture.points));
-    this.smoothedPath.setAttribute('d', this.formatPath((gesture.points.length > 0 && this.session.robot.smoothedPath(gesture)) || []));
+    this.smoothedPath.setAttribute('d', this.formatPath((gesture.points.length > 0 && this.session.robot.wasm.smoothedPath(gesture)) || []));
   }
 
   /** Records the lines that the user draws with a finger or a mouse. */

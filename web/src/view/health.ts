@@ -26,9 +26,9 @@ export function setUpHealth(session: Session, writer: BoardWriter): void {
   /** True while a request has no answer. */
   let isPending = false;
   const requestStatus = async () => {
-    if (isPending || writer.isBusy.value || document.hidden || !session.mayAsk) return;
+    if (isPending || writer.isBusy.value || document.hidden || !session.board.mayAsk) return;
     isPending = true;
-    const status = await session.status();
+    const status = await session.board.status();
     isPending = false;
     if (status && isShown(panel)) for (const { box, format } of values) setText(box, format(status));
   };

@@ -24,12 +24,12 @@ export function setUpLengths(session: Session, offerValidLengths: (edits: Edits)
     }
   };
   const changeLength = async (key: string, value: number) => {
-    const { lengths } = session.description;
+    const { lengths } = session.robot.description;
     // An emptied input returns to the robot's length.
     if (!Number.isFinite(value)) return putLengths(lengths, { isInvalid: false });
     const edits = makeEditsWithTwin(key, value, lengths, symmetryBox.checked);
-    const { text, refusal } = Robot.tryLengths(session.toml, edits, false);
-    if (!refusal) return void (await session.change(text));
+    const { text, refusal } = Robot.tryLengths(session.robot.toml, edits, false);
+    if (!refusal) return void (await session.robot.change(text));
     const refusedLengths = lengths.filter((length) => edits.some(([editedKey]) => editedKey === length.key));
     // The inputs return to the robot's lengths.
     putLengths(refusedLengths, { isInvalid: true });
@@ -45,12 +45,12 @@ export function setUpLengths(session: Session, offerValidLengths: (edits: Edits)
       inputs.set(key, input);
     }
   };
-  element('lengths-reset').addEventListener('click', () => void session.change(session.original));
+  element('lengths-reset').addEventListener('click', () => void session.robot.change(session.robot.original));
   element('lengths-save').addEventListener('click', () => {
-    const refusal = downloadRobot(session.toml, session.floor);
+    const refusal = downloadRobot(session.robot.toml, session.robot.floor);
     if (refusal) setMessage(`This robot.toml does not have the settings of Legs, feet and floor: ${refusal.reason}`);
   });
-  session.followRobot(({ lengths }) => {
+  session.robot.follow(({ lengths }) => {
     if (lengths.length !== inputs.size) buildInputs(lengths);
     putLengths(lengths, { isInvalid: false });
     setMessage('');

@@ -10,7 +10,7 @@ export class MarginsView {
 
   constructor(session: Session) {
     // Each margin has a bar, with a mark at its limit.
-    session.followRobot(({ margins }) => {
+    session.robot.follow(({ margins }) => {
       this.bars = margins.map(({ name, limit }) => {
         const [fill, mark, value] = [make('div', { className: 'fill' }), make('div', { className: 'limit' }), make('span', {})];
         mark.style.left = `${limit * 100}%`;

@@ -93,7 +93,7 @@ export class MeasureView {
     this.driverList.addEventListener('change', () => this.updateControls());
     document.addEventListener(ROOM_OPENED, () => this.room.hidden && this.switchCameraOff());
     document.addEventListener('visibilitychange', () => document.hidden && this.protocol?.stop('the page was hidden'));
-    session.followRobot((description) => this.showRobot(description));
+    session.robot.follow((description) => this.showRobot(description));
     predictor.predictions.subscribe(() => this.tickMovingGaits());
     session.state.gait.subscribe((activity) => this.protocol?.setActivity(activity));
     session.state.isSilent.subscribe((isSilent) => isSilent && this.protocol?.stop('the robot is silent'));
@@ -125,7 +125,7 @@ export class MeasureView {
   /** Ends driving after a change of the link, and preselects the page as the driver of a real robot. */
   private followLink(): void {
     this.protocol?.end('the link to the robot has changed');
-    this.driverList.value = this.session.isBoardReal ? 'page' : 'other';
+    this.driverList.value = this.session.board.isReal ? 'page' : 'other';
     this.updateControls();
   }
 
@@ -228,7 +228,7 @@ export class MeasureView {
   /** Does what the start button shows: starts or ends recording or driving, or measures the video file again. */
   private async handleStartButton(): Promise<void> {
     if (this.task === 'record') return this.measureWalks(this.wholeVideoWalks);
-    if (this.task === 'drive') return void this.session.ask(WORDS.stop);
+    if (this.task === 'drive') return void this.session.board.ask(WORDS.stop);
     if (this.hasVideo) return this.measureWalks(this.wholeVideoWalks);
     if (this.driverList.value === 'page') return this.driveGaits(this.getDrivableGaits());
     await this.clearVideo();
@@ -247,10 +247,10 @@ export class MeasureView {
   private getDrivableGaits(): Gait[] {
     const session = this.session;
     const tickedCommands = [...this.gaitBoxes.querySelectorAll('input')].filter(({ checked }) => checked).map(({ name }) => name);
-    const gaits = session.description.gaits.filter(({ command }) => tickedCommands.includes(command));
+    const gaits = session.robot.description.gaits.filter(({ command }) => tickedCommands.includes(command));
     if (this.isSetupOpen()) throw new Error('Hands may be in the robot: leave the set-up first.');
-    if (session.otherRobot) throw new Error(`The board has another robot, ${session.otherRobot.name}: choose that robot, or write this one to the board.`);
-    if (!session.isFirmwareAnswering) throw new Error(`No robot answers from the ${session.link.name}.`);
+    if (session.program.otherRobot) throw new Error(`The board has another robot, ${session.program.otherRobot.name}: choose that robot, or write this one to the board.`);
+    if (!session.program.isFirmwareAnswering) throw new Error(`No robot answers from the ${session.board.link.name}.`);
     if (gaits.length === 0) throw new Error('Tick at least one gait.');
     return gaits;
   }
@@ -261,9 +261,9 @@ export class MeasureView {
     const { cycles, pause } = this.values;
     const speed = this.values.speed ?? 100;
     const protocol = new Protocol({
-      ask: async (line) => (await session.ask(line))?.ok === true,
+      ask: async (line) => (await session.board.ask(line))?.ok === true,
       now: () => this.source.now,
-      wait: (seconds) => session.link.wait(1000 * seconds),
+      wait: (seconds) => session.board.link.wait(1000 * seconds),
       predictions: () => this.predictor.gaits.map(({ command, displacement: { forward, turn } }) => ({ command, forward: forward ?? 0, turn: turn ?? Infinity })),
       putBack: () => this.waitUntilPutBack(protocol),
       showProgress: (text) => this.setMessage(text),
@@ -287,7 +287,7 @@ export class MeasureView {
 
   /** Returns the walks with the gaits' names in robot.toml instead of their commands. */
   private withGaitNames(walks: Walk[]): RequestedWalk[] {
-    const { gaits } = this.session.description;
+    const { gaits } = this.session.robot.description;
     return walks.map(({ gait, during }) => ({ gait: gaits.find(({ command }) => command === gait)?.name ?? gait, during }));
   }
 
@@ -311,7 +311,7 @@ export class MeasureView {
     this.updateControls();
     const { height = null, ruler } = this.values;
     try {
-      const results = await this.callVideo((video) => video.measure({ toml: this.session.toml, speed, deck_height: height, ruler_length: ruler ?? 100, walks }));
+      const results = await this.callVideo((video) => video.measure({ toml: this.session.robot.toml, speed, deck_height: height, ruler_length: ruler ?? 100, walks }));
       this.showResults(results.gaits);
       problems.push(...results.problems);
     } catch (error) {

@@ -21,7 +21,7 @@ export class OwnRobots {
 
   /** If another robot has replaced a changed robot, puts the changed robot aside and offers to restore it. */
   putAside(previousRobot: SavedChanges | null): void {
-    if (!previousRobot || previousRobot.toml === previousRobot.original || previousRobot.toml === this.session.toml) return;
+    if (!previousRobot || previousRobot.toml === previousRobot.original || previousRobot.toml === this.session.robot.toml) return;
     this.storeList([previousRobot, ...browserStorage.getRobotsAside().filter(({ toml }) => toml !== previousRobot.toml)]);
     this.problems.setMessage('own', 'This is another robot. Your own robot is put aside and stays in the list of robots.', { label: 'Back to my own robot', action: () => void this.restore() });
   }
@@ -30,12 +30,12 @@ export class OwnRobots {
   async restore(index = 0): Promise<void> {
     const ownRobot = this.listedRobots[index];
     this.problems.setMessage('own', null);
-    const { changes: previousRobot } = this.session;
+    const { changes: previousRobot } = this.session.robot;
     await this.loadFile(ownRobot.file);
     // The user has chosen another robot meanwhile, whose file is still being loaded.
-    if (this.session.file === '') return;
+    if (this.session.robot.file === '') return;
     // If the file has changed since the robot was put aside, the text is loaded without its floor, servos and supply.
-    const isRestored = (await this.session.restoreSaved(ownRobot)) || (await this.session.change(ownRobot.toml)) === null;
+    const isRestored = (await this.session.robot.restoreSaved(ownRobot)) || (await this.session.robot.change(ownRobot.toml)) === null;
     if (!isRestored) return this.putAside(previousRobot);
     this.storeList(browserStorage.getRobotsAside().filter(({ toml }) => toml !== ownRobot.toml));
     this.putAside(previousRobot);

@@ -20,9 +20,9 @@ export function setUpPace(session: Session): void {
   });
   slider.addEventListener('change', () => {
     isPending = true;
-    void session.drive(`${WORDS.speed} ${slider.value}`).finally(() => {
+    void session.board.drive(`${WORDS.speed} ${slider.value}`).finally(() => {
       isPending = false;
-      show(session.pace);
+      show(session.board.pace);
     });
   });
   session.state.pace.subscribe(show);

@@ -75,7 +75,7 @@ export class PartsView {
 
   /** Shows the session's robot, if the stage is in 3D. */
   showRobot(): void {
-    const { toml, original } = this.session;
+    const { toml, original } = this.session.robot;
     this.buttons.changed.hidden = toml === original;
     if (this.listedToml !== toml) {
       this.listedToml = toml;
@@ -195,7 +195,7 @@ export class PartsView {
   render(frame: Frame | null): void {
     const { robotView, worker } = this;
     if (!robotView || !worker || !robotView.renderBudget.mayRender() || !this.is3d) return;
-    const neutral = this.session.description.servos.map((servo) => servo.neutral);
+    const neutral = this.session.robot.description.servos.map((servo) => servo.neutral);
     // The robot stands still while a step of the guide or a collision is shown.
     const isMoving = this.step === null && !this.collidingPair && frame?.scene != null;
     const [angles, lags] = isMoving ? [frame.scene?.angles ?? neutral, frame.lags] : [this.collidingPair?.pose ?? neutral, [0, 0, 0, 0]];
@@ -215,7 +215,7 @@ export class PartsView {
   private async makeFiles(selection: 'all' | 'changed'): Promise<void> {
     // While files are being made, the button cancels the job.
     if (this.cancelMaking) return this.cancelMaking();
-    const { toml, original, file } = this.session;
+    const { toml, original, file } = this.session.robot;
     const progressBar = element<HTMLProgressElement>('parts-progress');
     const stageTexts = { prove: 'Proving that no two parts collide', make: 'Making the files' };
     const button = this.buttons[selection];

@@ -4,6 +4,7 @@ import { restartWithGait } from '../gaits/apply-gait';
 import { MAX_SECONDS, Recording } from '../recording';
 import { type Bars, type Description, type Four, type Frame, Robot } from '../robot';
 import type { Session } from '../session';
+import { FRAME_SECONDS } from '../shown-robot';
 import { getMessage } from '../problem';
 import { WORDS } from '../words';
 import { saveFile } from './download';
@@ -20,9 +21,6 @@ const VIDEO_FORMATS = [
   { type: 'video/webm', extension: 'webm' },
   { type: 'video/mp4', extension: 'mp4' },
 ];
-
-/** Period of the firmware's frames. */
-const FRAME_SECONDS = 0.02;
 
 /** Two robots that walk side by side; the page's robot is the first. */
 interface RobotPair {
@@ -78,7 +76,7 @@ export class RecordView {
       this.updateButtons();
     });
     this.updateButtons();
-    session.followRobot((description) => this.showRobot(description));
+    session.robot.follow((description) => this.showRobot(description));
     session.state.gait.subscribe((gait) => this.followGait(gait));
   }
 
@@ -99,7 +97,7 @@ export class RecordView {
 
   /** Adds a frame, which lasts `seconds`, to the recording, and advances the companion. */
   addFrame(frame: Frame, widths: Four<number> | null, seconds: number): void {
-    if (this.isRecording && this.recording && !this.recording.add(frame, widths, this.session.gait, seconds)) {
+    if (this.isRecording && this.recording && !this.recording.add(frame, widths, this.session.board.gait, seconds)) {
       this.setRecording(false);
       this.setMessage(`The recording is full: ${MAX_SECONDS} s.`);
     }
@@ -154,7 +152,7 @@ export class RecordView {
     }
     const panel = pair?.output.closest('details');
     if (!pair || !panel || !companion?.frame || this.isWaiting || !isShown(panel)) return;
-    const { last } = this.session;
+    const { last } = this.session.robot;
     const start = { x: 0, y: 0, heading: 0 };
     const displacementOf = (frame: Frame | null) => (frame ? formatDisplacement(Robot.displacementBetween(start, frame.place)) : '');
     this.setMessage(`${pair.names[0]}: ${displacementOf(last)}. ${pair.names[1]}: ${displacementOf(companion.frame)}.`, pair.output);
@@ -239,13 +237,13 @@ export class RecordView {
 
   private makePair(): RobotPair {
     const gaits: [string, string] = [this.firstGaitList.value, this.secondGaitList.value];
-    return { toml: this.session.toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], output: element('keep-message') };
+    return { toml: this.session.robot.toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], output: element('keep-message') };
   }
 
   /** Makes the page's robot walk the found gait of a search, and the second robot the previous gait. */
   async compare(previousGait: Bars, foundGait: Bars, output: HTMLElement): Promise<void> {
     const session = this.session;
-    const toml = session.robot.putGait(session.toml, previousGait);
+    const toml = session.robot.wasm.putGait(session.robot.toml, previousGait);
     this.setMessage('The robot restarts with this gait…', output);
     const refusal = await restartWithGait(session, foundGait);
     if (refusal) return this.setMessage(refusal.reason, output);
@@ -256,24 +254,24 @@ export class RecordView {
   /** Starts both robots in the same frame, each from its own start. */
   private async startBoth(pair: RobotPair): Promise<void> {
     const { session } = this;
-    const { description } = session;
+    const { description } = session.robot;
     this.removeCompanion();
     this.setMessage('Switching on the second robot…', pair.output);
     try {
-      const pendingStop = session.drive(WORDS.stop);
-      const { stopCount } = session;
+      const pendingStop = session.board.drive(WORDS.stop);
+      const { stopCount } = session.board;
       await pendingStop;
       // The robot was changed or stopped again meanwhile.
-      if (session.description !== description || session.stopCount !== stopCount) return this.setMessage('', pair.output);
-      const companion = new Companion(pair.toml, session);
-      session.returnToStart();
+      if (session.robot.description !== description || session.board.stopCount !== stopCount) return this.setMessage('', pair.output);
+      const companion = new Companion(pair.toml, session.robot);
+      session.robot.returnToStart();
       this.floor.clearTracks();
-      companion.send(`${WORDS.speed} ${session.pace}`);
+      companion.send(`${WORDS.speed} ${session.board.pace}`);
       companion.step();
       Object.assign(this, { companion, pair, isWaiting: true, pendingSeconds: 0 });
       this.updateButtons();
       this.floor.fitView();
-      await session.drive(pair.gaits[0]);
+      await session.board.drive(pair.gaits[0]);
     } catch (error) {
       this.setMessage(`Cannot start the second robot: ${getMessage(error)}`, pair.output);
     }

@@ -11,7 +11,7 @@ const PNG_SCALE = 2;
 /** Sets the buttons up; returns a function that shows the given reports, or hides the section if there are none. */
 export function setUpResults(session: Session): (gaits: Report[]) => void {
   let gaits: Report[] = [];
-  const drawPicture = () => drawResults(session.description.name, gaits);
+  const drawPicture = () => drawResults(session.robot.description.name, gaits);
   const savePng = async () => {
     const image = new Image();
     image.src = `data:image/svg+xml,${encodeURIComponent(drawPicture())}`;

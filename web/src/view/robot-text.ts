@@ -41,7 +41,7 @@ export class RobotTextView {
     element('robot-line').addEventListener('click', () => this.selectErrorLine());
     element('robot-link').addEventListener('click', () => void this.copyLink());
     element('robot-code').addEventListener('click', () => void this.toggleQrCode());
-    session.followRobot(() => this.showRobot());
+    session.robot.follow(() => this.showRobot());
     onFile(element('robot-open'), (file) => void this.openFile(file));
     document.addEventListener('dragover', (event) => {
       if (event.dataTransfer?.types.includes('Files')) event.preventDefault();
@@ -56,7 +56,7 @@ export class RobotTextView {
 
   /** Shows the session's robot. */
   private showRobot(): void {
-    const { toml, file } = this.session;
+    const { toml, file } = this.session.robot;
     if (this.history[this.position] !== toml) {
       this.history = [...this.history.slice(0, this.position + 1).slice(-MAX_UNDO_STEPS), toml];
       this.position = this.history.length - 1;
@@ -84,8 +84,8 @@ export class RobotTextView {
   async loadFromAddress(hash = location.hash): Promise<boolean> {
     try {
       const encoded = parseFragment(hash).get('robot');
-      const toml = encoded === null ? this.session.toml : await unpack(encoded);
-      return toml === this.session.toml || (await this.loadAndShow(toml));
+      const toml = encoded === null ? this.session.robot.toml : await unpack(encoded);
+      return toml === this.session.robot.toml || (await this.loadAndShow(toml));
     } catch (error) {
       reveal(this.textBox);
       this.showRefusal(refuse(getMessage(error)));
@@ -103,7 +103,7 @@ export class RobotTextView {
 
   /** Loads a text as the robot, or shows it with its error; returns true if the text was accepted. */
   async loadText(toml: string): Promise<boolean> {
-    const refusal = await this.session.change(toml);
+    const refusal = await this.session.robot.change(toml);
     if (!refusal) return true;
     this.textBox.value = toml;
     this.showRefusal(refusal);
@@ -123,8 +123,8 @@ export class RobotTextView {
 
   /** Loads the text as the robot and writes the robot to the board. */
   private async loadAndWrite(): Promise<void> {
-    if (this.textBox.value !== this.session.toml) await this.loadAndShow(this.textBox.value);
-    if (this.textBox.value !== this.session.toml) return;
+    if (this.textBox.value !== this.session.robot.toml) await this.loadAndShow(this.textBox.value);
+    if (this.textBox.value !== this.session.robot.toml) return;
     await this.writer.writeRobot('robot');
   }
 
@@ -141,7 +141,7 @@ export class RobotTextView {
     const previousPosition = this.position;
     // The position is set first, so that the restored robot does not count as a new change.
     this.position = position;
-    const refusal = await this.session.change(toml);
+    const refusal = await this.session.robot.change(toml);
     if (!refusal) return;
     this.position = previousPosition;
     this.showRefusal(refusal);
@@ -149,7 +149,7 @@ export class RobotTextView {
 
   private async copyLink(): Promise<void> {
     try {
-      await navigator.clipboard.writeText(await makeLink(this.session.toml));
+      await navigator.clipboard.writeText(await makeLink(this.session.robot.toml));
       this.setMessage('The link is copied: it opens this robot, without the comments of its text.');
     } catch (error) {
       this.setMessage(`Cannot copy the link: ${getMessage(error)}`);
@@ -163,11 +163,11 @@ export class RobotTextView {
     element('robot-code').setAttribute('aria-pressed', String(isShown));
     qrCodeBox.replaceChildren();
     if (!isShown) return this.setMessage('');
-    const { toml } = this.session;
+    const { toml } = this.session.robot;
     try {
       const [{ makeQrCode }, link] = await Promise.all([import('./qr-code'), makeLink(toml)]);
       // The code would belong to the previous robot.
-      if (this.session.toml !== toml) return;
+      if (this.session.robot.toml !== toml) return;
       qrCodeBox.replaceChildren(makeQrCode(link));
       const isLocal = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
       this.setMessage(isLocal ? 'This address works only on this computer: a phone needs the page’s address on a web server.' : 'Scan the code with a phone’s camera to open this robot.');

@@ -39,15 +39,15 @@ export const isShown = (panel: HTMLDetailsElement) => panel.open && panel.closes
 export function followShownRobot(panel: HTMLDetailsElement, session: Session, show: (description: Description) => void): void {
   let shownRobot = '';
   const update = () => {
-    if (!isShown(panel) || session.toml === '') return;
-    const { toml, description, floor, servos } = session;
+    if (!isShown(panel) || session.robot.toml === '') return;
+    const { toml, description, floor, servos } = session.robot;
     const robot = JSON.stringify([toml, floor, servos]);
     if (robot === shownRobot) return;
     shownRobot = robot;
     show(description);
   };
   panel.addEventListener('toggle', update);
-  session.followRobot(update);
+  session.robot.follow(update);
 }
 
 /** Opens the room and the panel of an element. */

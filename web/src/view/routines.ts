@@ -1,6 +1,6 @@
 // The panel of routines: their steps, as in robot.toml, and a recorder that makes a routine from a drive.
 import { follow } from '../follow';
-import { type OnFloor, type Place, type Refusal, Robot, type RoundPath, type Routine } from '../robot';
+import { type RobotOnFloor, type Place, type Refusal, Robot, type RoundPath, type Routine } from '../robot';
 import { createRobotQueue } from '../robot-requests';
 import { DriveRecorder } from '../routines/drive-recorder';
 import type { Session } from '../session';
@@ -38,7 +38,7 @@ export class RoutinesView {
   private recordedSteps: string[] = [];
   /** The index of the dragged step, and its new index after a release now; null if no step is dragged. */
   private drag: { from: number; to: number } | null = null;
-  private readonly pathQueue = createRobotQueue((robot, request: OnFloor & { routine: string }) => robot.simulateRound(request), (path) => this.drawPath(this.chosenRoutine && path));
+  private readonly pathQueue = createRobotQueue((robot, request: RobotOnFloor & { routine: string }) => robot.simulateRound(request), (path) => this.drawPath(this.chosenRoutine && path));
 
   constructor(
     private readonly session: Session,
@@ -56,7 +56,7 @@ export class RoutinesView {
     onClick('start', () => void this.startRoutine());
     onClick('write', () => void this.useDraft().then((isAccepted) => isAccepted && writer.writeRobot('routine')));
     const { state } = session;
-    session.followRobot(() => this.recorder && this.toggleRecording());
+    session.robot.follow(() => this.recorder && this.toggleRecording());
     state.gait.subscribe((activity) => {
       this.recorder?.setActivity(activity, session.clock);
       this.showRecording();
@@ -82,7 +82,7 @@ export class RoutinesView {
     if (!isShown(this.panel)) return;
     const { chosenRoutine } = this;
     if (!chosenRoutine) return this.drawPath(null);
-    const { floor, servos } = this.session;
+    const { floor, servos } = this.session.robot;
     this.pathQueue.submit({ toml: Robot.putSteps(this.text.draft, chosenRoutine.name, chosenRoutine.steps).text, floor, servos, routine: chosenRoutine.name });
   }
 
@@ -97,9 +97,9 @@ export class RoutinesView {
 
   /** Starts a recording, or ends the recording and offers to store its steps. */
   private toggleRecording(): void {
-    const { description, gait, pace, clock } = this.session;
+    const { robot, board, clock } = this.session;
     const steps = this.recorder?.listSteps(clock) ?? null;
-    this.recorder = steps ? null : new DriveRecorder(description.gaits, gait, pace, clock);
+    this.recorder = steps ? null : new DriveRecorder(robot.description.gaits, board.gait, board.pace, clock);
     const button = element('routine-record');
     button.setAttribute('aria-pressed', String(!steps));
     button.textContent = steps ? 'Record a drive' : 'Stop recording';
@@ -160,15 +160,15 @@ export class RoutinesView {
   /** Makes the shown text the robot, unless it is already; returns true if the text is accepted. */
   private async useDraft(): Promise<boolean> {
     const { draft } = this.text;
-    return draft === this.session.toml || this.text.loadText(draft);
+    return draft === this.session.robot.toml || this.text.loadText(draft);
   }
 
   private async startRoutine(): Promise<void> {
     const session = this.session;
     if (!(await this.useDraft())) return;
     // A simulated UNO restarts after each change of the robot.
-    if (!session.isFirmwareAnswering) await session.waitForBanner();
-    await session.drive(this.routineList.value.replaceAll('-', ' '));
+    if (!session.program.isFirmwareAnswering) await session.board.waitForBanner();
+    await session.board.drive(this.routineList.value.replaceAll('-', ' '));
   }
 
   private findInput(index: number): HTMLInputElement | null {

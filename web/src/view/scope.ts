@@ -33,11 +33,11 @@ export class ScopeView {
   private hasPulses = true;
 
   constructor(session: Session) {
-    session.followRobot((description) => this.showRobot(description));
+    session.robot.follow((description) => this.showRobot(description));
     effect(() => {
-      const { isBoardReal } = session;
-      this.hasPulses = !isBoardReal;
-      element('scope-note').hidden = !isBoardReal;
+      const { isReal } = session.board;
+      this.hasPulses = !isReal;
+      element('scope-note').hidden = !isReal;
       this.pulses = [];
       this.frameWidths = [0, 0, 0, 0];
     });

@@ -67,7 +67,7 @@ export class SetupDialog {
   constructor(
     readonly session: Session,
     private readonly writer: BoardWriter,
-    private readonly connectBoard: () => Promise<void>,
+    private readonly toggleBoard: () => Promise<void>,
   ) {
     element('setup-open').addEventListener('click', () => this.open(this.step));
     element('setup-leave').addEventListener('click', () => void this.leave());
@@ -99,7 +99,7 @@ export class SetupDialog {
   }
 
   private open(step: Step): void {
-    this.session.stopIfWalking();
+    this.session.board.stopIfWalking();
     this.dialog.hidden = false;
     reveal(this.dialog);
     element('setup-open').setAttribute('aria-expanded', 'true');
@@ -109,7 +109,8 @@ export class SetupDialog {
 
   /** Opens the first step that a newly connected board needs, if any. */
   openNeededStep(): void {
-    const { banner, hasThisRobot, link } = this.session;
+    const { banner, link } = this.session.board;
+    const { hasThisRobot } = this.session.program;
     // A radio cannot write, and a user with a radio module has already finished these steps.
     if (link.kind === 'radio' && this.dialog.hidden) return;
     const step = banner === null || (banner !== 'unknown' && !hasThisRobot) ? firmwareStep : this.isUncalibrated ? hornsStep : null;
@@ -125,11 +126,11 @@ export class SetupDialog {
 
   /** Updates the view for the session's link; drops the current action if the link is new. */
   private followLink(): void {
-    const { link, isBoardReal } = this.session;
+    const { link, isReal } = this.session.board;
     if (link === this.lastLink) return this.update();
-    const isGone = this.wasBoardReal && !isBoardReal;
+    const isGone = this.wasBoardReal && !isReal;
     this.lastLink = link;
-    this.wasBoardReal = isBoardReal;
+    this.wasBoardReal = isReal;
     this.isUncalibrated = false;
     this.isLost = isGone && !this.dialog.hidden;
     this.dropAction();
@@ -185,7 +186,7 @@ export class SetupDialog {
   readonly isDone = (step: string): boolean => this.doneSteps.has(step);
 
   /** Connects a board on USB, or disconnects a board, unless the boot loader uses the line. */
-  readonly connect = (): void => void (this.writer.isBusy.value || this.connectBoard());
+  readonly toggleConnection = (): void => void (this.writer.isBusy.value || this.toggleBoard());
 
   /** Writes the page's robot, alone or with the firmware. */
   readonly write = (content: WriteContent): void => {
@@ -228,7 +229,7 @@ export class SetupDialog {
   /** Returns the calibrator for the connected robot; starts the calibrator if needed. */
   private async requireCalibrator(): Promise<BoardCalibrator> {
     if (this.isLost) throw new Error(LOST_MESSAGE);
-    if (!this.session.isFirmwareAnswering) throw new Error(NO_ROBOT_MESSAGE);
+    if (!this.session.program.isFirmwareAnswering) throw new Error(NO_ROBOT_MESSAGE);
     this.calibrator ??= await BoardCalibrator.begin(this.session);
     return this.calibrator;
   }
@@ -281,16 +282,16 @@ export class SetupDialog {
     if (!this.isBusy) this.setMessage('');
     this.redraw();
     this.title.focus({ preventScroll: true });
-    if (!step.needsRobot || !this.session.isFirmwareAnswering || this.isLost) return;
+    if (!step.needsRobot || !this.session.program.isFirmwareAnswering || this.isLost) return;
     // Servos that the previous step turned return to neutral.
     const { calibrator } = this;
     if (!calibrator) this.runAction(async () => this.requireCalibrator().then(() => ''), true);
-    else if (this.session.gait !== GAITS.stand) this.runAction(async () => calibrator.run((calibrator) => calibrator.stand()).then(() => ''), true);
+    else if (this.session.board.gait !== GAITS.stand) this.runAction(async () => calibrator.run((calibrator) => calibrator.stand()).then(() => ''), true);
   }
 
   readonly redraw = (): void => {
     const { step, session } = this;
-    if (!session.link) return;
+    if (!session.board.link) return;
     const index = STEPS.indexOf(step);
     this.stepList.querySelectorAll('button').forEach((stepButton, n) => {
       setAttribute(stepButton, 'aria-current', n === index ? 'step' : null);
@@ -301,11 +302,11 @@ export class SetupDialog {
     element<HTMLButtonElement>('setup-back').disabled = index === 0;
     element<HTMLButtonElement>('setup-next').disabled = index === STEPS.length - 1;
     const isLost = this.isLost && step !== boardStep;
-    const isUsable = !isLost && (!step.needsRobot || session.isFirmwareAnswering);
+    const isUsable = !isLost && (!step.needsRobot || session.program.isFirmwareAnswering);
     this.servoButtons.hidden = !isUsable || !step.isPerServo;
     this.servoButtons.querySelectorAll('button').forEach((servoButton, servo) => servoButton.setAttribute('aria-pressed', String(servo === this.servo)));
-    const scene = session.last?.scene ?? null;
-    const drawing = isUsable && step.highlight && scene ? makeDrawing(session.description, scene, step.highlight(this)) : null;
+    const scene = session.robot.last?.scene ?? null;
+    const drawing = isUsable && step.highlight && scene ? makeDrawing(session.robot.description, scene, step.highlight(this)) : null;
     this.drawingBox.replaceChildren(...(drawing ? [drawing] : []));
     this.drawingBox.hidden = !drawing;
     const tryOnSimulation = () => {
@@ -317,7 +318,7 @@ export class SetupDialog {
       : [
           paragraph(isLost ? LOST_MESSAGE : NO_ROBOT_MESSAGE),
           row(
-            button(isLost ? 'Connect it again…' : 'To the board', isLost ? this.connect : () => this.goTo(boardStep.name), true),
+            button(isLost ? 'Connect it again…' : 'To the board', isLost ? this.toggleConnection : () => this.goTo(boardStep.name), true),
             ...(isLost ? [button('Try this step on the simulated UNO', tryOnSimulation)] : []),
           ),
         ];

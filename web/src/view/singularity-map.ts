@@ -24,8 +24,8 @@ export class SingularityMapView {
   ) {
     this.canvas = element<HTMLCanvasElement>(`map-${endIndex}`);
     onPaletteChange(() => (this.background = null));
-    session.followRobot(() => {
-      this.map = session.robot.singularityMap(endIndex);
+    session.robot.follow(() => {
+      this.map = session.robot.wasm.singularityMap(endIndex);
       this.background = null;
       this.trail = [];
     });

@@ -51,30 +51,30 @@ export class SketchView {
   private requestDrawing(): void {
     // The request would replace the queued last position of a drag; the end of the drag requests a drawing, too.
     if (this.isDragEnding) return;
-    this.lengthsQueue.submit({ toml: this.session.toml, edits: [], isLast: false, keys: this.slider.keys });
+    this.lengthsQueue.submit({ toml: this.session.robot.toml, edits: [], isLast: false, keys: this.slider.keys });
   }
 
   /** Tries the lengths of a drag; `isLast` is true at its end. */
   private tryLengths(edits: Edits, isLast: boolean): void {
     this.isDragEnding ||= isLast;
-    this.lengthsQueue.submit({ toml: this.session.toml, edits, isLast, keys: [] });
+    this.lengthsQueue.submit({ toml: this.session.robot.toml, edits, isLast, keys: [] });
   }
 
   /** Searches for valid alternatives to refused lengths and offers them. */
   offerValidLengths(edits: Edits): void {
-    this.lengthsQueue.submit({ toml: this.session.toml, edits, isLast: true, keys: [] });
+    this.lengthsQueue.submit({ toml: this.session.robot.toml, edits, isLast: true, keys: [] });
   }
 
   private handleResponse({ toml, edits, text, refusal, scene, nearest, without, isLast, range }: LengthsResponse): void {
     // The robot has changed since the request.
-    if (toml !== this.session.toml) return;
+    if (toml !== this.session.robot.toml) return;
     if (scene) this.draw(scene, edits.length === 0);
     if (range) this.applyRange(range);
     if (edits.length === 0) return;
     // This response belongs to `offerValidLengths`: the user has typed a number that was refused.
     if (isLast && !this.isDragEnding) return showOffers({ nearest, without }, this.session);
     if (!isLast) this.fit.checkDragged(refusal ? null : text);
-    const { lengths } = this.session.description;
+    const { lengths } = this.session.robot.description;
     const outcomeText = !isLast ? '' : nearest ? ` The nearest valid value is used: ${formatLengths(nearest.lengths, lengths)}.` : ' The length stays unchanged.';
     this.message.textContent = refusal ? `${describeRefusal(formatLengths(edits, lengths), edits, refusal, lengths)}${outcomeText}` : `${formatLengths(edits, lengths)}.`;
     this.message.classList.toggle('refusal', refusal !== null);
@@ -85,12 +85,12 @@ export class SketchView {
   private async endDrag(toml: string | null): Promise<void> {
     this.isDragEnding = false;
     this.draggedJoint = null;
-    if (toml !== null && toml !== this.session.toml) await this.session.change(toml);
+    if (toml !== null && toml !== this.session.robot.toml) await this.session.robot.change(toml);
     else this.showUnchanged();
   }
 
   private showUnchanged(): void {
-    const { lengths } = this.session.description;
+    const { lengths } = this.session.robot.description;
     this.showRobot(lengths);
     this.fit.showRobot(lengths);
   }
@@ -103,7 +103,7 @@ export class SketchView {
   /** Draws the robot; if `fitsView`, fits the view to it. A drag keeps the view and the elements of the joints. */
   private draw(scene: Scene, fitsView: boolean): void {
     const flip = ([x, y]: Point): Point => [x, -y];
-    const lengths = new Map(this.session.description.lengths.map((length) => [length.key, length]));
+    const lengths = new Map(this.session.robot.description.lengths.map((length) => [length.key, length]));
     this.barGroup.replaceChildren(
       ...listBars(scene).map(({ key, from, to }) => {
         const [[x1, y1], [x2, y2]] = [flip(from), flip(to)];

@@ -129,7 +129,7 @@ export class Steering {
     const pressedButtons = gamepads.flatMap(findPressed);
     const isStopButtonPressed = pressedButtons.some((index) => !(index in D_PAD_DIRECTIONS));
     if (isStopButtonPressed && !this.isStopButtonPressed) {
-      void this.session.drive(WORDS.stop);
+      void this.session.board.drive(WORDS.stop);
       this.release(false);
     }
     this.isStopButtonPressed = isStopButtonPressed;
@@ -188,17 +188,17 @@ export class Steering {
     const isIdle = this.isDrivingForbidden() || deflection < DEAD_ZONE;
     const isHalfPace = !isIdle && deflection < (this.fullPace === null ? HALF_PACE_DEFLECTION : FULL_PACE_DEFLECTION);
     if (isHalfPace && this.fullPace === null) {
-      this.fullPace = this.session.pace;
-      void this.session.drive(`${WORDS.speed} ${Math.max(MIN_PACE_PERCENT, Math.round(this.fullPace / 2))}`);
+      this.fullPace = this.session.board.pace;
+      void this.session.board.drive(`${WORDS.speed} ${Math.max(MIN_PACE_PERCENT, Math.round(this.fullPace / 2))}`);
     }
     const gait = isIdle ? null : chooseGait(direction, this.predictor.gaits);
     // If no gait has this direction, the current gait continues.
     if (gait !== this.sentGait && (isIdle || gait !== null)) {
       this.sentGait = gait;
-      void this.session.drive(gait ?? WORDS.stop);
+      void this.session.board.drive(gait ?? WORDS.stop);
     }
     if (!isHalfPace && this.fullPace !== null) {
-      void this.session.drive(`${WORDS.speed} ${this.fullPace}`);
+      void this.session.board.drive(`${WORDS.speed} ${this.fullPace}`);
       this.fullPace = null;
     }
   }

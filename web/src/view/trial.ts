@@ -1,7 +1,7 @@
 // The view of an edited gait's trial in a simulation: the results, the nearest valid values if the gait is refused,
 // and the buttons that use the gait.
 import { applyGait, driveGait } from '../gaits/apply-gait';
-import { type EditedGait, type GaitParameter, isRefused, type OnFloor, type RefusedTrial, type Trial } from '../robot';
+import { type EditedGait, type GaitParameter, isRefused, type RobotOnFloor, type RefusedTrial, type Trial } from '../robot';
 import { createRobotQueue } from '../robot-requests';
 import type { Session } from '../session';
 import { button, element, setText } from './elements';
@@ -41,7 +41,7 @@ const ALTERNATIVE_LABELS: Record<GaitParameter, (value: number) => string> = {
 };
 
 export class TrialView {
-  private readonly trialQueue = createRobotQueue<OnFloor & { gait: EditedGait }, Trial | RefusedTrial | null>((robot, request) => robot.tryGait(request), (trial) => this.showResult(trial));
+  private readonly trialQueue = createRobotQueue<RobotOnFloor & { gait: EditedGait }, Trial | RefusedTrial | null>((robot, request) => robot.tryGait(request), (trial) => this.showResult(trial));
   /** The result of the last trial; null if the gait was refused. */
   private trial: Trial | null = null;
 
@@ -57,7 +57,7 @@ export class TrialView {
 
   /** Requests a trial of the edited gait; without a gait, removes the results of the previous one. */
   requestTrial(): void {
-    const { toml, floor, servos } = this.session;
+    const { toml, floor, servos } = this.session.robot;
     const gait = this.editor.editedGait();
     if (!gait) return this.showResult(null);
     if (toml === '') return;
@@ -102,7 +102,7 @@ export class TrialView {
     const gait = this.editor.editedGait();
     if (!gait) return;
     const { session } = this;
-    const refusal = session.isBoardReal ? await applyGait(session, gait) : null;
+    const refusal = session.board.isReal ? await applyGait(session, gait) : null;
     if (refusal) return this.setMessage(refusal.reason);
     if (!(await this.writer.writeRobot(this.editor.prefix))) return;
     this.setMessage(`${this.element('message').textContent}. The board has restarted; ${gait.name.replaceAll('-', ' ')} has a button in Drive.`);

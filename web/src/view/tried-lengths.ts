@@ -34,9 +34,9 @@ export function describeRefusal(lengthsText: string, edits: Edits, { reason, con
 /** Shows a button for each valid alternative to refused lengths; null removes the buttons. */
 export function showOffers(alternatives: Pick<TriedLengths, 'nearest' | 'without'> | null, session: Session): void {
   const { nearest = null, without = null } = alternatives ?? {};
-  const changeTo = (text: string) => () => void session.change(text);
+  const changeTo = (text: string) => () => void session.robot.change(text);
   element('lengths-alternatives').replaceChildren(
-    ...(nearest ? [button(`Try ${formatLengths(nearest.lengths, session.description.lengths).replace(/^[^,]* = ([^,]*)$/, '$1')}`, changeTo(nearest.text))] : []),
+    ...(nearest ? [button(`Try ${formatLengths(nearest.lengths, session.robot.description.lengths).replace(/^[^,]* = ([^,]*)$/, '$1')}`, changeTo(nearest.text))] : []),
     ...(without ? [button(`Drop “${without.gait.replaceAll('-', ' ')}”`, changeTo(without.text))] : []),
   );
 }

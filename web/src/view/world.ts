@@ -2,6 +2,7 @@
 // robot's inputs.
 import { canLag, type Floor, type LegDrive, type ServoModel } from '../robot';
 import type { Session } from '../session';
+import type { ShownRobot } from '../shown-robot';
 import { element, make, showSliderText } from './elements';
 
 /** Number of decimals of each slider's value; the unit is in the slider's label. */
@@ -27,19 +28,19 @@ export function setUpWorld(session: Session): void {
     input.addEventListener('change', () => changeFloor(session, { [name]: input.valueAsNumber }));
   }
   element('floor-reset').addEventListener('click', () => {
-    session.setFloor(null);
+    session.robot.setFloor(null);
     showRobot(session);
   });
   for (const input of [boardVoltsInput, servoVoltsInput]) input.addEventListener('input', () => showVolts(input));
-  boardVoltsInput.addEventListener('change', () => session.setSupply(boardVoltsInput.valueAsNumber));
+  boardVoltsInput.addEventListener('change', () => session.robot.setSupply(boardVoltsInput.valueAsNumber));
   servoList.addEventListener('change', () => chooseServos(session, servoList.value));
   servoVoltsInput.addEventListener('change', () => chooseServos(session, `${servoList.value} at ${servoVoltsInput.value}`));
-  session.followRobot(() => showRobot(session));
+  session.robot.follow(() => showRobot(session));
 }
 
 /** Shows the values of the session's robot. */
 function showRobot(session: Session): void {
-  const { floor, description } = session;
+  const { floor, description } = session.robot;
   driveList.value = floor.kind;
   for (const name of SLIDER_NAMES) {
     const input = getSlider(name);
@@ -49,10 +50,10 @@ function showRobot(session: Session): void {
     input.value = String(floor[name]);
     showSliderText(input, floor[name].toFixed(DECIMALS[name]));
   }
-  enableSliders(floor, session.servos);
+  enableSliders(floor, session.robot.servos);
   servoList.replaceChildren(...description.models.map((model) => new Option(formatServoModel(model), model.name)));
-  showServos(session);
-  boardVoltsInput.value = String(session.volts);
+  showServos(session.robot);
+  boardVoltsInput.value = String(session.robot.volts);
   showVolts(boardVoltsInput);
   showInputs(session);
   const [slowVolts, stopVolts, restVolts] = description.supply;
@@ -61,13 +62,13 @@ function showRobot(session: Session): void {
 }
 
 function chooseServos(session: Session, servos: string): void {
-  session.setServos(servos);
-  showServos(session);
-  enableSliders(session.floor, servos);
+  session.robot.setServos(servos);
+  showServos(session.robot);
+  enableSliders(session.robot.floor, servos);
 }
 
 /** Shows the servo model and its supply voltage: the model's own unless the user has set another. */
-function showServos({ description, servos }: Session): void {
+function showServos({ description, servos }: ShownRobot): void {
   const [name = '', supply] = servos.split(' at ');
   servoList.value = name;
   const ratings = description.models.find((model) => model.name === name)?.ratings;
@@ -81,7 +82,7 @@ function showServos({ description, servos }: Session): void {
 
 /** Shows a checkbox for each of the robot's inputs; the simulated contact is closed while the box is ticked. */
 function showInputs(session: Session): void {
-  const boxes = session.description.inputs.map(([name]) => {
+  const boxes = session.robot.description.inputs.map(([name]) => {
     const box = make('input', { type: 'checkbox', checked: session.closedInputs.has(name), onchange: () => session.setContact(name, box.checked) });
     return make('label', {}, box, ` ${CONTACT_LABELS[name] ?? name}`);
   });
@@ -103,9 +104,9 @@ function enableSliders(floor: Floor, servos: string): void {
 
 /** Changes the leg drive or a slider's value. No other slider is read, because it may have rounded its value. */
 function changeFloor(session: Session, changes: Partial<Floor>): void {
-  const floor = { ...session.floor, ...changes };
-  enableSliders(floor, session.servos);
-  session.setFloor(floor);
+  const floor = { ...session.robot.floor, ...changes };
+  enableSliders(floor, session.robot.servos);
+  session.robot.setFloor(floor);
 }
 
 /** Formats a servo model's label in the list. */

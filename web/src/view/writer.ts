@@ -2,7 +2,8 @@
 // whose ids are `PREFIX-progress` and `PREFIX-message`.
 import { signal } from '@preact/signals-core';
 
-import type { ReportProgress, Session } from '../session';
+import type { ReportProgress } from '../board-program';
+import type { Session } from '../session';
 import { getMessage } from '../problem';
 import { element, setText } from './elements';
 
@@ -27,7 +28,7 @@ export class BoardWriter {
 
   /** Writes the page's robot alone to a real board; returns true if the board then reports this robot. */
   async writeRobot(prefix: string): Promise<boolean> {
-    if (this.session.isBoardReal) return this.write('robot', prefix);
+    if (this.session.board.isReal) return this.write('robot', prefix);
     element(`${prefix}-message`).textContent = NO_BOARD_MESSAGE;
     return false;
   }
@@ -42,9 +43,9 @@ export class BoardWriter {
     const message = element(`${prefix}-message`);
     const { session } = this;
     // The name tells the user that the simulated board was written to, not a real board.
-    const targetText = session.isBoardReal ? '' : ` to the ${session.link.name}`;
+    const targetText = session.board.isReal ? '' : ` to the ${session.board.link.name}`;
     const start = performance.now();
-    const hash = typeof content === 'string' ? session.description.hash : null;
+    const hash = typeof content === 'string' ? session.robot.description.hash : null;
     this.isBusy.value = true;
     progress.hidden = false;
     progress.value = 0;
@@ -57,7 +58,7 @@ export class BoardWriter {
       setText(message, text);
     };
     try {
-      await (content === 'robot' ? session.flash(session.robotSection, true, showProgress) : session.flash(content === 'all' ? session.image : content, false, showProgress));
+      await (content === 'robot' ? session.program.write(session.robot.section, true, showProgress) : session.program.write(content === 'all' ? session.robot.image : content, false, showProgress));
       isWritten = true;
       message.textContent = `written${targetText} and verified in ${formatSeconds(performance.now() - start)}`;
     } catch (error) {
@@ -66,7 +67,7 @@ export class BoardWriter {
     progress.hidden = true;
     this.isBusy.value = false;
     if (!isWritten) return false;
-    const problem = await session.checkWrittenBoard(hash);
+    const problem = await session.program.checkWritten(hash);
     if (problem === null) return true;
     message.textContent = `written and verified; ${problem}`;
     return false;

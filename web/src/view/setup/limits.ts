@@ -16,7 +16,7 @@ export const limitsStep: Step = {
   makeElements(dialog) {
     const { calibrator, servo, session, currentTurn } = dialog;
     const limit = calibrator?.calibration.servos[servo].limit ?? null;
-    const currentAngle = currentTurn?.commandedDegrees ?? session.description.servos[servo].neutral;
+    const currentAngle = currentTurn?.commandedDegrees ?? session.robot.description.servos[servo].neutral;
     const [from, to] = limit ?? [0, 0];
     const makeBox = (label: string, value: number, action: (value: number) => void) => numberBox(label, value, '0.01', action);
     return [

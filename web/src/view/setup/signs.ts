@@ -31,7 +31,7 @@ export const signsStep: Step = {
 
 function makeQuestion(dialog: SetupDialog, turn: Turn): Node[] {
   const { servo, session } = dialog;
-  const { pin } = session.description.servos[servo];
+  const { pin } = session.robot.description.servos[servo];
   const recordFault = (fault: 'other' | 'none') => () => {
     turn.fault = fault;
     dialog.redraw();

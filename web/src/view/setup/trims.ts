@@ -14,7 +14,7 @@ export const trimsStep: Step = {
   highlight: ({ servo }) => ({ servo, turnDeg: null }),
   makeElements({ calibrator, servo, run, stand, markDone, session }) {
     const trim = calibrator?.calibration.servos[servo].trim;
-    const neutral = session.description.servos[servo].neutral.toFixed(1);
+    const neutral = session.robot.description.servos[servo].neutral.toFixed(1);
     const changeTrim = (change: number) => () =>
       run(async (calibrator) => {
         await calibrator.changeTrim(servo, change);

@@ -10,7 +10,7 @@ export const walkStep: Step = {
   makeElements(dialog) {
     const { run, perform, stand, markDone, session } = dialog;
     const uncheckedServos = findUncheckedServos(dialog);
-    const isWalking = session.description.gaits.some(({ command, moves }) => moves && command === session.gait);
+    const isWalking = session.robot.description.gaits.some(({ command, moves }) => moves && command === session.board.gait);
     const startWalk = () =>
       run(async (calibrator) => {
         const gait = await calibrator.startWalk();
