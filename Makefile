@@ -28,86 +28,58 @@ unexport CARGO_TARGET_DIR CARGO_BUILD_TARGET_DIR CARGO_BUILD_TARGET RUSTFLAGS CA
 # Cargo can use make's jobserver only in a rule that calls make; in other rules, cargo prints a warning.
 CARGO := MAKEFLAGS= cargo
 
-# scripts/setup chooses the compiler, so it runs first; then a new make reads the choice from target/toolchain.mk.
-define prepared
-	@scripts/setup
-	@$(MAKE) $(1)
-endef
+# Each of these targets has a rule of the same name with a dot.
+TARGETS := sim test sweep flash flash-test web web-test lint measure-test parts-test cli bench fit prove physics mutants other-robots trouble explore fuzz package code-image docs install docs-check release release-test parallel-test arduino-test python-test addresses-test desks
 
-.PHONY: help fit measure-test parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs docs-check install release release-test parallel-test arduino-test python-test addresses-test desks clean trouble .fit .measure-test .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .workspace .walks .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .docs-check .install .release .release-test .parallel-test .arduino-test .python-test .addresses-test .desks .trouble
+.PHONY: help clean firmware .firmware .gaits .simulator .tests .workspace .walks $(TARGETS) $(TARGETS:%=.%)
 
 help: ## print this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
 	@echo "firmware, sim, test, bench, prove, fit, trouble and flash take ROBOT=robots/x.toml; the default is robot.toml"
 
 sim: ## run the firmware's walk on a simulated UNO; print a table and a drawing of its gait
-	$(call prepared,.sim)
 test: ## run every test, on the host and on the simulated UNO
-	$(call prepared,.test)
 sweep: ## build the example of crates/pulses/, eight servos during serial traffic, as an .elf for the UNO
-	$(call prepared,.sweep)
 firmware: ## build the firmware for the UNO, .elf and .hex; print flash, RAM and every gait's margins
-	$(call prepared,.gaits)
 flash: ## build the firmware, write it to a UNO on USB, open its console (ravedude)
-	$(call prepared,.flash)
 flash-test: ## test `make flash` and `lizard flash`, and their error messages, with a simulated board
-	$(call prepared,.flash-test)
 web: ## build the page with the robot in the browser: web/dist, a folder for any web server
-	$(call prepared,.web)
 web-test: ## test the page in a real browser: walking, turning, refusals, calibration, flashing
-	$(call prepared,.web-test)
 lint: ## run rustfmt, clippy and cargo doc; warnings are errors
-	$(call prepared,.lint)
 measure-test: ## test measurements with videos of known paths, and the identification of changed keys; VIDEOS=200 SEED=1
-	$(call prepared,.measure-test)
 parts-test: ## check the files of `lizard parts` and `lizard model` with ezdxf, FreeCAD, PrusaSlicer, urdfdom and others; ONLY=grain+large
-	$(call prepared,.parts-test)
 cli: ## build the host program, crates/target/release/lizard
-	$(call prepared,.cli)
 bench: ## measure the budgets, compared with the Arduino Servo library; poses solved per second
-	$(call prepared,.bench)
 fit: ## prove that no two parts collide in any pose that the guard accepts
-	$(call prepared,.fit)
 prove: ## compare the guard with floating point for every pose; takes a minute or two
-	$(call prepared,.prove)
 physics: ## compare the contact model with MuJoCo for every gait; WRITE=1 stores the results, ONE_IN=10 selects every tenth row
-	$(call prepared,.physics)
 mutants: ## mutation tests: report mutants that no test detects; PART=board, core or kinematics; SAMPLE=60 SEED=1: random mutants, with the rate
-	$(call prepared,.mutants)
 other-robots: ## run every test of the image with the robots in robots/ and with random valid robots; SEED=1 COUNT=10, EXCEPT=large+grain
-	$(call prepared,.other-robots)
 trouble: ## fault injection: stalls, resets, supply dips and drives by radio at random times; SEED=1, COUNT=10000, ONLY=number
-	$(call prepared,.trouble)
 explore: ## run the model checker: commands, resets, stalls and weak supplies in any order; STATES=10000000
-	$(call prepared,.explore)
 fuzz: ## search for harmful bytes with libFuzzer; TARGET=console or memory, MINUTES=1
-	$(call prepared,.fuzz)
 package: ## package the stand-alone crates as for a registry, and build each from its package
-	$(call prepared,.package)
 code-image: ## write firmware/code.hex: the firmware's code, which the program and the page contain
-	$(call prepared,.code-image)
 docs: ## write the generated pages and drawings; build the book from docs/ in out/book
-	$(call prepared,.docs)
 install: ## install the program, its manual pages and completions into PREFIX=~/.local
-	$(call prepared,.install)
 docs-check: ## check that the book's values that take long to compute are up to date
-	$(call prepared,.docs-check)
 release: ## build all files of a release from the current commit, in dist/; takes a while
-	$(call prepared,.release)
 release-test: ## build a release twice, in different folders; compare the bytes, and test each file
-	$(call prepared,.release-test)
 parallel-test: ## split long computations with GNU parallel, merge the parts, and compare the output with that of one process
-	$(call prepared,.parallel-test)
 arduino-test: ## compare the C++ library in arduino/, compiled like in the Arduino IDE, with the Rust engine; SERVO=folder of the Servo library
-	$(call prepared,.arduino-test)
 python-test: ## build the Python package's wheel, install it in target/python, test it there
-	$(call prepared,.python-test)
 addresses-test: ## check that the addresses in crates/Cargo.toml, set in a copy, appear in the program, a package, the page and the book
-	$(call prepared,.addresses-test)
 desks: ## build `lizard` for Linux on ARM and for Windows, run it, compare its output; compile it for macOS
-	$(call prepared,.desks)
 clean: ## remove everything that was built
 	rm -rf target crates/target out dist tools/judge/node_modules web/node_modules web/tests/node_modules web/node/node_modules web/dist web/public web/generated
+
+# scripts/setup chooses the compiler, so it runs first; then a new make reads the choice from target/toolchain.mk.
+$(TARGETS):
+	@scripts/setup
+	@$(MAKE) .$@
+firmware:
+	@scripts/setup
+	@$(MAKE) .gaits
 
 # RUSTC_BOOTSTRAP enables the AVR features of a stable compiler, only for this build. The .hex is replaced atomically,
 # because in .ci/run another target may read it at the same time.
@@ -318,9 +290,7 @@ PREFIX ?= $(HOME)/.local
 	@cd crates && cargo fmt --all --check
 	@RUSTC_BOOTSTRAP=1 cargo clippy --release -- -D warnings
 	@cd crates && cargo clippy $(ALL) --all-targets --features lizard-host-tests/flash,lizard-host-tests/arduino --quiet -- -D warnings
-	@cd crates && cargo clippy -p lizard-host --no-default-features --features paper,console --quiet -- -D warnings
-	@cd crates && cargo clippy -p lizard-host --no-default-features --features simulator --quiet -- -D warnings
-	@cd crates && cargo clippy -p lizard-host --no-default-features --features parts --quiet -- -D warnings
+	@cd crates && for features in paper,console simulator parts; do cargo clippy -p lizard-host --no-default-features --features $$features --quiet -- -D warnings || exit 1; done
 	@cd crates && cargo clippy -p lizard-python --quiet -- -D warnings
 	@cd crates && cargo clippy -p lizard-web --no-default-features --quiet -- -D warnings
 	@cd crates && RUSTDOCFLAGS="-D warnings" cargo doc $(ALL) --no-deps --quiet

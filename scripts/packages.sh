@@ -1,4 +1,4 @@
-# Functions of the set-up scripts that install missing Debian packages.
+# Functions of the set-up scripts that install missing Debian packages and Python packages.
 
 say() { printf 'setup: %s\n' "$*"; }
 # A package may be on hold, or installed for several architectures.
@@ -44,4 +44,18 @@ install_missing() {
     update_lists
     # After a set-up that was killed, apt-get does nothing until dpkg has configured what was half installed.
     run_apt_install || { as_root env DEBIAN_FRONTEND=noninteractive dpkg --configure -a && run_apt_install; }
+}
+
+# Creates a virtual environment with Python packages, unless it is complete: its file `installed` is written last.
+install_venv() { # folder, file of requirements, description, modules to import
+    cmp -s "$2" "$1/installed" && "$1/bin/python" -c "import $4" 2>/dev/null && return
+    command -v python3 >/dev/null || install_missing python3
+    # In Debian, the part of Python that creates virtual environments is a separate package.
+    python3 -c 'import ensurepip' 2>/dev/null || install_missing python3-venv
+    say "installing $3 into $1"
+    rm -rf "$1"
+    python3 -m venv "$1"
+    "$1/bin/python" -m pip install -q --disable-pip-version-check -r "$2"
+    "$1/bin/python" -c "import $4" || { say "after the installation into $1, Python cannot import $4"; exit 1; }
+    cp "$2" "$1/installed"
 }

@@ -1,6 +1,6 @@
 // Prints a release's bill of materials as SPDX 2.3 in JSON (https://spdx.github.io/spdx-spec/v2.3/):
 //     node scripts/spdx.mjs VERSION COMMIT
-// Run it in the root of the built tree. The document describes the program, the images and the page. Crates come from
+// Run it in the root of the built tree. The document describes the programs, the image and the page. Crates come from
 // `cargo metadata`, Node's packages from the lock files, libraries from Debian. SOURCE_DATE_EPOCH is the document's time.
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
@@ -13,14 +13,14 @@ if (!version || !commit || !Number.isInteger(epoch)) {
 }
 const run = (program, ...args) => execFileSync(program, args, { encoding: 'utf8', maxBuffer: 1 << 28 });
 
-/** Packages by SPDXID, and relationships as lines of three words, so that there are no duplicates. */
+/** Packages by SPDXID. A relationship is a line of three words, because a Set recognises equal strings only. */
 const packages = new Map();
 const relationships = new Set();
-const relate = (from, kind, to) => relationships.add(`${from} ${kind} ${to}`);
+const relate = (from, type, to) => relationships.add(`${from} ${type} ${to}`);
 
 /** Adds a package and returns its SPDXID. */
-function add(source, name, versionInfo, license, fields = {}) {
-  const SPDXID = `SPDXRef-${source}-${name}-${versionInfo}`.replace(/[^A-Za-z0-9.-]+/g, '-');
+function addPackage(origin, name, versionInfo, license, fields = {}) {
+  const SPDXID = `SPDXRef-${origin}-${name}-${versionInfo}`.replace(/[^A-Za-z0-9.-]+/g, '-');
   packages.set(SPDXID, {
     SPDXID, name, versionInfo,
     downloadLocation: 'NOASSERTION', filesAnalyzed: false,
@@ -29,17 +29,17 @@ function add(source, name, versionInfo, license, fields = {}) {
   });
   return SPDXID;
 }
-const purl = (locator) => ({ externalRefs: [{ referenceCategory: 'PACKAGE-MANAGER', referenceType: 'purl', referenceLocator: locator }] });
+const purlFields = (locator) => ({ externalRefs: [{ referenceCategory: 'PACKAGE-MANAGER', referenceType: 'purl', referenceLocator: locator }] });
 
 // --- The release's products -------------------------------------------------
 const GPL = 'GPL-3.0-or-later';
 const addProduct = (name, license, purpose) => {
-  const id = add('release', name, version, license, { primaryPackagePurpose: purpose });
+  const id = addPackage('release', name, version, license, { primaryPackagePurpose: purpose });
   relate('SPDXRef-DOCUMENT', 'DESCRIBES', id);
   return id;
 };
 const program = addProduct('lizard-program', GPL, 'APPLICATION');
-const portableProgram = addProduct('lizard-program-without-simulator', 'MIT OR Apache-2.0', 'APPLICATION'); // for ARM and for Windows
+const programWithoutSimulator = addProduct('lizard-program-without-simulator', 'MIT OR Apache-2.0', 'APPLICATION'); // for ARM and for Windows
 const image = addProduct('lizard-image', 'MIT OR Apache-2.0', 'FIRMWARE');
 const page = addProduct('lizard-page', '(MIT OR Apache-2.0) AND MIT AND GPL-2.0-or-later', 'APPLICATION');
 
@@ -47,74 +47,74 @@ const page = addProduct('lizard-page', '(MIT OR Apache-2.0) AND MIT AND GPL-2.0-
 
 /** Reads the checksums of a Cargo.lock, by "name version". */
 function readChecksums(folder) {
-  const found = new Map();
+  const checksums = new Map();
   for (const block of readFileSync(`${folder}/Cargo.lock`, 'utf8').split('[[package]]')) {
     const value = (key) => block.match(new RegExp(`^${key} = "(.*)"$`, 'm'))?.[1];
-    if (value('checksum')) found.set(`${value('name')} ${value('version')}`, value('checksum'));
+    if (value('checksum')) checksums.set(`${value('name')} ${value('version')}`, value('checksum'));
   }
-  return found;
+  return checksums;
 }
 
 /**
- * Adds a workspace's crate and all its dependencies to a product, except for the excluded crates: cargo lists the
- * dependencies that any member of the workspace enables.
+ * Adds a workspace's crate and all its dependencies to a product. `excluded` are crates that the product does not have:
+ * cargo also lists dependencies that only another member of the workspace enables.
  */
-function addCrates(folder, top, product, excluded, ...filter) {
-  const text = execFileSync('cargo', ['metadata', '--locked', '--format-version', '1', ...filter], { cwd: folder, encoding: 'utf8', maxBuffer: 1 << 28 });
+function addCrates(folder, rootName, product, excluded, ...cargoArguments) {
+  const text = execFileSync('cargo', ['metadata', '--locked', '--format-version', '1', ...cargoArguments], { cwd: folder, encoding: 'utf8', maxBuffer: 1 << 28 });
   const metadata = JSON.parse(text);
   const checksums = readChecksums(folder);
   const cratesById = new Map(metadata.packages.map((entry) => [entry.id, entry]));
   const nodesById = new Map(metadata.resolve.nodes.map((entry) => [entry.id, entry]));
-  const ids = new Map();
+  const spdxIds = new Map();
   const visit = (id) => {
-    if (ids.has(id)) return ids.get(id);
+    if (spdxIds.has(id)) return spdxIds.get(id);
     const { name, version: crateVersion, license, source } = cratesById.get(id);
     const checksum = checksums.get(`${name} ${crateVersion}`);
     const fields = source
-      ? { downloadLocation: `https://static.crates.io/crates/${name}/${name}-${crateVersion}.crate`, ...purl(`pkg:cargo/${name}@${crateVersion}`) }
+      ? { downloadLocation: `https://static.crates.io/crates/${name}/${name}-${crateVersion}.crate`, ...purlFields(`pkg:cargo/${name}@${crateVersion}`) }
       : {};
     if (checksum) fields.checksums = [{ algorithm: 'SHA256', checksumValue: checksum }];
     // Old crates write "MIT/Apache-2.0", which is not valid in SPDX.
-    const crateId = add('cargo', [name, ...(name === top ? excluded : [])].join(' without '), crateVersion, license?.replace(/\s*\/\s*/g, ' OR ') ?? 'NOASSERTION', fields);
-    ids.set(id, crateId);
+    const spdxId = addPackage('cargo', [name, ...(name === rootName ? excluded : [])].join(' without '), crateVersion, license?.replace(/\s*\/\s*/g, ' OR ') ?? 'NOASSERTION', fields);
+    spdxIds.set(id, spdxId);
     for (const { pkg, dep_kinds } of nodesById.get(id).deps) {
       if (excluded.includes(cratesById.get(pkg).name)) continue;
       for (const { kind } of dep_kinds) {
-        if (kind === null) relate(crateId, 'DEPENDS_ON', visit(pkg));
-        if (kind === 'build') relate(visit(pkg), 'BUILD_DEPENDENCY_OF', crateId);
+        if (kind === null) relate(spdxId, 'DEPENDS_ON', visit(pkg));
+        if (kind === 'build') relate(visit(pkg), 'BUILD_DEPENDENCY_OF', spdxId);
       }
     }
-    return crateId;
+    return spdxId;
   };
-  const topCrate = metadata.packages.find(({ name, source }) => name === top && !source);
-  relate(product, 'CONTAINS', visit(topCrate.id));
+  const rootCrate = metadata.packages.find(({ name, source }) => name === rootName && !source);
+  relate(product, 'CONTAINS', visit(rootCrate.id));
 }
-const machine = run('rustc', '--print', 'host-tuple').trim();
-addCrates('crates', 'lizard-host', program, [], '--filter-platform', machine);
+const hostTarget = run('rustc', '--print', 'host-tuple').trim();
+addCrates('crates', 'lizard-host', program, [], '--filter-platform', hostTarget);
 for (const target of ['aarch64-unknown-linux-gnu', 'x86_64-pc-windows-gnu']) {
-  addCrates('crates', 'lizard-host', portableProgram, ['simulated-uno', 'lizard-tune'], '--filter-platform', target);
+  addCrates('crates', 'lizard-host', programWithoutSimulator, ['simulated-uno', 'lizard-tune'], '--filter-platform', target);
 }
 addCrates('crates', 'lizard-web', page, [], '--filter-platform', 'wasm32-unknown-unknown');
 // Cargo takes the AVR target from a file. The dependencies of these crates do not depend on the target.
 addCrates('.', 'lizard', image, []);
 
-const rust = run('rustc', '--version').split(' ')[1];
-const std = add('rust', 'rust-std', rust, 'MIT OR Apache-2.0', { downloadLocation: `https://static.rust-lang.org/dist/rustc-${rust}-src.tar.gz` });
-for (const product of [program, portableProgram, image, page]) relate(product, 'STATIC_LINK', std);
+const rustVersion = run('rustc', '--version').split(' ')[1];
+const stdId = addPackage('rust', 'rust-std', rustVersion, 'MIT OR Apache-2.0', { downloadLocation: `https://static.rust-lang.org/dist/rustc-${rustVersion}-src.tar.gz` });
+for (const product of [program, programWithoutSimulator, image, page]) relate(product, 'STATIC_LINK', stdId);
 
 // --- Node's packages -------------------------------------------------------
 
-/** Adds the packages of a lock file, which are part of the page or only build or test it. */
+/** Adds the packages of a lock file. A package is part of the page, or a tool that builds or tests it. */
 function addNodePackages(folder) {
   const lock = JSON.parse(readFileSync(`${folder}/package-lock.json`, 'utf8'));
   for (const [path, entry] of Object.entries(lock.packages)) {
     if (path === '') continue;
     const name = path.slice(path.lastIndexOf('node_modules/') + 'node_modules/'.length);
-    const fields = purl(`pkg:npm/${name.replace('@', '%40')}@${entry.version}`);
+    const fields = purlFields(`pkg:npm/${name.replace('@', '%40')}@${entry.version}`);
     if (entry.resolved) fields.downloadLocation = entry.resolved;
     const [algorithm, base64] = entry.integrity?.split('-') ?? [];
     if (base64) fields.checksums = [{ algorithm: algorithm.toUpperCase(), checksumValue: Buffer.from(base64, 'base64').toString('hex') }];
-    const id = add('npm', name, entry.version, entry.license ?? 'NOASSERTION', fields);
+    const id = addPackage('npm', name, entry.version, entry.license ?? 'NOASSERTION', fields);
     if (entry.dev || entry.devOptional) relate(id, 'BUILD_TOOL_OF', page);
     else relate(page, 'CONTAINS', id);
   }
@@ -125,22 +125,22 @@ addNodePackages('tools/judge');
 // --- Libraries from Debian -------------------------------------------------
 
 /** Adds a Debian package whose library is part of a product. */
-function addDebianPackage(name, license, product, kind = 'STATIC_LINK') {
+function addDebianPackage(name, license, product, type = 'STATIC_LINK') {
   const packageVersion = run('dpkg-query', '-W', '-f=${Version}', name);
-  const [source, sourceVersion] = run('dpkg-query', '-W', '-f=${source:Package} ${source:Version}', name).split(' ');
-  const id = add('debian', name, packageVersion, license, {
-    ...purl(`pkg:deb/debian/${name}@${encodeURIComponent(packageVersion)}`),
-    sourceInfo: `built from the Debian source package ${source} ${sourceVersion}`,
+  const [sourcePackage, sourceVersion] = run('dpkg-query', '-W', '-f=${source:Package} ${source:Version}', name).split(' ');
+  const id = addPackage('debian', name, packageVersion, license, {
+    ...purlFields(`pkg:deb/debian/${name}@${encodeURIComponent(packageVersion)}`),
+    sourceInfo: `built from the Debian source package ${sourcePackage} ${sourceVersion}`,
   });
-  relate(product, kind, id);
+  relate(product, type, id);
 }
 addDebianPackage('libsimavr-dev', GPL, program);
 addDebianPackage('libelf-dev', 'GPL-2.0-or-later OR LGPL-3.0-or-later', program);
 addDebianPackage('zlib1g-dev', 'Zlib', program);
 addDebianPackage('libc6-dev', 'LGPL-2.1-or-later', program);
-addDebianPackage('libc6-dev-arm64-cross', 'LGPL-2.1-or-later', portableProgram);
-addDebianPackage('mingw-w64-x86-64-dev', 'ZPL-2.1', portableProgram);
-addDebianPackage('gcc-mingw-w64-x86-64-posix', 'GPL-3.0-or-later WITH GCC-exception-3.1', portableProgram);
+addDebianPackage('libc6-dev-arm64-cross', 'LGPL-2.1-or-later', programWithoutSimulator);
+addDebianPackage('mingw-w64-x86-64-dev', 'ZPL-2.1', programWithoutSimulator);
+addDebianPackage('gcc-mingw-w64-x86-64-posix', 'GPL-3.0-or-later WITH GCC-exception-3.1', programWithoutSimulator);
 addDebianPackage('avr-libc', 'BSD-3-Clause', image);
 addDebianPackage('gcc-avr', 'GPL-3.0-or-later WITH GCC-exception-3.1', image);
 addDebianPackage('arduino-core-avr', 'GPL-2.0-or-later', page, 'CONTAINS'); // optiboot

@@ -14,7 +14,7 @@ await openBrowser();
 for (const [width, height] of SIZES) {
   const isPhone = Math.min(width, height) < 500;
   const page = await openStanding({ viewport: { width, height }, colorScheme, hasTouch: isPhone, isMobile: isPhone });
-  await page.evaluate(() => window.lizard.ask('walk'));
+  await page.evaluate(() => window.lizard.board.ask('walk'));
   for (const room of ROOMS) {
     await page.goto(`${address()}#room=${room}`);
     await advance(page, 2000);

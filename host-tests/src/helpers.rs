@@ -21,3 +21,11 @@ pub fn decode_text(bytes: &[SerialByte]) -> String {
 pub fn pulse_widths(uno: &Uno, pin: Pin) -> Vec<u64> {
     uno.pulses(pin).iter().map(|pulse| pulse.width).collect()
 }
+
+/// Returns the cycles that the handlers of Timer1's compare matches have taken since power-on.
+pub fn timer1_handler_cycles(uno: &Uno) -> u64 {
+    let handlers = uno.interrupt_stats().into_iter();
+    // TIMER1_COMPA and TIMER1_COMPB.
+    let handlers = handlers.filter(|handler| [11, 12].contains(&handler.vector));
+    handlers.map(|handler| handler.cycles).sum()
+}

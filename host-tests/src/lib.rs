@@ -12,12 +12,12 @@ pub mod trouble;
 
 pub use bench::FirmwareBench;
 pub use environment::{dialogue_minutes, read_number, read_positive_number, scaled_count};
-pub use helpers::{assert_contains, decode_text, pulse_widths};
+pub use helpers::{assert_contains, decode_text, pulse_widths, timer1_handler_cycles};
 pub use lizard_host::sim::frame::{FRAME_CYCLES, Frame};
 pub use lizard_host::sim::lines::Line;
 pub use robots::{
     NamedRobot, gait_commands, load_named_robot, load_robots_from_files, paper_robot,
-    patrolling_robot, rng, robot, robot_with_patrol, robots, root, seed,
+    patrolling_robot, read_file, rng, robot, robot_with_patrol, robots, root, seed,
 };
 
 /// CPU cycles in a microsecond, for pulse widths in floating point.

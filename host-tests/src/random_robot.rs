@@ -35,17 +35,17 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
     (0..MAX_DRAFT_COUNT)
         .find_map(|_| {
             let base = RobotBase::generate(rng)?;
-            let mut text = base.toml.clone();
-            Robot::parse(&text).ok()?;
+            let mut toml = base.toml.clone();
+            Robot::parse(&toml).ok()?;
             for gait in random_gaits(rng, &base) {
-                text = with_allowed_gait(text, &gait);
+                toml = with_allowed_gait(toml, &gait);
             }
             if rng.bool() {
-                text += &random_rail(rng, &base.pins);
+                toml += &random_rail(rng, &base.pins);
             }
-            let robot = Robot::parse(&text).ok()?;
+            let robot = Robot::parse(&toml).ok()?;
             let has_moving_gait = robot.gaits().iter().any(|gait| gait.has_movement());
-            has_moving_gait.then_some((text, robot))
+            has_moving_gait.then_some((toml, robot))
         })
         .expect("one of the drafts is a valid robot")
 }
@@ -55,8 +55,8 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
 ///
 /// # Panics
 /// If the robot is invalid or has no gait that moves.
-pub fn with_many_gaits(text: &str, name_length: usize) -> Robot {
-    let robot = Robot::parse(text).expect("the text describes a valid robot");
+pub fn with_many_gaits(toml: &str, name_length: usize) -> Robot {
+    let robot = Robot::parse(toml).expect("the text describes a valid robot");
     let gait = robot.gaits().iter().find(|gait| gait.has_movement());
     let gait_name = gait.expect("the robot has a gait that moves").name();
     // Leaves space for one more waveform, which the additional gaits may need.
@@ -66,7 +66,7 @@ pub fn with_many_gaits(text: &str, name_length: usize) -> Robot {
         let name = format!("{:n<1$}{number:02}", "on-and-o", name_length - 2);
         format!("[gait.{name}]\nlike = \"{gait_name}\"\n")
     });
-    Robot::parse(&format!("{text}{}", gaits.collect::<String>()))
+    Robot::parse(&format!("{toml}{}", gaits.collect::<String>()))
         .expect("copies of a valid gait are valid")
 }
 
@@ -214,13 +214,14 @@ fn random_neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f6
 fn random_rail(rng: &mut Rng, pins: &[&'static str]) -> String {
     let free_pin = pins[4..].iter().find(|pin| pin.starts_with('A'));
     let pin = free_pin.expect("four servos leave at least two of six analogue pins free");
-    let ratio = round(random_between(rng, 1.5, 3.0));
-    // The highest voltage at the pin is 5 V.
+    let ratio = round(random_between(rng, 1.5, 2.2));
+    // The highest voltage at the pin is 5 V, the highest supply of the servos 9 V.
+    let servo_volts = round((5.0 * ratio).min(9.0));
     let slow = round(ratio * random_between(rng, 2.4, 4.0));
     let stop = round(slow - random_between(rng, 0.15, 0.4));
     let rest = round(stop - random_between(rng, 0.15, 0.4));
     format!(
-        "[supply]\nreference = {}\n[supply.rail]\npin = \"{pin}\"\nratio = {ratio}\n\
+        "[servo]\nvolts = {servo_volts}\n[supply]\nreference = {}\n[supply.rail]\npin = \"{pin}\"\nratio = {ratio}\n\
          slow = {slow}\nstop = {stop}\nrest = {rest}\n",
         round_factor(random_between(rng, 1.05, 1.15)),
     )
@@ -298,12 +299,12 @@ fn random_gaits(rng: &mut Rng, base: &RobotBase) -> Vec<SizedGait> {
 
 /// Adds a gait to a robot's text, in the largest size that the robot allows. Returns the text unchanged if the gait is
 /// rejected in every size.
-fn with_allowed_gait(text: String, gait: &SizedGait) -> String {
+fn with_allowed_gait(toml: String, gait: &SizedGait) -> String {
     [1.0, 0.6, 0.35, 0.2, 0.1, 0.05]
         .into_iter()
-        .map(|size| format!("{text}{}\n", gait(size)))
-        .find(|longer_text| Robot::parse(longer_text).is_ok())
-        .unwrap_or(text)
+        .map(|size| format!("{toml}{}\n", gait(size)))
+        .find(|longer_toml| Robot::parse(longer_toml).is_ok())
+        .unwrap_or(toml)
 }
 
 fn random_between(rng: &mut Rng, min: f64, max: f64) -> f64 {
@@ -329,7 +330,7 @@ mod tests {
         let mut rng = Rng::with_seed(1);
         let mut gait_count = 0;
         for _ in 0..20 {
-            let (text, robot) = random_robot(&mut rng);
+            let (toml, robot) = random_robot(&mut rng);
             let links = robot.lizard().links;
             let pairs = [
                 (links.l0, links.l5),
@@ -343,7 +344,7 @@ mod tests {
                 (robot.limits().type1, robot.limits().type2),
             ];
             let are_distinct = pairs.iter().all(|(first, second)| first != second);
-            assert!(are_distinct, "{text}");
+            assert!(are_distinct, "{toml}");
             gait_count += robot.gaits().len();
         }
         println!("{gait_count} gaits of 20 robots");

@@ -26,6 +26,15 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
+/// Reads a text file. The path is relative to the root of the repository.
+///
+/// # Panics
+/// If the file is not readable. The message names the file.
+pub fn read_file(path: impl AsRef<Path>) -> String {
+    let path = root().join(path);
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
 /// The robot under test. `LIZARD_ROBOT` names its file, relative to the root of the repository; the default is
 /// robot.toml. `make test ROBOT=...` sets the variable and builds the firmware from the same file.
 ///
@@ -42,8 +51,7 @@ pub fn robot() -> &'static Robot {
 /// If there is no room even with one gait.
 pub fn patrolling_robot() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
-        let text = std::fs::read_to_string(robot_file()).expect("the robot file is readable");
-        robot_with_patrol(&text).unwrap_or_else(|error| panic!("{error}"))
+        robot_with_patrol(&read_file(robot_file())).unwrap_or_else(|error| panic!("{error}"))
     });
     &ROBOT
 }
@@ -53,15 +61,15 @@ pub fn patrolling_robot() -> &'static Robot {
 ///
 /// # Errors
 /// Fails if there is no room even with one gait, or if the text is not a valid robot.
-pub fn robot_with_patrol(text: &str) -> Result<Robot, lizard_robot::Error> {
+pub fn robot_with_patrol(toml: &str) -> Result<Robot, lizard_robot::Error> {
     const REST: &str = "rest 1 s";
-    add_patrol(text, &[REST]).or_else(|error| {
-        let robot = Robot::parse(text)?;
+    add_patrol(toml, &[REST]).or_else(|error| {
+        let robot = Robot::parse(toml)?;
         let names = robot.gaits().iter().skip(1).map(|gait| gait.name());
         // A gait to which another gait or a routine refers cannot be removed.
-        let mut shorter_texts = names.rev().map(|name| without_gait(text, name));
-        let shorter_text = shorter_texts.find(|text| Robot::parse(text).is_ok());
-        robot_with_patrol(&shorter_text.ok_or(error)?)
+        let mut shorter_tomls = names.rev().map(|name| without_gait(toml, name));
+        let shorter_toml = shorter_tomls.find(|toml| Robot::parse(toml).is_ok());
+        robot_with_patrol(&shorter_toml.ok_or(error)?)
     })
 }
 

@@ -10,7 +10,7 @@ use lizard_core::numbers::section::START_ADDRESS;
 use lizard_host::firmware::CODE_HEX;
 use lizard_host::sim::script::{Script, Step};
 use lizard_host::sim::session::{Recording, play};
-use lizard_host_tests::{FirmwareBench, robot, root};
+use lizard_host_tests::{FirmwareBench, read_file, robot, root};
 use lizard_upload::BOOT_ADDRESS;
 use simulated_uno::{Fidelity, Image, State, Uno};
 
@@ -79,8 +79,7 @@ fn record_minute(image: Image) -> Recording {
 fn the_program_contains_the_code_built_from_the_source() {
     let code_images = [code_image(), with_section(FirmwareBench::image(), &[])];
     let [embedded_bytes, built_bytes] = code_images.map(|image| extract_code(&image));
-    let recorded_versions = std::fs::read_to_string(root().join("firmware/tools.txt"));
-    let recorded_versions = recorded_versions.expect("firmware/tools.txt is readable");
+    let recorded_versions = read_file("firmware/tools.txt");
     if recorded_versions == read_tool_versions() {
         let mut pairs = embedded_bytes.iter().zip(&built_bytes);
         let first_difference = pairs.position(|(embedded, built)| embedded != built);

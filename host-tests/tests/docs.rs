@@ -10,14 +10,8 @@ use std::path::{Path, PathBuf};
 use lizard_core::numbers::curve::Table;
 use lizard_core::numbers::gaits::{Gait, Wave};
 use lizard_core::numbers::section::{Header, Numbers, REGION_BYTES, START_ADDRESS};
-use lizard_host_tests::root;
+use lizard_host_tests::{read_file, root};
 use workspace::list_crates;
-
-/// Reads a file. The path is relative to the root of the repository.
-fn read_file(path: impl AsRef<Path>) -> String {
-    let path = root().join(path);
-    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
-}
 
 /// Lists the paths of the files and folders in a folder. The path is relative to the root of the repository.
 fn list_paths(folder: impl AsRef<Path>) -> impl Iterator<Item = PathBuf> {

@@ -53,7 +53,7 @@ fn check_agreement(bench: &mut FirmwareBench, case_name: &str, max_jitter_cycles
                 && console_agreement.jitter_cycles <= max_jitter_cycles,
             "{case_name}: the times of the console's bytes differ: {console_agreement:?}"
         );
-        println!("{case_name}: {console_agreement}");
+        println!("{case_name}: console {console_agreement:?}");
     }
     let eeprom = bench.uno.eeprom();
     let differing_address = eeprom.iter().zip(&avr8js.eeprom).position(|(a, b)| a != b);
@@ -62,7 +62,7 @@ fn check_agreement(bench: &mut FirmwareBench, case_name: &str, max_jitter_cycles
         "{case_name}: the address at which the EEPROMs differ"
     );
     println!(
-        "{case_name}: {} bytes received, {pulse_agreement}; {:.1} s in {} ms of processor time",
+        "{case_name}: {} bytes received, pulses {pulse_agreement:?}; {:.1} s in {} ms of processor time",
         received_bytes.len(),
         end_cycle as f64 / (1000 * CYCLES_PER_MS) as f64,
         avr8js.cpu_ms

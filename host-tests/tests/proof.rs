@@ -3,7 +3,7 @@
 
 use std::iter::repeat;
 
-use lizard_host_tests::{NamedRobot, load_robots_from_files, root, seed};
+use lizard_host_tests::{NamedRobot, load_robots_from_files, read_file, seed};
 use lizard_proof::{PairSample, Proof};
 use lizard_robot::Robot;
 
@@ -39,8 +39,7 @@ fn the_guard_decides_correctly_for_every_pair_of_positions_outside_the_band_or_i
 
 #[test]
 fn a_guard_with_another_robots_lengths_fails_the_proof() {
-    let text = std::fs::read_to_string(root().join("robots/paper.toml"));
-    let text = text.expect("robots/paper.toml is readable");
+    let text = read_file("robots/paper.toml");
     // Removes `look`, which is unsafe with the longer couplers, and all gaits after it.
     let text = text.split("[gait.look]").next().unwrap_or_default();
     let robot = Robot::parse(text).expect("the paper's robot is valid");

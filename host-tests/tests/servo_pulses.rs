@@ -1,7 +1,7 @@
 //! Tests of the crate `servo-pulses` without the lizard's firmware. On the simulated UNO, the crate's example moves
 //! eight servos during a flood of serial bytes.
 
-use lizard_host_tests::{FirmwareBench, root};
+use lizard_host_tests::{FirmwareBench, read_file, timer1_handler_cycles};
 use servo_pulses::{CYCLES_PER_US, MIN_WIDTH_CYCLES, frame_cycles, max_width_cycles};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, State, Uno, max_pins_high};
 
@@ -106,18 +106,10 @@ fn the_led_blinks_every_sixteen_frames() {
 fn the_costs_in_the_readme_match_the_example() {
     let mut uno = load_sweep_example(Fidelity::DataSheet);
     uno.run_ms(100);
-    let count_interrupt_cycles = |uno: &Uno| {
-        let interrupts = uno.interrupt_stats();
-        let handlers = interrupts.iter();
-        // TIMER1_COMPA and TIMER1_COMPB.
-        let handlers = handlers.filter(|handler| [11, 12].contains(&handler.vector));
-        handlers.map(|handler| handler.cycles).sum::<u64>()
-    };
-    let cycles_before = count_interrupt_cycles(&uno);
+    let cycles_before = timer1_handler_cycles(&uno);
     uno.run_cycles(100 * u64::from(frame_cycles(8)));
-    let cycles_per_frame = (count_interrupt_cycles(&uno) - cycles_before) as f64 / 100.0;
-    let readme =
-        std::fs::read_to_string(root().join("crates/pulses/README.md")).expect("the README exists");
+    let cycles_per_frame = (timer1_handler_cycles(&uno) - cycles_before) as f64 / 100.0;
+    let readme = read_file("crates/pulses/README.md");
     let read_number = |name: &str| -> f64 {
         let prefix = format!("| {name}");
         let row = readme.lines().find(|line| line.starts_with(&prefix));
@@ -134,10 +126,10 @@ fn the_costs_in_the_readme_match_the_example() {
             "{name}: the README states {stated_value}, measured {measured}"
         );
     };
-    assert_near("cycles of the interrupts per frame", cycles_per_frame);
+    assert_near("CPU cycles in handlers per frame", cycles_per_frame);
     let (flash_used, static_ram) = (uno.image().flash_used(), uno.image().static_ram());
-    assert_near("flash of the whole example, bytes", flash_used.into());
-    assert_near("static RAM of the whole example, bytes", static_ram.into());
+    assert_near("flash of the whole program, bytes", flash_used.into());
+    assert_near("static RAM of the whole program, bytes", static_ram.into());
 }
 
 #[test]

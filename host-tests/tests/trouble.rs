@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use lizard_host_tests::trouble::{Activity, Scenario, run_campaign, run_scenario};
-use lizard_host_tests::{FirmwareBench, patrolling_robot, robot_with_patrol, root, seed};
+use lizard_host_tests::{FirmwareBench, patrolling_robot, read_file, robot_with_patrol, seed};
 use lizard_robot::Robot;
 
 /// The number of scenarios. Of thirteen scenarios, four are drives, and the other nine activities have one each.
@@ -64,8 +64,7 @@ fn most_patrols_reach_the_wait_for_an_obstacle() {
 
 #[test]
 fn a_robot_without_room_for_a_routine_patrols_with_fewer_gaits() {
-    let mut text =
-        std::fs::read_to_string(root().join("robot.toml")).expect("robot.toml is readable");
+    let mut text = read_file("robot.toml");
     let mut full_robot = Robot::parse(&text).expect("robot.toml is valid");
     for number in 0.. {
         text += &format!("[gait.more-{number}]\nlike = \"walk\"\n");

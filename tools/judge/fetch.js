@@ -1,7 +1,7 @@
 // Installs the packages in a folder's package-lock.json, as `npm ci --ignore-scripts` does: node fetch.js [FOLDER].
 // The default folder is the judge's. Debian's Node comes without npm, and Debian's npm package needs 390 other
-// packages, while `make test` needs one. A package whose right version is already installed is kept. Packages for
-// other platforms are skipped.
+// packages, while `make test` needs one. A package that is already installed in the right version is kept.
+// Packages for other platforms are skipped.
 import { createHash } from 'node:crypto';
 import { mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { dirname, join, normalize, resolve } from 'node:path';
@@ -46,7 +46,7 @@ function makeRegistryUrl(path, version) {
   return `https://registry.npmjs.org/${name}/-/${name.replace(/^.*\//, '')}-${version}.tgz`;
 }
 
-/** Downloads a URL; retries after a failure. */
+/** Downloads a URL; tries up to four times. */
 async function download(url, attemptsLeft = 4) {
   try {
     const response = await fetch(url);
@@ -81,7 +81,7 @@ async function install(path, entry) {
 
 try {
   const { packages } = JSON.parse(readFileSync(join(projectFolder, 'package-lock.json'), 'utf8'));
-  // Four downloads run at a time, because most packages are small.
+  // Four downloads run at a time, because a small package takes more time to wait for than to transfer.
   const queue = Object.entries(packages).filter(([path]) => path !== '');
   const installQueued = async () => {
     for (let next = queue.shift(); next; next = queue.shift()) await install(...next);

@@ -11,7 +11,7 @@ import { readFileSync } from 'node:fs';
 import { corrections } from './src/corrections/index.js';
 import { loadHex } from './src/hex.js';
 import { recordPulses } from './src/pulse-recorder.js';
-import { readScript } from './src/script.js';
+import { parseScript } from './src/script.js';
 import { Uno } from './src/uno.js';
 
 const toHex = (byte) => byte.toString(16).padStart(2, '0');
@@ -19,8 +19,8 @@ const toHex = (byte) => byte.toString(16).padStart(2, '0');
 function run(firmwarePath, script) {
   const uno = new Uno(corrections);
   loadHex(readFileSync(firmwarePath, 'utf8'), uno.flash);
-  const { analogue, bytes, endCycle } = readScript(script);
-  for (const { channel, volts } of analogue) uno.adc.channelValues[channel] = volts;
+  const { voltages, bytes, endCycle } = parseScript(script);
+  for (const { channel, volts } of voltages) uno.adc.channelValues[channel] = volts;
   const lines = [];
   recordPulses(uno, (pin, rise, width) => lines.push(`pulse ${pin} ${rise} ${width}`));
   uno.usart.onByteTransmit = (byte, cycle) => lines.push(`sent ${cycle} ${toHex(byte)}`);

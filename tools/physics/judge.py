@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Simulates in MuJoCo the walks that `lizard model --drive` or `make physics` wrote.
+"""Simulates walks in MuJoCo: the files that `lizard model --drive` or `make physics` wrote.
 
-Prints a line of JSON for each walk: the file's name, and the mean displacement per cycle (mm forward,
-mm to the left, deg counter-clockwise). Two walks run at a time. Usage: judge.py FOLDER-OR-FILE
+Prints a line of JSON for each walk: the file's name without its extension, and the mean displacement per
+cycle (mm forward, mm to the left, deg counter-clockwise), or `error`, a message. Two walks run at a time.
+Usage: judge.py FOLDER-OR-FILE
 """
 
 import json
@@ -15,6 +16,7 @@ from walk import Walk
 
 
 def simulate(path):
+    """Returns the content of the line for a file."""
     try:
         walk = Walk(path)
     except ValueError as error:
@@ -24,7 +26,8 @@ def simulate(path):
     displacement = [round(float(component), 3) for component in walk.measure_cycles()]
     warning_count = sum(warning.number for warning in walk.data.warning)
     if warning_count or not all(map(math.isfinite, displacement)):
-        return {"file": path.stem, "error": f"MuJoCo gave {warning_count} warnings"}
+        error = f"MuJoCo gave {warning_count} warnings; the displacement is {displacement}"
+        return {"file": path.stem, "error": error}
     return {"file": path.stem, "displacement": displacement}
 
 

@@ -57,8 +57,8 @@ pub fn mul_unsigned(a: u16, b: u16) -> u32 {
     product!(a, b)
 }
 
-/// Returns the full product of two signed factors. For each negative factor, which read as unsigned is 2^16 too large,
-/// the other factor is subtracted from the upper half.
+/// Returns the full product of two signed factors. A negative factor, read as unsigned, is 2^16 too large; for each
+/// such factor, the other factor is subtracted from the upper half.
 #[cfg(target_arch = "avr")]
 #[inline(never)]
 pub fn mul(a: i16, b: i16) -> i32 {

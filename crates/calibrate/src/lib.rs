@@ -21,7 +21,7 @@ mod still;
 
 pub use console::{Console, ConsoleError, Reply, ReplyError, send_command};
 pub use session::{SCALE_TURNS_DEG, SIGN_TURNS_DEG, Session};
-pub use settings::{SendError, read_settings, replace_settings, send_settings};
+pub use settings::{ReplaceError, read_settings, replace_settings, send_settings};
 
 /// The result of a line or a step.
 type Result<T, C> = std::result::Result<T, ConsoleError<<C as Console>::Error>>;

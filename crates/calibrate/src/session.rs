@@ -4,7 +4,7 @@ use lizard_robot::{Calibration, ServoSettings, round_to_hundredths};
 
 use crate::Result;
 use crate::console::{Console, Reply, send_command};
-use crate::settings::{SendError, read_settings, replace_settings, send_settings};
+use crate::settings::{ReplaceError, read_settings, replace_settings, send_settings};
 use crate::still::wait_until_still;
 
 /// Turns for the check of a servo's sign, degrees. The first turn that the robot accepts is used.
@@ -31,6 +31,10 @@ pub struct Session<C> {
     may_be_outdated: bool,
     /// The settings of an unanswered `save`.
     unanswered_save: Option<Calibration>,
+    /// The number of frames since the robot's reset in its latest status.
+    frame_count: u64,
+    /// True after a reset, until the next call of [`Session::take_reset`].
+    was_reset: bool,
 }
 
 impl<C: Console> Session<C> {
@@ -47,6 +51,8 @@ impl<C: Console> Session<C> {
             neutral_deg: None,
             may_be_outdated: false,
             unanswered_save: None,
+            frame_count: 0,
+            was_reset: false,
         })
     }
 
@@ -65,13 +71,19 @@ impl<C: Console> Session<C> {
         self.may_be_outdated || !self.active.is_equivalent_to(&self.saved)
     }
 
+    /// Returns true if a reset of the robot was noticed since the last call. The robot has then lost its unsaved settings,
+    /// and the active settings were read again.
+    pub fn take_reset(&mut self) -> bool {
+        std::mem::take(&mut self.was_reset)
+    }
+
     /// Makes the robot stand; returns the neutral angles, degrees.
     ///
     /// # Errors
     /// Fails if the robot cannot stand.
     pub async fn stand(&mut self) -> Result<[f64; 4], C> {
         self.send_line("stand").await?;
-        let neutral_deg = wait_until_still(&mut self.console).await?;
+        let neutral_deg = self.wait_until_still().await?;
         self.neutral_deg = Some(neutral_deg);
         Ok(neutral_deg)
     }
@@ -91,7 +103,7 @@ impl<C: Console> Session<C> {
     pub async fn center_servos(&mut self) -> Result<(), C> {
         self.stand().await?;
         self.send_line("center").await?;
-        wait_until_still(&mut self.console).await.map(drop)
+        self.wait_until_still().await.map(drop)
     }
 
     /// Turns one servo from its neutral angle by the first turn that the robot accepts; returns this turn, degrees.
@@ -124,7 +136,7 @@ impl<C: Console> Session<C> {
         let [a1, a2, a3, a4] = pose;
         self.send_line(&format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}"))
             .await?;
-        wait_until_still(&mut self.console).await?;
+        self.wait_until_still().await?;
         Ok(pose[servo])
     }
 
@@ -138,7 +150,7 @@ impl<C: Console> Session<C> {
         let new = self.active.servos[servo].reversed();
         let format_line = |settings: ServoSettings| format!("dir {} {}", servo + 1, settings.dir);
         self.set_with_trim(servo, new, format_line).await?;
-        wait_until_still(&mut self.console).await.map(drop)
+        self.wait_until_still().await.map(drop)
     }
 
     /// Changes a servo's trim by an angle.
@@ -264,16 +276,16 @@ impl<C: Console> Session<C> {
     ///
     /// # Errors
     /// Fails if the robot refuses settings or reports other values. The robot then has its old settings, except after
-    /// [`SendError::Mixed`].
+    /// [`ReplaceError::Mixed`].
     pub async fn replace(
         &mut self,
         calibration: &Calibration,
-    ) -> std::result::Result<(), SendError<C::Error>> {
-        self.refresh().await.map_err(SendError::Refused)?;
+    ) -> std::result::Result<(), ReplaceError<C::Error>> {
+        self.refresh().await.map_err(ReplaceError::Refused)?;
         let result = replace_settings(&mut self.console, &self.active, calibration).await;
         match &result {
             Ok(()) => self.active = calibration.clone(),
-            Err(SendError::Mixed(_)) => self.may_be_outdated = true,
+            Err(ReplaceError::Mixed(_)) => self.may_be_outdated = true,
             Err(_) => {}
         }
         result
@@ -299,6 +311,18 @@ impl<C: Console> Session<C> {
         }
         self.active.servos[servo] = new;
         Ok(())
+    }
+
+    /// Waits until the robot stands still, and returns its pose, degrees. After a reset, reads the settings again.
+    async fn wait_until_still(&mut self) -> Result<[f64; 4], C> {
+        let wait = wait_until_still(&mut self.console, &mut self.frame_count);
+        let (pose, was_reset) = wait.await?;
+        if was_reset {
+            self.was_reset = true;
+            self.may_be_outdated = true;
+            self.refresh().await?;
+        }
+        Ok(pose)
     }
 
     /// Sends a line, and records a missing answer.

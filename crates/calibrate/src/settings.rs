@@ -44,7 +44,7 @@ pub async fn send_settings<C: Console>(
 
 /// The error of a failed replacement of settings.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum SendError<E> {
+pub enum ReplaceError<E> {
     /// The robot refused a value.
     #[error("{0}; nothing was saved, and the robot keeps its old settings")]
     Refused(ConsoleError<E>),
@@ -67,14 +67,14 @@ pub async fn replace_settings<C: Console>(
     console: &mut C,
     old: &Calibration,
     new: &Calibration,
-) -> Result<(), SendError<C::Error>> {
+) -> Result<(), ReplaceError<C::Error>> {
     let error = match send_and_compare(console, new).await {
         Ok(true) => return Ok(()),
-        Ok(false) => SendError::Differs,
-        Err(error) => SendError::Refused(error),
+        Ok(false) => ReplaceError::Differs,
+        Err(error) => ReplaceError::Refused(error),
     };
     let restored = send_settings(console, old).await;
-    restored.map_err(SendError::Mixed)?;
+    restored.map_err(ReplaceError::Mixed)?;
     Err(error)
 }
 

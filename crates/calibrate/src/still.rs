@@ -11,20 +11,27 @@ const STATUS_INTERVAL: Duration = Duration::from_millis(50);
 /// Largest number of `status` commands: a wait ends after five seconds plus the time that the answers take.
 const MAX_STATUS_COUNT: u32 = 100;
 
-/// Waits until the robot stands still or the time limit has passed, and returns its pose, degrees.
+/// Waits until the robot stands still or the time limit has passed. Returns its pose, degrees, and true if it was reset:
+/// its frame count is then smaller than before. `frame_count` is the count in the latest status.
 ///
 /// # Errors
 /// Fails if the robot does not answer, or has no pose.
-pub(crate) async fn wait_until_still<C: Console>(console: &mut C) -> crate::Result<[f64; 4], C> {
+pub(crate) async fn wait_until_still<C: Console>(
+    console: &mut C,
+    frame_count: &mut u64,
+) -> crate::Result<([f64; 4], bool), C> {
+    let mut was_reset = false;
     // The first frame that reported the current pose, and this pose.
     let mut still_since: Option<(u64, [f64; 4])> = None;
     for _ in 1..MAX_STATUS_COUNT {
         let (frames, pose) = read_pose(console).await?;
+        was_reset |= frames < *frame_count;
+        *frame_count = frames;
         match still_since {
             // After a reset, the frame count starts at 0 again.
             Some((first_frame, first_pose)) if first_pose == pose && frames >= first_frame => {
                 if frames - first_frame >= STILL_FRAMES {
-                    return Ok(pose);
+                    return Ok((pose, was_reset));
                 }
             }
             _ => still_since = Some((frames, pose)),
@@ -32,7 +39,7 @@ pub(crate) async fn wait_until_still<C: Console>(console: &mut C) -> crate::Resu
         let pause = console.pause(STATUS_INTERVAL).await;
         pause.map_err(ConsoleError::Link)?;
     }
-    Ok(read_pose(console).await?.1)
+    Ok((read_pose(console).await?.1, was_reset))
 }
 
 /// Reads the number of frames since the reset, and the pose, degrees, from the robot's status.
@@ -77,17 +84,22 @@ mod tests {
     #[test]
     fn a_robot_stands_still_once_its_pose_is_constant_for_long_enough_even_after_a_reset() {
         for (states, expected) in [
-            (vec![(100, 1), (112, 1), (200, 2)], 1.0),
-            (vec![(100, 1), (111, 1), (114, 2), (127, 2), (300, 3)], 2.0),
+            (vec![(100, 1), (112, 1), (200, 2)], (1.0, false)),
+            (
+                vec![(100, 1), (111, 1), (114, 2), (127, 2), (300, 3)],
+                (2.0, false),
+            ),
             (
                 vec![(900, 1), (3, 1), (14, 1), (14, 2), (26, 2), (90, 3)],
-                2.0,
+                (2.0, true),
             ),
             // The frame count stops, so the wait ends at the time limit.
-            (vec![(100, 1), (105, 1)], 1.0),
+            (vec![(100, 1), (105, 1)], (1.0, false)),
         ] {
-            let pose = pollster::block_on(wait_until_still(&mut ScriptedStatus(states)));
-            assert_eq!(pose.map(|[a1, ..]| a1), Ok(expected));
+            let mut robot = ScriptedStatus(states);
+            let result = pollster::block_on(wait_until_still(&mut robot, &mut 0));
+            let result = result.map(|([a1, ..], was_reset)| (a1, was_reset));
+            assert_eq!(result, Ok(expected));
         }
     }
 }

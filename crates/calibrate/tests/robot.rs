@@ -4,7 +4,8 @@ use std::convert::Infallible;
 use std::time::Duration;
 
 use lizard_calibrate::{
-    Console, ConsoleError, Reply, SCALE_TURNS_DEG, SendError, Session, read_settings, send_settings,
+    Console, ConsoleError, ReplaceError, Reply, SCALE_TURNS_DEG, Session, read_settings,
+    send_settings,
 };
 use lizard_core::virtual_board::RunningRobot;
 use lizard_robot::edit::without_gait;
@@ -38,15 +39,14 @@ impl Console for DirectConsole {
     async fn ask(&mut self, line: &str) -> Result<Reply, Infallible> {
         self.0.read_lines();
         let mut notes = self.0.send(format!("{line}\r").as_bytes());
-        let is_answer = |line: &String| !line.starts_with('#');
-        while !notes.iter().any(is_answer) {
+        loop {
+            if let Some(index) = notes.iter().position(|line| !line.starts_with('#')) {
+                let answer = notes.remove(index);
+                notes.truncate(index);
+                return Ok(Reply { notes, answer });
+            }
             notes.extend(self.0.run_frames(1));
         }
-        let index = notes.iter().position(is_answer);
-        let index = index.expect("an answer has arrived");
-        let answer = notes.remove(index);
-        notes.truncate(index);
-        Ok(Reply { notes, answer })
     }
 
     async fn pause(&mut self, duration: Duration) -> Result<(), Infallible> {
@@ -119,7 +119,7 @@ fn replace_restores_the_old_settings_if_the_robot_refuses_the_new_settings() {
     calibration.servos[0].trim = 4.0;
     calibration.servos[1].limit = [40.0, 43.0];
     let error = block_on(session.replace(&calibration)).expect_err("the travel is too narrow");
-    assert!(matches!(error, SendError::Refused(_)), "{error:?}");
+    assert!(matches!(error, ReplaceError::Refused(_)), "{error:?}");
     let message = error.to_string();
     let reason = "`limit 2 40.00 43.00`: err 3 A2's travel must";
     assert!(message.contains(reason), "{message}");
@@ -204,24 +204,9 @@ struct LossyConsole {
     lines: Vec<String>,
     /// The index of each affected line, and the lost part of its exchange.
     losses: Vec<(usize, Loss)>,
+    /// The beginning of the lines that get the answer `ok`, but do not reach the robot.
+    ignored_prefix: &'static str,
     saved: Calibration,
-}
-
-impl LossyConsole {
-    /// Sends `first_lines` to the paper's robot without losses. The connection then counts lines from 0.
-    fn connect(first_lines: &[&str], losses: Vec<(usize, Loss)>) -> Self {
-        let mut robot = DirectConsole::power_on(PAPER);
-        for line in first_lines {
-            block_on(robot.ask(line)).expect("the robot answers");
-        }
-        let saved = robot.read_calibration();
-        Self {
-            robot,
-            lines: Vec::new(),
-            losses,
-            saved,
-        }
-    }
 }
 
 impl Console for LossyConsole {
@@ -234,6 +219,10 @@ impl Console for LossyConsole {
         let loss = losses.find(|(lost_index, _)| *lost_index == index);
         if let Some((_, Loss::Line)) = loss {
             return Err("the line was lost");
+        }
+        if line.starts_with(self.ignored_prefix) {
+            let (notes, answer) = (Vec::new(), format!("ok {line}"));
+            return Ok(Reply { notes, answer });
         }
         let reply = self.robot.ask(line).await.expect("the robot answers");
         if line == "save" && reply.answer.starts_with("ok") {
@@ -251,9 +240,21 @@ impl Console for LossyConsole {
     }
 }
 
-/// Starts a session with the paper's robot, which has received `first_lines`, over a lossy connection.
+/// Sends `first_lines` to the paper's robot without losses, and starts a session over a lossy connection, which counts
+/// lines from 0.
 fn begin_lossy_session(first_lines: &[&str], losses: Vec<(usize, Loss)>) -> Session<LossyConsole> {
-    let connection = LossyConsole::connect(first_lines, losses);
+    let mut robot = DirectConsole::power_on(PAPER);
+    for line in first_lines {
+        block_on(robot.ask(line)).expect("the robot answers");
+    }
+    let saved = robot.read_calibration();
+    let connection = LossyConsole {
+        robot,
+        lines: Vec::new(),
+        losses,
+        ignored_prefix: "none of the lines",
+        saved,
+    };
     block_on(Session::begin(connection)).expect("the robot answers")
 }
 
@@ -324,13 +325,12 @@ fn session_and_robot_agree_on_the_settings_after_the_loss_of_any_line_or_answer(
 
 #[test]
 fn move_servo_does_not_return_to_neutral_between_two_angles() {
-    let mut connection = LossyConsole::connect(&[], Vec::new());
-    let mut session = block_on(Session::begin(&mut connection)).expect("the robot answers");
+    let mut session = begin_lossy_session(&[], Vec::new());
     for degrees in [140.0, 141.0] {
         block_on(session.move_servo(0, degrees)).expect("the robot accepts the pose");
     }
-    let stand_lines = connection.lines.iter().filter(|line| *line == "stand");
-    assert_eq!(stand_lines.count(), 1);
+    let lines = session.console().lines.iter();
+    assert_eq!(lines.filter(|line| *line == "stand").count(), 1);
 }
 
 #[test]
@@ -373,37 +373,16 @@ fn the_session_reads_the_settings_again_after_a_lost_answer() {
     assert_eq!(active.servos[0].trim, 1.5);
 }
 
-/// A connection that answers `ok` to each trim of A2, but does not send it to the robot.
-struct TrimIgnoringConsole(DirectConsole);
-
-impl Console for TrimIgnoringConsole {
-    type Error = Infallible;
-
-    async fn ask(&mut self, line: &str) -> Result<Reply, Infallible> {
-        if !line.starts_with("trim 2") {
-            return self.0.ask(line).await;
-        }
-        Ok(Reply {
-            notes: Vec::new(),
-            answer: format!("ok {line}"),
-        })
-    }
-
-    async fn pause(&mut self, duration: Duration) -> Result<(), Infallible> {
-        self.0.pause(duration).await
-    }
-}
-
 #[test]
 fn replace_fails_if_the_robot_reports_different_settings() {
-    let connection = TrimIgnoringConsole(DirectConsole::power_on(PAPER));
-    let mut session = block_on(Session::begin(connection)).expect("the robot answers");
+    let mut session = begin_lossy_session(&[], Vec::new());
+    session.console().ignored_prefix = "trim 2";
     let mut calibration = read_factory_settings();
     calibration.servos[0].trim = 1.0;
     calibration.servos[1].trim = 1.0;
     let error = block_on(session.replace(&calibration)).expect_err("a trim differs");
-    assert_eq!(error, SendError::Differs);
-    let active = session.console().0.read_calibration();
+    assert_eq!(error, ReplaceError::Differs);
+    let active = session.console().robot.read_calibration();
     let factory = read_factory_settings();
     assert!(active.is_equivalent_to(&factory), "{active:?}");
 }

@@ -25,11 +25,6 @@ pub enum DriveKind {
     Strut(Strut),
 }
 
-impl DriveKind {
-    /// Names of the kinds in robot.toml.
-    pub const NAMES: [&str; 2] = ["rigid", "strut"];
-}
-
 impl Drive {
     /// A leg that follows its servo exactly.
     pub const RIGID: Self = Self {
@@ -53,8 +48,8 @@ impl Drive {
     /// Name of the kind in robot.toml.
     pub fn kind_name(&self) -> &'static str {
         match self.kind {
-            DriveKind::Rigid => DriveKind::NAMES[0],
-            DriveKind::Strut(_) => DriveKind::NAMES[1],
+            DriveKind::Rigid => "rigid",
+            DriveKind::Strut(_) => "strut",
         }
     }
 

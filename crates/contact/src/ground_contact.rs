@@ -4,9 +4,9 @@
 //! dissipates as little power as possible: the body moves with the velocity (vx, vy, omega) that minimises
 //! `sum mu N_i |v + omega x r_i + dr_i/dt|` over the feet, where `mu` is the friction coefficient, `N_i` a foot's load
 //! and `r_i` its position. Three feet that move together prevail over one that swings, and the body advances. If the
-//! legs are rigid, the speed, the weight and a friction coefficient common to all feet have no effect. If springs drive
-//! the legs, each step minimises the sum of the friction's work and the springs' energy, and the ratio of friction to
-//! stiffness decides the lag of a leg behind its servo.
+//! legs are rigid and the servos ideal, the speed, the weight and a friction coefficient common to all feet have no
+//! effect. If springs drive the legs, each step minimises the sum of the friction's work and the springs' energy, and
+//! the ratio of friction to stiffness decides the lag of a leg behind its servo.
 
 use crate::drive::Drive;
 use crate::feet::{Body, Feet};
@@ -15,7 +15,7 @@ use crate::stance::Stance;
 /// The contact of a robot with a floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundContact {
-    /// Geometry of the feet.
+    /// Positions of the hips, and geometry of the legs.
     pub feet: Feet,
     /// Mass and centre of mass.
     pub body: Body,
@@ -45,7 +45,7 @@ pub(crate) const PAPER_GROUND: GroundContact = GroundContact {
 pub const DEFAULT_FRICTION: f64 = 0.7;
 
 impl GroundContact {
-    /// Returns this contact with legs that do not lag, so that no step depends on earlier steps.
+    /// Returns this contact with rigid struts without play: no leg lags, so no step depends on earlier steps.
     pub fn with_rigid_drive(&self) -> Self {
         Self {
             drive: Drive::RIGID,
@@ -53,8 +53,8 @@ impl GroundContact {
         }
     }
 
-    /// Friction of a pad under the mean load, N: the force that a leg's spring or motor has to overcome.
-    pub fn mean_pad_friction(&self) -> f64 {
+    /// Friction force of a pad under the mean load, N, which a leg's spring or motor has to overcome.
+    pub fn mean_friction_force(&self) -> f64 {
         self.friction_coefficient * self.body.mean_load()
     }
 }

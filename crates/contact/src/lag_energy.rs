@@ -100,12 +100,6 @@ impl StrutTriangle {
         (self.base * self.arm * sin / self.unlagged_length).copysign(self.angle)
     }
 
-    /// Magnitude of the lever arm, mm/rad, at a lag (rad) that lengthens the strut.
-    pub fn lever_arm_at(&self, lag: f64) -> f64 {
-        let (_, lever_arm, _) = self.extension_and_derivatives(lag);
-        lever_arm
-    }
-
     /// Magnitude of the lag at which the strut is `extension` mm longer, rad; infinite if it cannot extend so far.
     pub fn lag_at_extension(&self, extension: f64) -> f64 {
         let Self { base, arm, .. } = self;
@@ -122,7 +116,7 @@ impl StrutTriangle {
     ///
     /// Lags are often as small as a hundred-thousandth of a radian. The difference of two lengths would then consist
     /// mostly of rounding errors, which would mislead Newton's method.
-    fn extension_and_derivatives(&self, lag: f64) -> (f64, f64, f64) {
+    pub fn extension_and_derivatives(&self, lag: f64) -> (f64, f64, f64) {
         let (product, (sin, cos)) = (self.base * self.arm, self.sin_cos);
         let (half_sin, half_cos) = (lag / 2.0).sin_cos();
         let (lag_sin, lag_cos) = (2.0 * half_sin * half_cos, 1.0 - 2.0 * half_sin * half_sin);

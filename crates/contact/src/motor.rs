@@ -175,7 +175,7 @@ mod tests {
         // Rotors and legs accelerate in the first 20 ms, which therefore do not count.
         let start_angle = drive_and_compute_mean_angle();
         let mean_rate = (drive_and_compute_mean_angle() - start_angle) / 0.02;
-        let pad_torque = heavy_ground.mean_pad_friction() * heavy_ground.feet.reach;
+        let pad_torque = heavy_ground.mean_friction_force() * heavy_ground.feet.reach;
         let expected_rate = SG90.no_load_speed * (1.0 - pad_torque / SG90.stall_torque);
         assert_near(mean_rate / expected_rate, 1.0, 0.1);
     }

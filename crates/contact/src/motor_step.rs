@@ -163,7 +163,8 @@ impl MotorStep {
             if step_length <= f64::EPSILON * (max_deviation + lag.abs()) {
                 return newton_lag;
             }
-            // Newton's steps shrink unless a kink lies before the solution; then it or bisection gives the next lag.
+            // Newton's steps shrink unless a kink lies before the solution; then the kink or bisection gives the next
+            // lag.
             let is_between = |lag: &f64| low < *lag && *lag < high;
             let next = match is_between(&newton_lag) && step_length <= last_step_length {
                 true => newton_lag,

@@ -41,12 +41,6 @@ impl Stance {
         ..Self::DEFAULT
     };
 
-    /// Extra load that `twist` puts on the front left and the hind right foot, N, if the feet form a rectangle; the
-    /// other two feet carry less by as much.
-    pub fn diagonal_load(&self) -> f64 {
-        self.stiffness * self.twist / 4.0
-    }
-
     /// Computes each foot's load divided by the mean load, for feet at these positions (forward, left in mm, servo
     /// order); 0 for a foot in the air.
     ///
@@ -188,7 +182,6 @@ mod tests {
     fn a_foot_that_is_too_long_and_the_diagonally_opposite_foot_carry_more() {
         // 2 N/mm times 0.6 mm is 1.2 N, of which each foot on the diagonal bears a quarter.
         let stance = stance_with_twist(0.6);
-        assert_near(stance.diagonal_load(), 0.3, 1e-12);
         let extra_load = 0.3 / Body::DEFAULT.mean_load();
         let loads = stance.relative_loads(&Body::DEFAULT, RECTANGLE);
         let expected_loads = [1.0, -1.0, 1.0, -1.0].map(|sign| 1.0 + sign * extra_load);

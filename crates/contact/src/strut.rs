@@ -56,7 +56,8 @@ impl Strut {
         let triangle = self.compute_triangle(leg, sweep);
         let lag = triangle.lag_at_extension(self.slot_length);
         let tension = self.preload + self.spring_rate * self.slot_length;
-        (lag.to_degrees(), tension * triangle.lever_arm_at(lag))
+        let (_, lever_arm, _) = triangle.extension_and_derivatives(lag);
+        (lag.to_degrees(), tension * lever_arm)
     }
 
     /// Computes the resistances to a negative and a positive lag, in units of `force_unit` newtons, with the servo at

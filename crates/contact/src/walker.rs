@@ -172,7 +172,7 @@ impl Walker {
                 state,
                 seconds,
                 [joint_friction.pin_torque, slider_torques[i]],
-                self.ground.mean_pad_friction(),
+                self.ground.mean_friction_force(),
             ))
         });
         // The servos' lags are relative to the sweeps that the servos would reach at unchanged rates.
@@ -211,7 +211,7 @@ impl Walker {
         let GroundContact { feet, body, .. } = self.ground;
         let ([front, hind], leg_mass) = (feet.hip_side, body.leg_mass());
         let to_stiffness = |mass: f64| {
-            mass * KG_PER_G * M_PER_MM / (seconds * seconds * self.ground.mean_pad_friction())
+            mass * KG_PER_G * M_PER_MM / (seconds * seconds * self.ground.mean_friction_force())
         };
         let stiffness = to_stiffness(body.mass - 4.0 * leg_mass);
         let squared_hip_distance =
@@ -296,7 +296,7 @@ impl Walker {
         let drive = &self.ground.drive;
         // No pad carries more than the whole robot.
         let max_pad_torque = 4.0 * feet.reach * friction_ratio.max(1.0);
-        let force_unit = self.ground.mean_pad_friction();
+        let force_unit = self.ground.mean_friction_force();
         let is_compliant = drive.can_lag() || motor_steps.iter().any(Option::is_some);
         Pads {
             positions,

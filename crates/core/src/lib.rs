@@ -68,6 +68,7 @@
 //! `lizard-kinematics`.
 
 #![no_std]
+#![allow(clippy::new_without_default, reason = "a constant `new` is enough")]
 
 #[cfg(any(test, feature = "host"))]
 extern crate std;

@@ -112,12 +112,6 @@ pub enum StepResult {
     Idle(u8),
 }
 
-impl Default for Main {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Main {
     /// Creates a main loop that has no robot; [`Main::begin`] must follow.
     ///
@@ -181,7 +175,7 @@ impl Main {
             };
             board.submit(self.control.compute_frame(&health));
             self.store_servo_state(board);
-            board.set_led(self.control.is_lit());
+            board.set_led(self.control.safety().is_lit());
             if let Some(rate) = self.console.advance_frame(&self.control) {
                 board.set_rate(rate);
             }

@@ -73,7 +73,8 @@ pub struct VirtualBoard {
     started_pulses: Pulses,
     is_lit: bool,
     received_bytes: VecDeque<u8>,
-    lost_bytes: u16,
+    /// The number of received bytes that were lost.
+    pub lost_bytes: u16,
     /// The number of late pulse edges.
     pub late_edges: u16,
     /// True unless the stack has grown into the data.
@@ -152,12 +153,6 @@ impl VirtualBoard {
             rate: restart.rate,
             ..self
         }
-    }
-
-    /// Returns the board with this number of ticks.
-    #[must_use]
-    pub fn at_tick(self, ticks: u8) -> Self {
-        Self { ticks, ..self }
     }
 
     /// Lets milliseconds pass while the main loop does not run. Stops and returns true as soon as the watchdog resets
@@ -267,11 +262,6 @@ impl VirtualBoard {
         self.received_bytes.len()
     }
 
-    /// Adds this many bytes to the lost bytes.
-    pub const fn add_lost_bytes(&mut self, byte_count: u16) {
-        self.lost_bytes = self.lost_bytes.saturating_add(byte_count);
-    }
-
     /// The last frame that the main loop submitted.
     pub const fn submitted_pulses(&self) -> Pulses {
         self.submitted_pulses
@@ -297,12 +287,7 @@ impl VirtualBoard {
         self.ms_since_fed
     }
 
-    /// The stored servo state, which would survive a reset.
-    pub fn stored_servo_state(&self) -> Option<ServoState> {
-        self.ram.peek_restart(None).servo_state_before
-    }
-
-    /// True once the watchdog has ended the pulses.
+    /// True once the watchdog has ended the pulses, and the main loop has stopped until the reset.
     pub const fn are_pulses_ended(&self) -> bool {
         self.are_pulses_ended
     }

@@ -17,8 +17,8 @@ const LINKS: [f64; 20] = [
 /// The neutral angles of the servos, degrees, in servo order.
 const NEUTRAL_POSE: [f64; 4] = [138.59, 41.41, 318.59, 221.41];
 
-/// Returns servo angles (degrees) in the paper's safe box, within 34 degrees of neutral. The multiples of
-/// irrational steps fill the box evenly.
+/// Returns servo angles (degrees), each within 34 degrees of neutral. The multiples of irrational steps fill this range
+/// evenly.
 fn sample_pose(index: usize) -> [f64; 4] {
     let steps = [0.856_674_883, 0.733_891_856, 0.628_706_720, 0.538_597_257];
     std::array::from_fn(|servo| {

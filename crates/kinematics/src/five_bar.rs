@@ -192,7 +192,8 @@ impl FiveBar {
         self.check_closure(pose.gap.length(), pose.finiteness_probe())
     }
 
-    /// True for each lane whose loop closes; [`FiveBar::close`] returns the fault of an open loop.
+    /// Returns, for each lane, true if the loop closes. For the cranks of a lane with an open loop, [`FiveBar::close`]
+    /// returns the fault.
     #[inline(always)]
     pub fn closes<const N: usize>(&self, pose: &FiveBarPose<Lanes<N>>) -> [bool; N] {
         let (Lanes(d), Lanes(probe)) = (pose.gap.length(), pose.finiteness_probe());

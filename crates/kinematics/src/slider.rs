@@ -2,20 +2,21 @@
 //!
 //! Each arm is rigidly joined to a crank, so the arm tips are known. The prismatic joint lies on
 //! the line from the rear tip to the front one, with length d = l12 + l13 + s and direction phi.
-//! Its only singularity is d = 0; in practice its stroke limits it.
+//! Its only singularity is d = 0; in practice the stroke ends long before.
 //!
-//! The paper takes theta10 + theta11 = 0 for the two halves of the slider. With counter-clockwise angles the halves
-//! have opposite directions, theta11 = theta10 + 180, and the unknowns are phi = theta10 and s.
+//! The paper's theta10 + theta11 = 0 for the two halves of the slider is wrong if both angles are counter-clockwise:
+//! the halves then have opposite directions, theta11 = theta10 + 180. The unknowns are phi = theta10 and s.
 
 use crate::fault::Fault;
 use crate::real::{Lanes, Real};
 use crate::vector::Vector;
 
-/// The dimensions of a side's loop, in a frame with its origin on the rear shaft and the axes of the chassis frame.
+/// The loop of one side (front arm, slider, rear arm, chassis): its dimensions, in a frame with its origin on the rear
+/// shaft and the axes of the chassis frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slider {
-    /// x of the front shaft relative to the rear one, mm: 0 if the bases of head and tail are equally
-    /// wide, otherwise of either sign.
+    /// x of the front shaft relative to the rear one, mm: 0 if l0 and l5, the widths of head and tail, are equal,
+    /// otherwise of either sign.
     pub front_offset: f64,
     /// y of the front shaft relative to the rear one, mm: l10, l15.
     pub base: f64,
@@ -84,7 +85,8 @@ impl Slider {
         check_direction(pose.d, pose.s)
     }
 
-    /// True for each lane whose slider has a direction; [`Slider::close`] returns the fault of a slider without one.
+    /// Returns, for each lane, true if the slider has a direction. For the arms of a lane without one,
+    /// [`Slider::close`] returns the fault.
     #[inline(always)]
     pub fn closes<const N: usize>(&self, pose: &SliderPose<Lanes<N>>) -> [bool; N] {
         let (Lanes(d), Lanes(s)) = (pose.d, pose.s);

@@ -1,4 +1,4 @@
-//! The height of the robot's deck, the top of its board, on which the card lies.
+//! The height of the robot's deck: the top of its board, on which the card with the robot's tag lies.
 
 use lizard_parts::Assembly;
 use lizard_robot::Robot;

@@ -7,7 +7,7 @@ use lizard_video::sheet::{
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 
 /// Length of a point, the unit of PDF, mm.
-const POINT_MM: f64 = 25.4 / 72.0;
+const PDF_POINT_MM: f64 = 25.4 / 72.0;
 /// Name of the font within the PDF.
 const FONT_NAME: Name = Name(b"F1");
 /// Size of the font, mm.
@@ -46,7 +46,7 @@ pub enum PaperSize {
 
 impl PaperSize {
     /// Returns the width and the height, mm.
-    fn size(self) -> Point {
+    fn size(self) -> [f64; 2] {
         match self {
             Self::A4 => [297.0, 210.0],
             Self::Letter => [279.4, 215.9],
@@ -56,7 +56,7 @@ impl PaperSize {
     /// Draws the sheet of tags; returns the bytes of a PDF file.
     pub fn draw_tag_sheet(self) -> Vec<u8> {
         let [catalog, pages, page, font, content, info] = [1, 2, 3, 4, 5, 6].map(Ref::new);
-        let size_in_points = self.size().map(to_points);
+        let [page_width, page_height] = self.size().map(to_pdf);
         let mut pdf = Pdf::new();
         let mut root = pdf.catalog(catalog);
         root.pages(pages);
@@ -68,7 +68,7 @@ impl PaperSize {
             .title(TextStr("Tags for lizard measure"));
         pdf.pages(pages).kids([page]).count(1);
         let mut page_writer = pdf.page(page);
-        page_writer.media_box(Rect::new(0.0, 0.0, size_in_points[0], size_in_points[1]));
+        page_writer.media_box(Rect::new(0.0, 0.0, page_width, page_height));
         page_writer.parent(pages).contents(content);
         page_writer.resources().fonts().pair(FONT_NAME, font);
         page_writer.finish();
@@ -78,9 +78,9 @@ impl PaperSize {
     }
 }
 
-/// Converts mm to points.
-fn to_points(mm: f64) -> f32 {
-    (mm / POINT_MM) as f32
+/// Converts mm to points, the unit of PDF.
+fn to_pdf(mm: f64) -> f32 {
+    (mm / PDF_POINT_MM) as f32
 }
 
 /// Draws the whole page.
@@ -95,15 +95,15 @@ fn draw_page(paper_size: PaperSize) -> Content {
         top -= STRIP_SIZE[1];
     }
     draw_card(&mut content, [left, top - CARD_SIZE[1]]);
-    let text_corner = [left + CARD_SIZE[0] + 8.0, top - 8.0];
+    let text_start = [left + CARD_SIZE[0] + 8.0, top - 8.0];
     for (i, line) in INSTRUCTIONS.iter().enumerate() {
-        let y = text_corner[1] - i as f64 * LINE_SPACING_MM;
-        write_text(&mut content, line, [text_corner[0], y]);
+        let y = text_start[1] - i as f64 * LINE_SPACING_MM;
+        write_text(&mut content, line, [text_start[0], y]);
     }
     content
 }
 
-/// Draws a strip with its lower left corner at a point.
+/// Draws a strip with its lower left corner at a position.
 fn draw_strip(content: &mut Content, strip: usize, [x, y]: Point) {
     draw_cut_rectangle(content, [x, y], STRIP_SIZE);
     let centre = [x + STRIP_SIZE[0] / 2.0, y + STRIP_SIZE[1] / 2.0];
@@ -130,7 +130,7 @@ fn draw_strip(content: &mut Content, strip: usize, [x, y]: Point) {
     write_text(content, text, [ruler_start, centre[1] - 10.0]);
 }
 
-/// Draws the deck's card with its lower left corner at a point.
+/// Draws the deck's card with its lower left corner at a position.
 fn draw_card(content: &mut Content, [x, y]: Point) {
     draw_cut_rectangle(content, [x, y], CARD_SIZE);
     let centre_x = x + CARD_SIZE[0] / 2.0;
@@ -139,9 +139,9 @@ fn draw_card(content: &mut Content, [x, y]: Point) {
     // The arrow starts above the tag's white margin.
     let arrow_base = y + CARD_MARGIN + DECK_TAG_EDGE + CARD_MARGIN;
     let arrow_tip = y + CARD_SIZE[1] - 1.0;
-    content.move_to(to_points(centre_x - 4.0), to_points(arrow_base + 1.0));
-    content.line_to(to_points(centre_x + 4.0), to_points(arrow_base + 1.0));
-    content.line_to(to_points(centre_x), to_points(arrow_tip));
+    content.move_to(to_pdf(centre_x - 4.0), to_pdf(arrow_base + 1.0));
+    content.line_to(to_pdf(centre_x + 4.0), to_pdf(arrow_base + 1.0));
+    content.line_to(to_pdf(centre_x), to_pdf(arrow_tip));
     content.close_path().fill_nonzero();
     write_text(content, FORWARD_WORD, [centre_x + 6.0, arrow_base + 2.0]);
 }
@@ -172,25 +172,25 @@ fn draw_tag(content: &mut Content, id: usize, [x, y]: Point) {
     content.set_fill_gray(0.0);
 }
 
-/// Fills a rectangle with its lower left corner at a point, mm.
-fn fill_rectangle(content: &mut Content, [x, y]: Point, [width, height]: Point) {
-    let [x, y, width, height] = [x, y, width, height].map(to_points);
+/// Fills a rectangle with its lower left corner at a position, mm.
+fn fill_rectangle(content: &mut Content, [x, y]: Point, [width, height]: [f64; 2]) {
+    let [x, y, width, height] = [x, y, width, height].map(to_pdf);
     content.rect(x, y, width, height).fill_nonzero();
 }
 
-/// Draws the cut lines around a piece with its lower left corner at a point, mm.
-fn draw_cut_rectangle(content: &mut Content, [x, y]: Point, [width, height]: Point) {
+/// Draws the cut lines around a piece with its lower left corner at a position, mm.
+fn draw_cut_rectangle(content: &mut Content, [x, y]: Point, [width, height]: [f64; 2]) {
     content
-        .set_line_width(to_points(CUT_THICKNESS_MM))
+        .set_line_width(to_pdf(CUT_THICKNESS_MM))
         .set_stroke_gray(CUT_GREY);
-    let [x, y, width, height] = [x, y, width, height].map(to_points);
+    let [x, y, width, height] = [x, y, width, height].map(to_pdf);
     content.rect(x, y, width, height).stroke();
 }
 
-/// Writes a line of text that starts at a point, mm.
+/// Writes a line of text that starts at a position, mm.
 fn write_text(content: &mut Content, text: &str, [x, y]: Point) {
     content.begin_text();
-    content.set_font(FONT_NAME, to_points(FONT_SIZE_MM));
-    content.next_line(to_points(x), to_points(y));
+    content.set_font(FONT_NAME, to_pdf(FONT_SIZE_MM));
+    content.next_line(to_pdf(x), to_pdf(y));
     content.show(Str(text.as_bytes())).end_text();
 }

@@ -24,7 +24,6 @@ const LENGTH_UNIT_MM: f64 = 50.0;
 
 /// A mechanism: joints that connect links. Link 0 is fixed.
 struct Mechanism {
-    name: &'static str,
     /// Number of links, including link 0.
     link_count: usize,
     joints: Vec<Joint>,
@@ -85,12 +84,12 @@ pub struct Mobility {
 /// Computes the degrees of freedom of the body and of each leg at a pose.
 pub fn compute_mobilities(lizard: &Lizard, solution: &Solution) -> Vec<Mobility> {
     let leg_names = ["leg LF (A1)", "leg RF (A2)", "leg RH (A3)", "leg LH (A4)"];
-    let body = build_body(lizard, solution);
-    let legs = (0..4).map(|i| build_leg(lizard, solution, i, leg_names[i]));
-    std::iter::once(body)
-        .chain(legs)
-        .map(|mechanism| Mobility::compute(&mechanism))
-        .collect()
+    let mut mobilities = vec![Mobility::compute("body", &build_body(lizard, solution))];
+    for (servo, name) in leg_names.into_iter().enumerate() {
+        let leg = build_leg(lizard, solution, servo);
+        mobilities.push(Mobility::compute(name, &leg));
+    }
+    mobilities
 }
 
 /// Builds the body with its 13 links: chassis, four cranks (with their side arms), four couplers and four slider
@@ -126,7 +125,6 @@ fn build_body(lizard: &Lizard, solution: &Solution) -> Mechanism {
         });
     }
     Mechanism {
-        name: "body",
         link_count: 13,
         joints,
         driven_links: CRANK_LINKS.to_vec(),
@@ -141,7 +139,7 @@ fn build_body(lizard: &Lizard, solution: &Solution) -> Mechanism {
 
 /// Builds a leg's four-bar in the leg's frame: ground 0, crank 1, coupler 2, follower 3. The spring to the body imposes
 /// no rigid constraint, so the spring is not a link.
-fn build_leg(lizard: &Lizard, solution: &Solution, servo: usize, name: &'static str) -> Mechanism {
+fn build_leg(lizard: &Lizard, solution: &Solution, servo: usize) -> Mechanism {
     let crank = solution.legs[servo].direction * lizard.leg.crank;
     let ground_vector = Vector::new(lizard.leg.ground, 0.0);
     let points = [
@@ -155,7 +153,6 @@ fn build_leg(lizard: &Lizard, solution: &Solution, servo: usize, name: &'static 
         kind: JointKind::Revolute(point),
     });
     Mechanism {
-        name,
         link_count: 4,
         joints: joints.into(),
         driven_links: vec![1],
@@ -173,7 +170,7 @@ pub fn count_body_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
 
 /// Counts the left front leg's degrees of freedom at a pose from the rank of the constraints.
 pub fn count_left_front_leg_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
-    count_freedoms(&build_leg(lizard, solution, 0, "leg"))
+    count_freedoms(&build_leg(lizard, solution, 0))
 }
 
 /// Counts a mechanism's degrees of freedom if no crank is locked, from the rank of the constraints.
@@ -183,8 +180,8 @@ fn count_freedoms(mechanism: &Mechanism) -> usize {
 }
 
 impl Mobility {
-    /// Computes the mobility of a mechanism.
-    fn compute(mechanism: &Mechanism) -> Self {
+    /// Computes the mobility of a mechanism, whose name becomes [`Mobility::mechanism`].
+    fn compute(name: &'static str, mechanism: &Mechanism) -> Self {
         let joint_count = mechanism.joints.len();
         let free_jacobian = build_constraint_jacobian(mechanism, &[]);
         let (constraint_count, velocity_count) = free_jacobian.shape();
@@ -213,7 +210,7 @@ impl Mobility {
         loose_messages.sort_unstable();
         loose_messages.dedup();
         Self {
-            mechanism: mechanism.name,
+            mechanism: name,
             link_count: mechanism.link_count,
             joint_count,
             gruebler: 3 * (mechanism.link_count as i64 - 1) - 2 * joint_count as i64,

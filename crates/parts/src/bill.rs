@@ -101,11 +101,6 @@ impl Item {
         }
     }
 
-    /// Mass of all pieces of the row, g.
-    fn total_grams(&self) -> f64 {
-        self.count as f64 * self.grams
-    }
-
     /// Creates a row for an item that is not modelled as a body of the robot.
     fn unmodelled((count, name, grams, price): Row) -> Self {
         Self::bought(count, name.to_owned(), grams, price)
@@ -248,11 +243,11 @@ fn list_input_items(robot: &Robot) -> Vec<Item> {
 impl Bill {
     /// Computes the bill of materials of a robot, with its centre of mass at `pose`.
     pub fn compute(assembly: &Assembly, parts: &[Part], pose: &Solution) -> Self {
-        let spring_effect = SpringEffect::compute(assembly);
+        let (robot, spring_effect) = (assembly.robot(), SpringEffect::compute(assembly));
         let mut items_by_name: BTreeMap<String, Item> = BTreeMap::new();
         let (mut grams, mut moment) = (0.0, [0.0; 3]);
         for body in assembly.bodies() {
-            let name = format_row(body, assembly.robot().parts(), spring_effect.as_ref());
+            let name = format_row(body, robot.parts(), spring_effect.as_ref());
             let body_mass = body_grams(body, assembly);
             if !name.is_empty() {
                 let price = price_class(body.kind);
@@ -272,7 +267,8 @@ impl Bill {
             listed_parts.map(Item::printed).collect()
         };
         let unplaced_items = UNPLACED_ITEMS.map(Item::unmodelled);
-        grams += unplaced_items.iter().map(Item::total_grams).sum::<f64>();
+        let row_grams = |item: &Item| item.count as f64 * item.grams;
+        grams += unplaced_items.iter().map(row_grams).sum::<f64>();
         let bought: Vec<_> = items_by_name.into_values().chain(unplaced_items).collect();
         Self {
             printed: list_items(false),
@@ -280,11 +276,11 @@ impl Bill {
             euros: PriceClass::sum(bought.iter().filter_map(|item| item.price)),
             bought,
             radio: RADIO_ITEMS.map(Item::unmodelled).into(),
-            inputs: list_input_items(assembly.robot()),
+            inputs: list_input_items(robot),
             grams,
             centre_of_mass: moment.map(|sum| sum / grams),
             spring_effect,
-            battery_space: assembly.robot().parts().battery,
+            battery_space: robot.parts().battery,
         }
     }
 
@@ -410,24 +406,23 @@ pub fn format_buying_table(items: &[Item]) -> String {
 /// Formats a Markdown table of the battery and the fittings: place, space, fastening, and examples that fit.
 pub fn format_mounting_table(battery: [f64; 3]) -> String {
     let format_size = |[x, y, z]: [f64; 3]| format!("{x} x {y} x {z}");
-    let join_examples = |examples: &mut dyn Iterator<Item = Example>| {
-        let names: Vec<_> = examples.map(|example| example.to_string()).collect();
-        names.join("; ")
+    let join_examples = |examples: &[Example]| {
+        let examples: Vec<_> = examples.iter().map(Example::to_string).collect();
+        examples.join("; ")
     };
     let mut text =
         "| part | place | space, mm | fastening | examples, mm |\n|---|---|---|---|---|\n"
             .to_owned();
     let fits = |example: &Example| (0..3).all(|axis| example.size[axis] <= battery[axis]);
+    let batteries: Vec<_> = BATTERY_EXAMPLES.into_iter().filter(fits).collect();
+    let (space, examples) = (format_size(battery), join_examples(&batteries));
     text += &format!(
-        "| battery | on the plate, in the middle | {} | the battery strap | {} |\n",
-        format_size(battery),
-        join_examples(&mut BATTERY_EXAMPLES.into_iter().filter(fits))
+        "| battery | on the plate, in the middle | {space} | the battery strap | {examples} |\n"
     );
     for fitting in Fitting::ALL {
         let spec = fitting.spec();
         let (name, place, fastening) = (spec.name, spec.place, spec.fastening);
-        let space = format_size(spec.size);
-        let examples = join_examples(&mut spec.examples.into_iter());
+        let (space, examples) = (format_size(spec.size), join_examples(&spec.examples));
         text += &format!("| {name} | {place} | {space} | {fastening} | {examples} |\n");
     }
     text + SIZES_TEXT

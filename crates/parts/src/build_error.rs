@@ -63,7 +63,6 @@ pub struct CollidingPair {
 
 impl BuildError {
     /// The parts that collide or may collide; `None` if the error has another reason.
-    #[must_use]
     pub fn colliding_pair(&self) -> Option<CollidingPair> {
         let (first, second, mm, pose) = match self {
             Self::Clash(Clash::Overlap(pair) | Clash::Narrow(pair)) => {
@@ -245,7 +244,7 @@ fn choose_overlap_advice(a: &Body, b: &Body) -> &'static str {
     let is_under_deck =
         |kind: Kind| matches!(kind, Kind::Fitting(Fitting::Alarm | Fitting::Converter));
     if kinds.into_iter().any(is_on_battery) && kinds.into_iter().any(is_under_deck) {
-        return "decrease the height of parts.battery, or raise the deck with a larger parts.thickness";
+        return "decrease the height of parts.battery, or raise the deck with a larger parts.thickness or parts.fit";
     }
     "other links, or other dimensions under [parts] in robot.toml, may keep them apart"
 }

@@ -5,9 +5,6 @@ use std::fmt;
 
 use serde::Serialize;
 
-/// The month in which the classes were estimated.
-pub const ESTIMATE_MONTH: &str = "November 2026";
-
 /// The price class of a row of the bill of materials: of all its pieces, or of the smallest pack sold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub enum PriceClass {
@@ -48,7 +45,7 @@ impl PriceClass {
             }
         });
         format!(
-            "Price classes, euros for the whole row or the smallest pack: {}. They are estimates of {ESTIMATE_MONTH} for \
+            "Price classes, euros for the whole row or the smallest pack: {}. They are estimates of November 2026 for \
              European mail-order shops, without postage. Prices vary from shop to shop and from month to month.",
             class_texts.join(", ")
         )

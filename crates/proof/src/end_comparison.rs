@@ -1,6 +1,7 @@
 //! The comparison of the guard with floating point at all pairs of positions that an end's two servos can take.
 
 use lizard_core::guard::five_bar::EndMargins;
+use lizard_core::guard::trig::Direction;
 use lizard_core::numbers::cells::CellMap;
 use lizard_core::numbers::part;
 use lizard_kinematics::{AssemblyMode, End, FiveBar, Lanes, Vector};
@@ -8,18 +9,18 @@ use lizard_robot::{CellMaps, CoreRobot, Robot};
 
 use crate::positions::Positions;
 use crate::rows::{Group, gather_lanes, q15_to_sine};
-use crate::tally::{LENGTH_BAND_STEPS, Tally, margin_band};
+use crate::tally::{LENGTH_BAND_STEPS, LimitKind, Tally, margin_band};
 
-/// The comparison of the guard with floating point over all pairs of an end.
+/// The comparison of the guard with floating point at all pairs of positions of an end's two servos.
 pub struct EndComparison<'a> {
-    fixed: lizard_core::guard::five_bar::FiveBar<'a>,
-    exact: FiveBar,
+    guard_five_bar: lizard_core::guard::five_bar::FiveBar<'a>,
+    float_five_bar: FiveBar,
     /// Smallest allowed type-2 and type-1 margins of robot.toml, sines.
     limits: [f64; 2],
     /// Smallest allowed type-2 and type-1 margins in the firmware, Q15.
-    fixed_limits: [i16; 2],
+    guard_limits: [i16; 2],
     /// Smallest allowed leg margin in the firmware, Q15.
-    fixed_leg_limit: i16,
+    guard_leg_limit: i16,
     end: End,
     cells: CellMap<'a>,
     /// Distance from a margin's limit within which decisions may differ, a sine.
@@ -29,19 +30,20 @@ pub struct EndComparison<'a> {
 }
 
 impl<'a> EndComparison<'a> {
-    pub fn new(robot: &Robot, guard: &'a CoreRobot, maps: &'a CellMaps, end: End) -> Self {
-        let limits = guard.limits();
+    /// Prepares the comparison of an end.
+    pub fn new(robot: &Robot, core_robot: &'a CoreRobot, maps: &'a CellMaps, end: End) -> Self {
+        let limits = core_robot.limits();
         let [margin_band, crossing_band_mm] = compute_bands(robot, end);
         let map = match end {
             End::Head => &maps.head,
             End::Tail => &maps.tail,
         };
         Self {
-            fixed: guard.five_bar(part::End::ALL[end as usize]),
-            exact: robot.lizard().end(end),
+            guard_five_bar: core_robot.five_bar(part::End::ALL[end as usize]),
+            float_five_bar: robot.lizard().end(end),
             limits: [robot.limits().type2, robot.limits().type1],
-            fixed_limits: [limits.type2.0, limits.type1.0],
-            fixed_leg_limit: limits.leg.0,
+            guard_limits: [limits.type2.0, limits.type1.0],
+            guard_leg_limit: limits.leg.0,
             end,
             cells: map.cells(),
             margin_band,
@@ -57,30 +59,31 @@ impl<'a> EndComparison<'a> {
         row: usize,
         (columns, valid_count): Group,
     ) {
-        let crank_left = Vector::constant(left.exact[row]);
-        let crank_right = gather_lanes(&right.exact, columns);
+        let crank_left = Vector::constant(left.float_directions[row]);
+        let crank_right = gather_lanes(&right.float_directions, columns);
         let mode = AssemblyMode::Ahead;
-        let pose = self.exact.pose_unchecked(mode, crank_left, crank_right);
-        let are_closed = self.exact.closes(&pose);
+        let five_bar = &self.float_five_bar;
+        let pose = five_bar.pose_unchecked(mode, crank_left, crank_right);
+        let are_closed = five_bar.closes(&pose);
         let Lanes(type2) = pose.type2;
         let Lanes(type1_left) = pose.type1_left();
         let Lanes(type1_right) = pose.type1_right();
         let Lanes(gap_across_mm) = pose.gap.x;
         for (lane, column) in columns.into_iter().take(valid_count).enumerate() {
-            let exact = ExactEndValues {
+            let float_values = FloatEndValues {
                 is_closed: are_closed[lane],
                 type2: type2[lane],
                 type1: [type1_left[lane], type1_right[lane]],
                 crank_tip_distance_mm: gap_across_mm[lane],
             };
-            let legs = [left.fixed[row], right.fixed[column]];
-            let margins = self.fixed.margins(&legs[0], &legs[1]);
+            let cranks = [left.guard_directions[row], right.guard_directions[column]];
+            let margins = self.guard_five_bar.margins(&cranks[0], &cranks[1]);
             let describe_pair = || {
                 let name = self.end.name();
                 let [left_deg, right_deg] = [left.degrees[row], right.degrees[column]];
                 format!("{name} at {left_deg:.4} and {right_deg:.4} deg")
             };
-            self.compare_pair(tally, margins, &exact, describe_pair);
+            self.compare_pair(tally, margins, &float_values, describe_pair);
             let [left_sweep, right_sweep] = [left.sweep(row), right.sweep(column)];
             // The maps' rows are the sweeps of A1 and A3, their columns the sweeps of A2 and A4.
             let is_in_cell = match self.end {
@@ -88,7 +91,8 @@ impl<'a> EndComparison<'a> {
                 End::Tail => self.cells.contains(right_sweep, left_sweep),
             };
             if is_in_cell {
-                let are_legs_accepted = legs.iter().all(|leg| leg.sin >= self.fixed_leg_limit);
+                let is_leg_accepted = |crank: &Direction| crank.sin >= self.guard_leg_limit;
+                let are_legs_accepted = cranks.iter().all(is_leg_accepted);
                 let is_accepted = self.accepts(margins) && are_legs_accepted;
                 tally.count_certified(is_accepted, describe_pair);
             }
@@ -98,55 +102,56 @@ impl<'a> EndComparison<'a> {
     /// True if the guard accepts an end with these margins.
     #[inline(always)]
     fn accepts(&self, margins: EndMargins) -> bool {
-        let [type2, type1] = self.fixed_limits;
+        let [type2, type1] = self.guard_limits;
         margins.type2.0 >= type2 && margins.type1_left.0 >= type1 && margins.type1_right.0 >= type1
     }
 
-    /// Compares the guard's margins of a pair with their exact values.
+    /// Compares the guard's margins of a pair with those in floating point.
     #[inline(always)]
     fn compare_pair(
         &self,
         tally: &mut Tally,
         margins: EndMargins,
-        exact: &ExactEndValues,
+        float_values: &FloatEndValues,
         describe_pair: impl Fn() -> String,
     ) {
         tally.pair_count += 1;
-        let is_fixed_safe = self.accepts(margins);
+        let is_accepted = self.accepts(margins);
         let type2 = q15_to_sine(margins.type2.0);
         let type1 = [margins.type1_left, margins.type1_right].map(|margin| q15_to_sine(margin.0));
         // A pose whose couplers nearly fold is rejected, regardless of its other margins.
-        if exact.is_closed && exact.type2 > self.limits[0] - self.margin_band {
-            let type2_error = (type2.abs() - exact.type2).abs();
+        if float_values.is_closed && float_values.type2 > self.limits[0] - self.margin_band {
+            let type2_error = (type2.abs() - float_values.type2).abs();
             Tally::raise(&mut tally.max_type2_error, type2_error);
-            for (fixed, exact) in type1.into_iter().zip(exact.type1) {
-                Tally::raise(&mut tally.max_type1_error, (fixed - exact).abs());
+            for (margin, float_margin) in type1.into_iter().zip(float_values.type1) {
+                Tally::raise(&mut tally.max_type1_error, (margin - float_margin).abs());
             }
         }
-        let margin_distance = exact.distance_from_limits(self.limits);
-        let crossing_distance_mm = exact.crank_tip_distance_mm;
-        let is_exact_safe = margin_distance >= 0.0 && crossing_distance_mm > 0.0;
-        if is_fixed_safe != is_exact_safe {
+        let margin_distance = float_values.distance_from_limits(self.limits);
+        let crossing_distance_mm = float_values.crank_tip_distance_mm;
+        let is_safe = margin_distance >= 0.0 && crossing_distance_mm > 0.0;
+        if is_accepted != is_safe {
             // The difference is attributed to the limit that is nearer relative to its band.
             let is_from_crossing =
                 crossing_distance_mm / self.crossing_band_mm < margin_distance / self.margin_band;
-            let (distance, band) = if is_from_crossing {
-                (crossing_distance_mm.abs(), self.crossing_band_mm)
+            let (kind, distance, band) = if is_from_crossing {
+                let distance_mm = crossing_distance_mm.abs();
+                (LimitKind::Length, distance_mm, self.crossing_band_mm)
             } else {
-                (margin_distance.abs(), self.margin_band)
+                (LimitKind::Margin, margin_distance.abs(), self.margin_band)
             };
-            tally.record_difference(is_from_crossing, distance, band, || {
+            tally.record_difference(kind, distance, band, || {
                 format!(
                     "{}: {} according to the guard, {} in floating point: margins {:.5} {:.5} {:.5}, exactly {:.5} {:.5} {:.5}, distance across from tip to tip {:+.4} mm",
                     describe_pair(),
-                    if is_fixed_safe { "safe" } else { "unsafe" },
-                    if is_exact_safe { "safe" } else { "unsafe" },
+                    if is_accepted { "safe" } else { "unsafe" },
+                    if is_safe { "safe" } else { "unsafe" },
                     type2,
                     type1[0],
                     type1[1],
-                    exact.type2,
-                    exact.type1[0],
-                    exact.type1[1],
+                    float_values.type2,
+                    float_values.type1[0],
+                    float_values.type1[1],
                     crossing_distance_mm,
                 )
             });
@@ -155,7 +160,7 @@ impl<'a> EndComparison<'a> {
 }
 
 /// The values of an end at a pair of positions, in floating point.
-struct ExactEndValues {
+struct FloatEndValues {
     /// True if the loop closes.
     is_closed: bool,
     /// The type-2 margin, a sine.
@@ -166,7 +171,7 @@ struct ExactEndValues {
     crank_tip_distance_mm: f64,
 }
 
-impl ExactEndValues {
+impl FloatEndValues {
     /// The distance of the smallest margin from its limit, a sine; negative beyond the limit.
     #[inline(always)]
     fn distance_from_limits(&self, [min_type2, min_type1]: [f64; 2]) -> f64 {

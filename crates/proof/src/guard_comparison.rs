@@ -19,7 +19,7 @@ pub const PIECE_COUNT: usize = 4 * PIECES_PER_PART;
 /// share.
 pub struct GuardComparison<'a> {
     robot: &'a Robot,
-    guard: &'a CoreRobot,
+    core_robot: &'a CoreRobot,
     sample: PairSample,
     maps: CellMaps,
     /// The positions of each servo, computed when the first piece needs them.
@@ -28,10 +28,10 @@ pub struct GuardComparison<'a> {
 
 impl<'a> GuardComparison<'a> {
     /// Creates the comparison over a sample of the pairs.
-    pub fn new(robot: &'a Robot, guard: &'a CoreRobot, sample: PairSample) -> Self {
+    pub fn new(robot: &'a Robot, core_robot: &'a CoreRobot, sample: PairSample) -> Self {
         Self {
             robot,
-            guard,
+            core_robot,
             sample,
             maps: robot.cell_maps(),
             positions: Default::default(),
@@ -40,7 +40,7 @@ impl<'a> GuardComparison<'a> {
 
     /// The positions of the servo with this index, 0 to 3.
     fn positions(&self, servo: usize) -> &Positions {
-        self.positions[servo].get_or_init(|| Positions::compute(self.guard, servo))
+        self.positions[servo].get_or_init(|| Positions::compute(self.core_robot, servo))
     }
 
     /// Compares the pairs of one piece, whose index is below [`PIECE_COUNT`].
@@ -57,13 +57,13 @@ impl<'a> GuardComparison<'a> {
             )
         };
         if let Some(end) = End::ALL.get(part_index) {
-            let comparison = EndComparison::new(self.robot, self.guard, &self.maps, *end);
+            let comparison = EndComparison::new(self.robot, self.core_robot, &self.maps, *end);
             tally_servos(end.servos(), &|positions, tally, row, group| {
                 comparison.compare_group(positions, tally, row, group);
             })
         } else {
             let side = Side::ALL[part_index - End::ALL.len()];
-            let comparison = SideComparison::new(self.robot, self.guard, &self.maps, side);
+            let comparison = SideComparison::new(self.robot, self.core_robot, &self.maps, side);
             tally_servos(side.servos(), &|positions, tally, row, group| {
                 comparison.compare_group(positions, tally, row, group);
             })
@@ -72,7 +72,11 @@ impl<'a> GuardComparison<'a> {
 }
 
 /// Computes the findings for every end, side and leg of a robot from the tallies of all pieces, in order.
-pub fn compute_findings(robot: &Robot, guard: &CoreRobot, tallies: Vec<Tally>) -> Vec<Finding> {
+pub fn compute_findings(
+    robot: &Robot,
+    core_robot: &CoreRobot,
+    tallies: Vec<Tally>,
+) -> Vec<Finding> {
     let mut tallies = tallies.into_iter();
     let mut next_part_tally = || {
         tallies
@@ -90,10 +94,11 @@ pub fn compute_findings(robot: &Robot, guard: &CoreRobot, tallies: Vec<Tally>) -
     };
     let mut findings: Vec<Finding> = parts.map(to_finding).collect();
     for (servo, leg_name) in servo::LEG_NAMES.iter().enumerate() {
+        let positions = Positions::compute(core_robot, servo);
         findings.push(Finding {
             part: format!("leg {leg_name}"),
             servos: vec![servo::SERVO_NAMES[servo]],
-            tally: compare_leg(robot, guard, &Positions::compute(guard, servo)),
+            tally: compare_leg(robot, core_robot, &positions),
         });
     }
     findings

@@ -12,34 +12,34 @@ pub struct Positions {
     /// The angle of each position in the chassis frame, degrees.
     pub degrees: Vec<f64>,
     /// The crank's direction in the frame of its end, Q15.
-    pub fixed: Vec<Direction>,
+    pub guard_directions: Vec<Direction>,
     /// The crank's direction in the frame of its end, in floating point.
-    pub exact: Vec<Vector>,
+    pub float_directions: Vec<Vector>,
 }
 
 impl Positions {
     /// Computes all positions of the servo with this index, 0 to 3, in the firmware's steps.
-    pub fn compute(guard: &CoreRobot, servo: usize) -> Self {
-        let neutral = guard.neutral_angles()[servo];
-        let calibration = guard.calibration()[servo];
+    pub fn compute(core_robot: &CoreRobot, servo: usize) -> Self {
+        let neutral = core_robot.neutral_angles()[servo];
+        let calibration = core_robot.calibration()[servo];
         let end = End::from_servo(servo);
         let mut positions = Self {
             first_sweep: calibration.travel_min.0,
             degrees: Vec::new(),
-            fixed: Vec::new(),
-            exact: Vec::new(),
+            guard_directions: Vec::new(),
+            float_directions: Vec::new(),
         };
         for sweep in calibration.travel_min.0..=calibration.travel_max.0 {
             let angle = neutral.offset_by(Sweep(sweep));
             let degrees = f64::from(angle.0) * 360.0 / 65536.0;
-            let fixed = Direction::from_angle(angle);
+            let direction = Direction::from_angle(angle);
             positions.degrees.push(degrees);
-            positions.fixed.push(match end {
-                End::Head => fixed,
-                End::Tail => fixed.in_tail_frame(),
+            positions.guard_directions.push(match end {
+                End::Head => direction,
+                End::Tail => direction.in_tail_frame(),
             });
-            let exact = Vector::from_angle(degrees);
-            positions.exact.push(end.mirror(exact));
+            let float_direction = end.mirror(Vector::from_angle(degrees));
+            positions.float_directions.push(float_direction);
         }
         positions
     }

@@ -20,35 +20,35 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// Compares the decisions of a guard, normally the robot's own, with the geometry, for a sample of the pairs of
-    /// servo positions. Calls `report_progress` with the number of rows completed since the last call;
-    /// [`Proof::row_count`] is the total.
+    /// Compares the decisions of the guard with the geometry for a sample of the pairs of servo positions. `core_robot`
+    /// has the guard's numbers, normally those of the same robot. Calls `report_progress` with the number of rows
+    /// completed since the last call; [`Proof::row_count`] is the total.
     pub fn compute(
         robot: &Robot,
-        guard: &CoreRobot,
+        core_robot: &CoreRobot,
         sample: PairSample,
         report_progress: &(dyn Fn(u64) + Sync),
     ) -> Self {
-        let comparison = GuardComparison::new(robot, guard, sample);
+        let comparison = GuardComparison::new(robot, core_robot, sample);
         let compare_piece = |index| comparison.compare_piece(index, report_progress);
         let tallies = (0..PIECE_COUNT).map(compare_piece).collect();
-        Self::from_tallies(robot, guard, tallies)
+        Self::from_tallies(robot, core_robot, tallies)
     }
 
     /// Assembles the proof from the tallies of all pieces, in the order of the pieces.
-    pub fn from_tallies(robot: &Robot, guard: &CoreRobot, tallies: Vec<Tally>) -> Self {
+    pub fn from_tallies(robot: &Robot, core_robot: &CoreRobot, tallies: Vec<Tally>) -> Self {
         Self {
-            findings: guard_comparison::compute_findings(robot, guard, tallies),
-            hash: guard.hash(),
+            findings: guard_comparison::compute_findings(robot, core_robot, tallies),
+            hash: core_robot.hash(),
             margin_band: guard_comparison::widest_margin_band(robot),
         }
     }
 
     /// The number of rows that [`Proof::compute`] compares: one for each position of the first servo of each end and
     /// side.
-    pub fn row_count(guard: &CoreRobot) -> u64 {
+    pub fn row_count(core_robot: &CoreRobot) -> u64 {
         let count_positions = |servo: usize| {
-            let calibration = guard.calibration()[servo];
+            let calibration = core_robot.calibration()[servo];
             (i32::from(calibration.travel_max.0) - i32::from(calibration.travel_min.0) + 1) as u64
         };
         let first_servos = End::ALL

@@ -43,7 +43,7 @@ pub fn tally_rows(
     report_progress: &(dyn Fn(u64) + Sync),
     compare_group: &CompareGroup<'_>,
 ) -> Tally {
-    let [row_count, column_count] = positions.map(|positions| positions.fixed.len());
+    let [row_count, column_count] = positions.map(|positions| positions.degrees.len());
     let (one_in, offset) = (sample.one_in as usize, sample.offset as usize);
     (row_count * piece_in_part / PIECES_PER_PART..row_count * (piece_in_part + 1) / PIECES_PER_PART)
         .into_par_iter()

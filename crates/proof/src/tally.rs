@@ -23,6 +23,15 @@ pub fn margin_band(five_bar: &FiveBar, min_type2: f64, step_mm: f64) -> f64 {
     MARGIN_BAND.max(LENGTH_BAND_STEPS * step_mm * angle_per_mm / min_type2)
 }
 
+/// The kind of a limit at which the decisions about a pair differ.
+#[derive(Clone, Copy)]
+pub enum LimitKind {
+    /// A limit of a slider's stroke, or the position at which the crank tips cross, mm.
+    Length,
+    /// A margin's limit, a sine.
+    Margin,
+}
+
 /// The tally of an end, a side or a leg: errors of the guard's values, and decisions that differ.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tally {
@@ -92,20 +101,19 @@ impl Tally {
         }
     }
 
-    /// Records a pair at which the decisions differ, at `distance` from a limit: a length's limit, mm, or a margin's.
-    /// The pair is wrong if `distance` exceeds `band`.
+    /// Records a pair at which the decisions differ, at `distance` from a limit of this kind. The pair is wrong if
+    /// `distance` exceeds `band`; both are in the limit's unit.
     #[cold]
     pub fn record_difference(
         &mut self,
-        is_length_limit: bool,
+        kind: LimitKind,
         distance: f64,
         band: f64,
         describe_pair: impl FnOnce() -> String,
     ) {
-        let max_distance = if is_length_limit {
-            &mut self.max_length_difference
-        } else {
-            &mut self.max_margin_difference
+        let max_distance = match kind {
+            LimitKind::Length => &mut self.max_length_difference,
+            LimitKind::Margin => &mut self.max_margin_difference,
         };
         Self::raise(max_distance, distance);
         if distance > band {

@@ -26,10 +26,7 @@ const PINS: [Pin; 8] = [
 ];
 
 const fn pin(number: u8) -> Pin {
-    match Pin::arduino(number) {
-        Some(pin) => pin,
-        None => panic!("a UNO has no such pin"),
-    }
+    Pin::arduino(number).expect("a UNO has pins 0 to 19")
 }
 
 mod servos {

@@ -227,10 +227,9 @@ mod tests {
         for (servo, width) in widths.iter_mut().enumerate() {
             *width = 24_000 + servo as u16;
         }
-        let is_taken = engine.is_taken();
-        assert!(is_taken, "no frame waits before the first submission");
+        assert!(engine.is_taken(), "a frame waits before any was submitted");
         engine.submit(widths);
-        assert!(!engine.is_taken(), "the first frame waits");
+        assert!(!engine.is_taken(), "the first frame does not wait");
         for frame in 0..3 {
             let plans = plan_frame(&engine);
             for (servo, plan) in plans.into_iter().enumerate().take(SERVO_COUNT) {
@@ -239,11 +238,8 @@ mod tests {
                 assert_eq!(plan, expected_plan, "{SERVO_COUNT} servos, frame {frame}");
             }
             let close_count = slot_cycles(SERVO_COUNT) - 1_000 + u16::from(LEAD_CYCLES);
-            assert_eq!(
-                plans[SERVO_COUNT],
-                (SERVO_COUNT as u8, 0, close_count),
-                "the tick's slot has no pulse"
-            );
+            let plan_without_pulse = (SERVO_COUNT as u8, 0, close_count);
+            assert_eq!(plans[SERVO_COUNT], plan_without_pulse, "the tick's slot");
         }
         assert!(engine.is_taken());
     }
@@ -280,13 +276,11 @@ mod tests {
         engine.submit([30_000u16; 4]);
         engine.plan_next_slot();
         let fall_count = engine.fall_count.get();
-        assert_eq!(fall_count, 20_220, "the played frame does not change");
+        assert_eq!(fall_count, 20_220, "the played frame has changed");
         engine.plan_next_slot();
         engine.plan_next_slot();
         assert_eq!(engine.mask.get(), 0, "the tick's slot");
         engine.plan_next_slot();
-        let fall_count = engine.fall_count.get();
-        let claim = "the new frame begins with its first slot";
-        assert_eq!(fall_count, 30_220, "{claim}");
+        assert_eq!(engine.fall_count.get(), 30_220, "new frame's first slot");
     }
 }

@@ -45,43 +45,16 @@ impl Pin {
 mod tests {
     use super::*;
 
-    /// The number, port and bit of the UNO's header pins D0 to D13 and A0 to A5, from the UNO's circuit diagram. The
-    /// ports are named as in the data sheet.
-    const HEADER_PINS: [(u8, char, u8); 20] = [
-        (0, 'D', 0),
-        (1, 'D', 1),
-        (2, 'D', 2),
-        (3, 'D', 3),
-        (4, 'D', 4),
-        (5, 'D', 5),
-        (6, 'D', 6),
-        (7, 'D', 7),
-        (8, 'B', 0),
-        (9, 'B', 1),
-        (10, 'B', 2),
-        (11, 'B', 3),
-        (12, 'B', 4),
-        (13, 'B', 5),
-        (14, 'C', 0),
-        (15, 'C', 1),
-        (16, 'C', 2),
-        (17, 'C', 3),
-        (18, 'C', 4),
-        (19, 'C', 5),
-    ];
-
     #[test]
     fn every_pin_has_the_port_and_the_bit_of_the_circuit_diagram() {
-        for (number, port, bit) in HEADER_PINS {
-            let pin = Pin::arduino(number).expect("the UNO has this pin");
-            // Data sheet, register summary: PORTB 0x25, PORTC 0x28, PORTD 0x2B.
-            let address = match port {
-                'B' => 0x25,
-                'C' => 0x28,
-                _ => 0x2b,
-            };
-            assert_eq!(pin.port(), address, "pin {number}");
-            assert_eq!(pin.mask(), 1 << bit, "pin {number}");
+        // The UNO's circuit diagram: D0 to D7 are PD0 to PD7, D8 to D13 are PB0 to PB5, A0 to A5 are PC0 to PC5.
+        // Data sheet, register summary: PORTB 0x25, PORTC 0x28, PORTD 0x2B.
+        for (numbers, address) in [(0..=7, 0x2b), (8..=13, 0x25), (14..=19, 0x28)] {
+            for (number, bit) in numbers.zip(0u8..) {
+                let pin = Pin::arduino(number).expect("the UNO has this pin");
+                assert_eq!(pin.port(), address, "pin {number}");
+                assert_eq!(pin.mask(), 1 << bit, "pin {number}");
+            }
         }
     }
 

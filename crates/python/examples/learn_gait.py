@@ -1,7 +1,8 @@
 """Learns a gait in about a minute: the amplitude, the duty factor, and the start of each leg's stance.
 
-The cross-entropy method tries gaits in `Lizard-v0`, keeps the best gaits, and tries similar gaits. It begins without
-any knowledge of walking: all legs start at random times. Usage: learn_gait.py [OUTPUT.toml [SEED]]
+The cross-entropy method tries gaits in MuJoCo (the environment `Lizard-v0`), keeps the best gaits, and tries similar
+gaits. It begins without any knowledge of walking: all legs start at random times. Usage: learn_gait.py [OUTPUT.toml
+[SEED]]
 """
 
 import sys
@@ -46,8 +47,8 @@ def compute_score(
         return -np.inf
     sweeps = (gait.angles[:-1] - model.neutral + 180) % 360 - 180
     actions = (sweeps / MAX_SWEEP).astype(np.float32)
-    steps = np.linspace(0, 1, APPROACH_FRAMES, dtype=np.float32)
-    approach = actions[0] * steps[:, None]
+    fractions = np.linspace(0, 1, APPROACH_FRAMES, dtype=np.float32)
+    approach = actions[0] * fractions[:, None]
     env.reset(seed=0)
     infos = []
     for action in np.concatenate([approach, actions, actions]):
@@ -60,7 +61,7 @@ def compute_score(
 
 def main() -> None:
     output_path = Path(sys.argv[1] if len(sys.argv) > 1 else "learned.toml")
-    random = np.random.default_rng(int(sys.argv[2]) if len(sys.argv) > 2 else 0)
+    rng = np.random.default_rng(int(sys.argv[2]) if len(sys.argv) > 2 else 0)
     model = lizard.Model.default()
     env = LizardEnv(model, friction_spread=0)
     mean = np.array([12.0, 0.7, 0.5, 0.5, 0.5])
@@ -68,7 +69,7 @@ def main() -> None:
     best, best_score = mean, -np.inf
     for generation in range(GENERATIONS):
         count = POPULATION if generation else FIRST_POPULATION
-        candidates = random.normal(mean, std, (count, len(mean)))
+        candidates = rng.normal(mean, std, (count, len(mean)))
         scores = np.array(
             [compute_score(env, model, candidate) for candidate in candidates]
         )

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import math
 import re
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from queue import Empty, SimpleQueue
 from typing import Self
 
 from lizard._ports import FRAME_PERIOD, Port, SerialPort, SimulatedPort
 from lizard.model import Model
-from lizard.status import Frame, RobotError, Status, parse_angles
+from lizard.status import Frame, NoAnswer, RobotError, Status
 
-BAUD = 115_200
 BANNER_PREFIX = "# lizard "
 BANNER_TIMEOUT = 3.0
 """Time limit for the banner after the port is opened, s; it includes more than 1 s for a UNO's boot loader."""
@@ -29,15 +28,9 @@ NO_PULSES_CODES = (7, 10)
 """Error codes of `stop` if there are no pulses to stop: the servos rest, or the flash has no robot."""
 STALL_TIME = 1.0
 """Time without movement after which a robot counts as stopped, s."""
-POSE_TOLERANCE = 0.02
-"""Largest rounding difference between a commanded angle and the angle in `status`, deg."""
 DRIVING_DEADMAN = 901
 """`deadman` while a program drives the robot, ms. No user is likely to choose this value, so a robot with this value
 still has it from an earlier program."""
-
-
-class NoAnswer(RobotError):
-    """The robot did not answer in time."""
 
 
 class Robot:
@@ -48,7 +41,7 @@ class Robot:
     sends lines that keep the robot moving. If this program ends or the link breaks, the robot stops by itself.
     """
 
-    def __init__(self, port: str, *, baud: int = BAUD) -> None:
+    def __init__(self, port: str, *, baud: int = 115_200) -> None:
         """Opens the port, and waits for the robot's banner or status.
 
         Raises OSError if the port cannot be opened, RobotError if no robot answers.
@@ -98,12 +91,10 @@ class Robot:
         if self._wait_until(lambda: self._is_connected, BANNER_TIMEOUT):
             return
         for _ in range(STATUS_ATTEMPT_COUNT):
-            try:
+            with suppress(RobotError):
                 self._send("status", ANSWER_TIMEOUT / 4)
                 self._is_connected = True
                 return
-            except RobotError:
-                continue
         raise RobotError(
             "no banner and no answer to `status`; is it the right port, and has the board "
             "been flashed (lizard flash)?"
@@ -118,10 +109,9 @@ class Robot:
     def close(self) -> None:
         """Stops the robot, restores its `deadman`, and closes the port."""
         try:
-            if not self._is_closed:
+            # A robot that does not answer is out of range, and stops by itself.
+            with suppress(RobotError, OSError):
                 self.stop()
-        except (RobotError, OSError):
-            pass  # The robot rests, or it is out of range and stops by itself.
         finally:
             self._shut_down()
 
@@ -223,12 +213,7 @@ class Robot:
         last_movement_time = time.monotonic()
         while True:
             status = self.status()
-            errors = (
-                math.remainder(actual - target, 360)
-                for actual, target in zip(status.pose, angles)
-            )
-            is_complete = len(status.pose) == len(angles)
-            if is_complete and all(abs(error) < POSE_TOLERANCE for error in errors):
+            if status.has_pose(angles):
                 return
             now = time.monotonic()
             if status.pose != pose:
@@ -326,10 +311,7 @@ class Robot:
                 raise NoAnswer(f"the robot does not answer `{line}`")
             answer = find_answers()[0]
             if answer.startswith("err "):
-                code, reason = answer.split(" ", 2)[1:]
-                refusal = RobotError(f"the robot refuses `{line}`: {reason}")
-                refusal.code = int(code)
-                raise refusal
+                raise RobotError.parse(line, answer)
             return [*self._notes, answer]
 
     def _write(self, line: str) -> None:
@@ -366,12 +348,10 @@ class Robot:
         own_deadman = self._own_deadman
         if own_deadman is None:
             notes = self._send_until_answered("cal")
-            values = [
-                note.split()[-1] for note in notes if note.startswith("# deadman ")
-            ]
-            if not (values and values[0].isdecimal()):
+            match = re.search(r"^# deadman (\d+)$", "\n".join(notes), re.MULTILINE)
+            if match is None:
                 raise NoAnswer("the answer to `cal` has no `deadman`")
-            own_deadman = int(values[0])
+            own_deadman = int(match[1])
             if own_deadman == DRIVING_DEADMAN:
                 own_deadman = 0
             self._own_deadman = own_deadman
@@ -381,10 +361,9 @@ class Robot:
         self._own_deadman, self._driving_deadman = own_deadman, driving_deadman
 
     def _restore_deadman(self) -> None:
-        with self._exchange_lock:
-            if self._driving_deadman is not None:
-                self._send_until_answered(f"deadman {self._own_deadman}")
-                self._driving_deadman = None
+        if self._driving_deadman is not None:
+            self._send_until_answered(f"deadman {self._own_deadman}")
+            self._driving_deadman = None
 
     def _send_keep_alives(self) -> None:
         """Sends a line at least three times per `deadman` time while this program drives the robot."""
@@ -393,14 +372,13 @@ class Robot:
             min(0.2, (self._driving_deadman or DRIVING_DEADMAN) / 4000)
         ):
             with self._exchange_lock:
-                if self._driving_deadman is None or self._end_reason is not None:
+                deadman = self._driving_deadman
+                if deadman is None or self._end_reason is not None:
                     continue
                 line_count += 1
                 try:
                     if line_count % 5:
-                        self._send(
-                            f"deadman {self._driving_deadman}", ANSWER_TIMEOUT / 4
-                        )
+                        self._send(f"deadman {deadman}", ANSWER_TIMEOUT / 4)
                         continue
                     # A radio may have lost the line that reports the gait's end.
                     status = Status.parse(self._send("status", ANSWER_TIMEOUT / 4)[-1])
@@ -443,9 +421,7 @@ class Robot:
         with self._condition:
             if line.startswith("# t="):
                 try:
-                    fields = dict(word.split("=", 1) for word in line[2:].split())
-                    a1, a2, a3, a4 = parse_angles(fields["pose"])
-                    frame = Frame(int(fields["t"]) * FRAME_PERIOD, (a1, a2, a3, a4))
+                    frame = Frame.parse(line)
                 except (KeyError, ValueError):
                     return  # a radio has lost a part of the line
                 for watcher in self._watchers:

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
+
+from lizard._ports import FRAME_PERIOD
+
+POSE_TOLERANCE = 0.02
+"""Largest rounding difference between a commanded angle and the angle in `status`, deg."""
 
 
 class RobotError(RuntimeError):
@@ -11,6 +17,18 @@ class RobotError(RuntimeError):
 
     code: int | None = None
     """Code of a refusal, as in the list in docs/console.md."""
+
+    @staticmethod
+    def parse(line: str, answer: str) -> RobotError:
+        """Parses `err CODE REASON`, the answer to a line that the robot refuses."""
+        code, reason = answer.split(" ", 2)[1:]
+        refusal = RobotError(f"the robot refuses `{line}`: {reason}")
+        refusal.code = int(code)
+        return refusal
+
+
+class NoAnswer(RobotError):
+    """The robot did not answer in time."""
 
 
 class Frame(NamedTuple):
@@ -20,6 +38,13 @@ class Frame(NamedTuple):
     """Seconds since the robot's reset."""
     pose: tuple[float, ...]
     """Servo angles, deg."""
+
+    @staticmethod
+    def parse(line: str) -> Frame:
+        """Parses `# t=... pose=...`; raises KeyError or ValueError if a radio has lost a part of the line."""
+        fields = dict(word.split("=", 1) for word in line[2:].split())
+        a1, a2, a3, a4 = parse_angles(fields["pose"])
+        return Frame(int(fields["t"]) * FRAME_PERIOD, (a1, a2, a3, a4))
 
 
 @dataclass(frozen=True)
@@ -82,6 +107,13 @@ class Status:
             rx_lost=get_int("rx_lost"),
             resets=get_int("resets"),
         )
+
+    def has_pose(self, angles: tuple[float, ...]) -> bool:
+        """True if the pose has these angles, deg, apart from rounding and whole turns."""
+        if len(self.pose) != len(angles):
+            return False
+        errors = [math.remainder(a - b, 360) for a, b in zip(self.pose, angles)]
+        return all(abs(error) < POSE_TOLERANCE for error in errors)
 
 
 def parse_angles(text: str) -> tuple[float, ...]:

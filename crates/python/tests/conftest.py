@@ -1,15 +1,13 @@
-"""Fixtures shared by all tests: the default robot, and the program `lizard` installed from the wheel."""
+"""Fixtures shared by all tests: the default robot's model, a simulated robot, and the program `lizard` installed from the wheel."""
 
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 import lizard
-
-RunLizard = Callable[..., subprocess.CompletedProcess[str]]
 
 
 @pytest.fixture(scope="session")
@@ -17,16 +15,22 @@ def model() -> lizard.Model:
     return lizard.Model.default()
 
 
+@pytest.fixture
+def robot() -> Iterator[lizard.Robot]:
+    with lizard.Robot.simulated() as robot:
+        yield robot
+
+
 @pytest.fixture(scope="session")
-def run_lizard() -> RunLizard:
-    """Returns a function that runs `lizard` with arguments and with a text as standard input."""
+def run_lizard() -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Returns a function that runs `lizard` with arguments and with a standard input."""
     path = Path(sys.executable).parent / "lizard"
 
-    def run(*arguments: object, text: str = "") -> subprocess.CompletedProcess[str]:
+    def run(*arguments: object, stdin: str = "") -> subprocess.CompletedProcess[str]:
         return subprocess.run(
             [str(argument) for argument in (path, *arguments)],
             check=False,
-            input=text,
+            input=stdin,
             capture_output=True,
             text=True,
         )

@@ -139,7 +139,7 @@ def test_jacobians_are_the_derivatives_of_the_joint_coordinates(model):
 def test_solutions_match_the_command_line(model, run_lizard):
     angles = sample_poses(model, 20)
     rows = "\n".join(",".join(map(str, row)) for row in angles)
-    result = run_lizard("pose", "--json", text=rows + "\n")
+    result = run_lizard("pose", "--json", stdin=rows + "\n")
     solutions = [json.loads(line) for line in result.stdout.splitlines()]
     solved = model.solve(angles)
     assert len(solutions) == 20

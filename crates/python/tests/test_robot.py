@@ -7,7 +7,7 @@ import os
 import subprocess
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 
@@ -15,12 +15,6 @@ import numpy as np
 import pytest
 
 import lizard
-
-
-@pytest.fixture
-def robot() -> Iterator[lizard.Robot]:
-    with lizard.Robot.simulated() as robot:
-        yield robot
 
 
 def start_uno(link: Path, *options: str) -> subprocess.Popen[bytes]:
@@ -82,31 +76,28 @@ def test_save_stores_the_robots_own_deadman_while_the_robot_walks(robot):
     assert read_deadman(robot) == 5000
 
 
-def test_a_gait_keeps_its_deadman_when_the_gait_before_has_ended(robot, monkeypatch):
+def walk_after(robot, monkeypatch, action: Callable[[], None]) -> None:
+    """Starts walking; runs an action just before `walk` is sent."""
     write = robot._write
 
-    def write_after_end(line: str) -> None:
+    def write_after_action(line: str) -> None:
         if line == "walk":
-            robot._handle_line("# done")
+            action()
         write(line)
 
-    monkeypatch.setattr(robot, "_write", write_after_end)
+    monkeypatch.setattr(robot, "_write", write_after_action)
     robot.walk()
+
+
+def test_a_gait_keeps_its_deadman_when_the_gait_before_has_ended(robot, monkeypatch):
+    walk_after(robot, monkeypatch, lambda: robot._handle_line("# done"))
     assert robot.is_going
 
 
 def test_a_robot_that_was_reset_just_before_a_gait_walks_with_deadman(
     robot, monkeypatch
 ):
-    write = robot._write
-
-    def write_after_reset(line: str) -> None:
-        if line == "walk":
-            robot._port.board.reset()
-        write(line)
-
-    monkeypatch.setattr(robot, "_write", write_after_reset)
-    robot.walk()
+    walk_after(robot, monkeypatch, robot._port.board.reset)
     assert (robot.is_going, read_deadman(robot)) == (True, 901)
 
 

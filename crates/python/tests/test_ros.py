@@ -60,12 +60,6 @@ def test_joint_values_close_every_loop_of_the_urdf(robot, run_lizard, tmp_path):
     assert np.abs(joint_values(model, model.neutral)).max() == 0
 
 
-@pytest.fixture
-def robot():
-    with lizard.Robot.simulated() as robot:
-        yield robot
-
-
 def test_the_chosen_gait_and_pace_are_closest_to_the_velocity(robot, model):
     driver = Driver(robot, model)
     nominal_velocities = {
@@ -202,7 +196,7 @@ def test_the_node_publishes_joints_and_follows_velocity_commands(monkeypatch):
 
     rclpy = types.ModuleType("rclpy")
     rclpy.init, rclpy.ok, rclpy.spin = lambda: None, lambda: is_running[0], spin
-    rclpy.shutdown = rclpy.try_shutdown = shutdown
+    rclpy.try_shutdown = shutdown
     for module_name, attributes in [
         ("rclpy.node", {"Node": Node}),
         ("geometry_msgs.msg", {"Twist": Message}),

@@ -18,7 +18,7 @@ const FORMAT_VERSION: &str = "lizard calibration 1";
 /// The comment at the start of a calibration file.
 const FILE_HEADER: &str = "\
 # A lizard's calibration. `lizard calibrate restore` sends it to the robot again.
-# Angles in degrees; trim and limit in the console's convention, scale in us per degree.
+# Angles in degrees, counter-clockwise positive; limit in the chassis frame; scale in us per degree.
 
 ";
 /// Largest difference between settings that count as equal: slightly less than half of 0.01, the last digit that the
@@ -105,8 +105,8 @@ impl ServoSettings {
 
     /// Reads the table of a servo in a calibration file.
     fn from_table(table: &Table) -> ReadResult<Self> {
-        let read_number = |key| {
-            let value = table.number(key, (-360.0, 360.0), "deg")?;
+        let read_number = |key, unit| {
+            let value = table.number(key, (-360.0, 360.0), unit)?;
             require_two_decimals(table, key, value)
         };
         let limit: [f64; 2] = table.numbers("limit", (-360.0, 360.0), "deg")?;
@@ -122,10 +122,10 @@ impl ServoSettings {
             }
         };
         Ok(Self {
-            trim: read_number("trim")?,
+            trim: read_number("trim", "deg")?,
             limit,
             dir,
-            scale: read_number("scale")?,
+            scale: read_number("scale", "us per deg")?,
         })
     }
 }
@@ -218,22 +218,22 @@ impl Calibration {
     /// # Errors
     /// Returns the first error, with its line and key.
     pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
-        parse(text, Self::from_table).map_err(|error| Error {
+        parse(text, Self::from_document).map_err(|error| Error {
             file: name.to_owned(),
             ..error
         })
     }
 
     /// Reads the tables of a calibration file.
-    fn from_table(table: &DeTable) -> ReadResult<Self> {
-        let format = table.get("format").map(|value| value.get_ref().as_str());
+    fn from_document(document: &DeTable) -> ReadResult<Self> {
+        let format = document.get("format").map(|value| value.get_ref().as_str());
         if format != Some(Some(FORMAT_VERSION)) {
             let problem = format!(
                 "must be \"{FORMAT_VERSION}\": this is not a calibration file of a supported version"
             );
             return Err(Error::new("format", problem));
         }
-        let root = Table::root(table, &["format", "boot", "deadman", "servo"])?;
+        let root = Table::root(document, &["format", "boot", "deadman", "servo"])?;
         let boot = root.text("boot")?;
         if !is_gait_name(boot) {
             return Err(root.error("boot", "is not the name of a gait"));
@@ -259,8 +259,8 @@ impl Calibration {
 ///
 /// The robot refuses a line after which a gait would leave the servos' travel. This may happen while the settings
 /// change one by one, even if the old and the new calibration are both valid. Refused lines are therefore sent again
-/// after the other lines, as long as their number falls from round to round. Then all lines are sent once more after
-/// `factory`, which sets robot.toml's values.
+/// after the other lines, as long as their number falls from round to round. If lines are refused even then, all lines
+/// are sent once more after `factory`, which sets robot.toml's values.
 #[derive(Clone, Debug)]
 pub struct Transfer {
     /// The lines for all settings.
@@ -274,7 +274,7 @@ pub struct Transfer {
     /// Number of lines in the current round.
     round_line_count: usize,
     /// True once the round that starts with `factory` has begun.
-    is_factory_round: bool,
+    has_begun_factory_round: bool,
 }
 
 impl Transfer {
@@ -287,7 +287,7 @@ impl Transfer {
             last_line: String::new(),
             refused_lines: Vec::new(),
             round_line_count: lines.len(),
-            is_factory_round: false,
+            has_begun_factory_round: false,
             all_lines: lines,
         }
     }
@@ -298,8 +298,8 @@ impl Transfer {
         if self.unsent_lines.is_empty() && !self.refused_lines.is_empty() {
             if self.refused_lines.len() < self.round_line_count {
                 self.unsent_lines = std::mem::take(&mut self.refused_lines).into();
-            } else if !self.is_factory_round {
-                self.is_factory_round = true;
+            } else if !self.has_begun_factory_round {
+                self.has_begun_factory_round = true;
                 self.refused_lines.clear();
                 self.unsent_lines = self.all_lines.clone().into();
                 self.unsent_lines.push_front("factory".to_owned());
@@ -310,7 +310,8 @@ impl Transfer {
         Some(self.last_line.clone())
     }
 
-    /// Records that the robot refused the last line. Returns true if this is the round's first refusal.
+    /// Records that the robot refused the last line. Returns true if this is the round's first refusal, whose reason
+    /// the caller reports.
     pub fn record_refusal(&mut self) -> bool {
         self.refused_lines.push(std::mem::take(&mut self.last_line));
         self.refused_lines.len() == 1

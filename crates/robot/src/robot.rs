@@ -13,7 +13,7 @@ use toml::de::DeTable;
 use crate::checks::{CheckedGait, Effort, HIGH_UTILISATION};
 use crate::config::servo::FORWARD_TURN_SIGN;
 use crate::config::{
-    self, Coil, Inputs, LegPlan, Parts, Plate, RobotConfig, Servo, ServoType, SpeedLimits, Supplies,
+    self, Inputs, LegPlan, Parts, Plate, RobotConfig, Servo, ServoType, SpeedLimits, Supplies,
 };
 use crate::file::{self, Error, ReadResult, Table};
 use crate::gaits::{Routine, define, routine};
@@ -267,15 +267,13 @@ impl Robot {
         Strut {
             preload,
             spring_rate,
-            ..self.strut_with_coil(&self.parts().spring)
+            ..self.own_strut()
         }
     }
 
-    /// A slotted strut of this robot's size with this coil spring.
-    pub fn strut_with_coil(&self, coil: &Coil) -> Strut {
-        let legs = self.legs();
-        let neutral_angles = self.config.neutral_angles();
-        config::strut_with_coil(legs, neutral_angles, self.parts(), coil)
+    /// A slotted strut of this robot's size with the spring of its parts.
+    pub fn own_strut(&self) -> Strut {
+        config::own_strut(self.legs(), self.config.neutral_angles(), self.parts())
     }
 
     /// The length of a spring mounted in a strut, measured inside its hooks, mm.

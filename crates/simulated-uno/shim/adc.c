@@ -165,10 +165,10 @@ void adc_correct(struct adc *adc, struct interrupts *interrupts, const struct su
 	avr_t *avr = adc->avr;
 	adc->interrupts = interrupts;
 	adc->supply = supply;
-	hook_register(avr, REG_ADCSRA, NULL, write_control, adc);
-	hook_register(avr, REG_ADMUX, NULL, write_channel, adc);
-	hook_register(avr, REG_ADCL, read_result, ignore_write, adc);
-	hook_register(avr, REG_ADCH, read_result, ignore_write, adc);
+	hook_read_and_write(avr, REG_ADCSRA, NULL, write_control, adc);
+	hook_read_and_write(avr, REG_ADMUX, NULL, write_channel, adc);
+	hook_read_and_write(avr, REG_ADCL, read_result, ignore_write, adc);
+	hook_read_and_write(avr, REG_ADCH, read_result, ignore_write, adc);
 }
 
 void adc_set_pin(struct adc *adc, uint8_t pin, uint16_t mv)

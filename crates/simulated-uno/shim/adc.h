@@ -24,7 +24,7 @@ struct adc {
 	uint16_t pin_mv[ADC_PIN_COUNT]; /* voltages at ADC0 to ADC7 */
 	double bandgap_mv;
 	uint64_t enabled_at;            /* cycle at which ADEN was set */
-	uint64_t selected_at;           /* cycle at which the channel was selected */
+	uint64_t selected_at;           /* cycle at which the channel was last changed */
 	double previous_mv;             /* voltage of the previously selected channel */
 	bool next_is_first;             /* the next conversion is the first one since ADEN was set */
 	bool is_result_locked;          /* ADCL has been read, but not yet ADCH */
@@ -35,7 +35,7 @@ struct adc {
 	uint16_t result;                /* contents of the ADC Data Register, right adjusted */
 };
 
-/* Connects adc_set_pin to simavr's ADC; the stock fidelity needs nothing else. */
+/* Finds simavr's ADC, which adc_set_pin needs. The stock fidelity needs nothing else. */
 void adc_attach(struct adc *adc, avr_t *avr);
 /* Replaces simavr's callbacks for the ADC's registers. */
 void adc_correct(struct adc *adc, struct interrupts *interrupts, const struct supply *supply);

@@ -29,7 +29,7 @@ void chip_call_at(avr_t *avr, uint64_t cycle, avr_cycle_timer_t timer, void *par
 void chip_store(avr_t *avr, uint16_t address, uint8_t value)
 {
 	avr_io_addr_t io = AVR_DATA_TO_IO(address);
-	if (address >= 32 && io < MAX_IOs && avr->io[io].w.c)
+	if (address >= CHIP_IO_START && io < MAX_IOs && avr->io[io].w.c)
 		avr->io[io].w.c(avr, address, value, avr->io[io].w.param);
 	else if (address <= avr->ramend)
 		avr->data[address] = value;
@@ -53,8 +53,8 @@ struct read_hook hook_read(avr_t *avr, uint16_t address, avr_io_read_t callback,
 	return previous;
 }
 
-void hook_register(avr_t *avr, uint16_t address, avr_io_read_t read, avr_io_write_t write,
-                   void *param)
+void hook_read_and_write(avr_t *avr, uint16_t address, avr_io_read_t read, avr_io_write_t write,
+                         void *param)
 {
 	hook_read(avr, address, read, param);
 	hook_write(avr, address, write, param);

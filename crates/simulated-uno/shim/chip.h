@@ -14,6 +14,7 @@
 
 #define CHIP_FREQUENCY 16000000u /* Hz */
 #define CHIP_CYCLES_PER_US (CHIP_FREQUENCY / 1000000u)
+#define CHIP_IO_START 0x20u /* first data address after r0 to r31 */
 #define CHIP_SRAM_START 0x100u /* first data address after the registers */
 #define CHIP_SRAM_END 0x900u /* first data address after the SRAM */
 #define CHIP_VECTOR_COUNT 26 /* interrupt vectors, including reset */
@@ -65,10 +66,10 @@ void chip_store(avr_t *avr, uint16_t address, uint8_t value);
 struct write_hook { avr_io_write_t callback; void *param; };
 struct read_hook { avr_io_read_t callback; void *param; };
 
-/* Both return the previous callback. `address` is a data address. With `callback` NULL, the
- * register behaves as plain memory. */
+/* hook_write and hook_read return the previous callback. `address` is a data address. With
+ * `callback` NULL, the register behaves as plain memory. */
 struct write_hook hook_write(avr_t *avr, uint16_t address, avr_io_write_t callback, void *param);
 struct read_hook hook_read(avr_t *avr, uint16_t address, avr_io_read_t callback, void *param);
 /* Replaces both callbacks of a register. */
-void hook_register(avr_t *avr, uint16_t address, avr_io_read_t read, avr_io_write_t write,
-                   void *param);
+void hook_read_and_write(avr_t *avr, uint16_t address, avr_io_read_t read, avr_io_write_t write,
+                         void *param);

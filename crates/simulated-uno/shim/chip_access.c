@@ -18,7 +18,7 @@ void uno_power_cycle(struct uno *uno)
 	if (!uno->is_powered_off)
 		restart_cut_power(uno);
 	uno->is_powered_off = false;
-	supply_power_on(&uno->supply);
+	supply_update_reset(&uno->supply);
 	restart(uno, uno->supply.holds_reset ? RESET_HOLD : RESET_POWER_ON);
 }
 

@@ -157,7 +157,7 @@ void eeprom_correct(struct eeprom *eeprom, struct interrupts *interrupts, struct
 	eeprom->reset = reset;
 	interrupts->eeprom_ready = &eeprom->stock->ready;
 	interrupts->is_eeprom_busy = &eeprom->is_busy;
-	hook_register(avr, REG_EECR, read_control, write_control, eeprom);
+	hook_read_and_write(avr, REG_EECR, read_control, write_control, eeprom);
 	hook_write(avr, REG_EEARL, write_address, eeprom);
 	hook_write(avr, REG_EEARH, write_address, eeprom);
 }

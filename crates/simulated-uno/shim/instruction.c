@@ -26,7 +26,7 @@ uint64_t instruction_effect_cycle(const struct instruction *instruction)
 	return avr->cycle + (is_out ? 1 : 2); /* sbi, cbi, st, sts: 2 cycles */
 }
 
-uint8_t instruction_written_bits(const struct instruction *instruction, uint8_t value)
+uint8_t instruction_written_ones(const struct instruction *instruction, uint8_t value)
 {
 	uint16_t code = opcode(instruction->avr);
 	bool is_sbi = instruction->is_executing && (code & 0xff00) == 0x9a00;

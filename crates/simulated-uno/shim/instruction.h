@@ -8,18 +8,18 @@
 
 struct instruction {
 	avr_t *avr;
-	bool is_executing; /* true during an instruction, false during a simavr timer */
+	bool is_executing; /* true during an instruction, false during a callback of a simavr timer */
 };
 
-/* Executes the next instruction, or several, up to avr->run_cycle_limit cycles. */
+/* Executes instructions until avr->run_cycle_limit cycles have passed, at least one instruction. */
 void instruction_run(struct instruction *instruction);
 /* The cycle at which the current store takes effect: the last cycle of its instruction. simavr calls
- * back in the first cycle, so an edge made by `sbi` would be one cycle early compared with an edge
- * made by `out`. */
+ * a register's callback in the first cycle, so an edge made by `sbi` would be one cycle early
+ * compared with an edge made by `out`. */
 uint64_t instruction_effect_cycle(const struct instruction *instruction);
 /* The bits to which the instruction writes a one, given the `value` that simavr reports: `sbi`
  * writes a single bit, but simavr implements it as a read and a write of all eight bits. */
-uint8_t instruction_written_bits(const struct instruction *instruction, uint8_t value);
+uint8_t instruction_written_ones(const struct instruction *instruction, uint8_t value);
 /* The bits of an I/O register that the current instruction can change: one bit for `sbi` and `cbi`,
  * otherwise all bits. */
 uint8_t instruction_touched_bits(const struct instruction *instruction);

@@ -85,7 +85,7 @@ static void write_enable(avr_t *avr, avr_io_addr_t address, uint8_t value, void 
 static void write_flags(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
 	struct interrupts *interrupts = param;
-	avr->data[address] &= ~instruction_written_bits(interrupts->instruction, value);
+	avr->data[address] &= ~instruction_written_ones(interrupts->instruction, value);
 	interrupts_request_check(interrupts);
 }
 

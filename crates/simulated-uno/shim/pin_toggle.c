@@ -5,7 +5,7 @@ static void write_pinx(avr_t *avr, avr_io_addr_t address, uint8_t value, void *p
 {
 	const struct pin_toggle *toggle = param;
 	const struct write_hook *stock_hook = &toggle->stock_hooks[CHIP_PORT_INDEX(address)];
-	uint8_t bits = instruction_written_bits(toggle->instruction, value);
+	uint8_t bits = instruction_written_ones(toggle->instruction, value);
 	stock_hook->callback(avr, address, bits, stock_hook->param);
 }
 

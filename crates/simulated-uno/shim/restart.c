@@ -15,13 +15,13 @@ static void release_pins_and_stop_timers(struct uno *uno)
 
 void restart(struct uno *uno, uint8_t causes)
 {
-	uno->reset.requested_causes &= RESET_POWER_CUT;
+	uno->reset.requested_causes &= RESET_POWER_CUT; /* a requested power cut still follows */
 	release_pins_and_stop_timers(uno);
 	if (causes & RESET_POWER_ON)
 		reset_fill_sram(&uno->reset);
 	if (causes & RESET_WATCHDOG)
 		uno->watchdog_resets++;
-	/* Before avr_reset, because watchdog_reset reads WDRF. */
+	/* Before avr_reset, which calls watchdog_reset, which reads WDRF. */
 	reset_record(&uno->reset, causes, uno->avr->cycle);
 	avr_reset(uno->avr);
 	uno->avr->data[REG_MCUSR] = uno->reset.mcusr;

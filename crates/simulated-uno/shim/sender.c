@@ -3,35 +3,35 @@
 
 #include <math.h>
 
-#define FRAME_BITS 10.0   /* start bit, eight data bits, stop bit */
-#define SAMPLED_BITS 9.5  /* a receiver has read a byte in the middle of its stop bit */
+#define FRAME_BITS 10.0 /* start bit, eight data bits, stop bit */
+#define BITS_UNTIL_RECEIVED 9.5 /* a receiver samples the stop bit in its middle */
 
 static avr_cycle_count_t begin_byte(avr_t *avr, avr_cycle_count_t when, void *param);
 
 static bool take_next_byte(struct sender *sender, struct line_byte *byte)
 {
-	const struct line_byte *queue = sender->queue.items;
-	const struct line_byte *flood = sender->flood.items;
+	const struct line_byte *queued_bytes = sender->queue.items;
+	const struct line_byte *flood_bytes = sender->flood.items;
 	if (sender->next_index < sender->queue.count) {
-		*byte = queue[sender->next_index++];
+		*byte = queued_bytes[sender->next_index++];
 		if (sender->next_index == sender->queue.count)
 			sender->next_index = sender->queue.count = 0;
 		return true;
 	}
 	if (!sender->flood.count)
 		return false;
-	*byte = flood[sender->flood_position];
+	*byte = flood_bytes[sender->flood_position];
 	sender->flood_position = (sender->flood_position + 1) % sender->flood.count;
 	return true;
 }
 
-static avr_cycle_count_t end_byte(avr_t *avr, avr_cycle_count_t when, void *param)
+static avr_cycle_count_t deliver_byte(avr_t *avr, avr_cycle_count_t when, void *param)
 {
 	struct sender *sender = param;
 	sender->is_busy = false;
 	const struct receiver *receiver = &sender->receiver;
 	uint8_t received = receiver->receive_byte(receiver->param, sender->current_byte,
-	                                          sender->cycles_per_bit);
+	                                          sender->current_cycles_per_bit);
 	serial_bytes_push(&sender->delivered, avr->cycle, received);
 	/* Check again when the line is free, even if the queue is empty now: a byte that is queued
 	 * meanwhile starts at that cycle. */
@@ -45,13 +45,16 @@ static avr_cycle_count_t begin_byte(avr_t *avr, avr_cycle_count_t when, void *pa
 	const struct receiver *receiver = &sender->receiver;
 	if (sender->is_busy || !take_next_byte(sender, &sender->current_byte))
 		return 0;
-	/* Fractions of a cycle carry over, so the rate is right in the long run. */
+	/* `when` is `line_free_at` rounded up. The fraction carries over, so the rate is right in the
+	 * long run. */
 	double start = sender->line_free_at > when - 1.0 ? sender->line_free_at : when;
 	double frame_cycles = FRAME_BITS * sender->cycles_per_bit;
+	sender->current_cycles_per_bit = sender->cycles_per_bit;
 	sender->is_busy = true;
 	sender->sent_count++;
 	sender->line_free_at = start + receiver->begin_frame(receiver->param, frame_cycles);
-	chip_call_at(avr, ceil(start + SAMPLED_BITS * sender->cycles_per_bit), end_byte, sender);
+	uint64_t received_at = ceil(start + BITS_UNTIL_RECEIVED * sender->cycles_per_bit);
+	chip_call_at(avr, received_at, deliver_byte, sender);
 	return 0;
 }
 

@@ -35,7 +35,8 @@ struct sender {
 	size_t flood_position;          /* index of the next byte in `flood` */
 	uint64_t sent_count;            /* number of bytes put on the line so far */
 	struct line_byte current_byte;  /* the byte on the line while `is_busy` */
-	bool is_busy;                   /* a byte is on the line */
+	double current_cycles_per_bit;  /* the length of its bits */
+	bool is_busy;                   /* a byte is on the line, and the receiver has not read it yet */
 	struct serial_bytes delivered;  /* bytes that have arrived at the receiver */
 };
 

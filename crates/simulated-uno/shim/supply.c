@@ -144,13 +144,13 @@ bool supply_may_reset(const struct supply *supply)
 	return supply->power_cut_at || supply->reset->avr->cycle < supply->ramp_end;
 }
 
-void supply_reset(struct supply *supply)
+void supply_rearm_timers(struct supply *supply)
 {
 	schedule_check(supply);
 	schedule_power_cut(supply);
 }
 
-void supply_power_on(struct supply *supply)
+void supply_update_reset(struct supply *supply)
 {
 	double mv = supply_mv(supply, supply->reset->avr->cycle);
 	bool is_too_low = supply->reset->follows_data_sheet && mv < release_above_mv(supply);

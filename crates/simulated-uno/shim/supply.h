@@ -12,7 +12,7 @@ struct supply {
 	struct reset *reset;
 	struct eeprom *eeprom;
 	double from_mv;          /* voltage until cycle `ramp_start` */
-	double to_mv;            /* voltage from cycle `ramp_end` on; it changes linearly between */
+	double to_mv;            /* voltage from cycle `ramp_end` on; in between, it changes linearly */
 	uint64_t ramp_start, ramp_end;
 	double brown_out_mv;     /* brown-out level; 0: brown-out detection is off */
 	bool holds_reset;        /* the supply is too low and holds the chip in reset */
@@ -21,7 +21,7 @@ struct supply {
 };
 
 void supply_attach(struct supply *supply, struct reset *reset, struct eeprom *eeprom);
-/* The voltage at a cycle, from the start of the last ramp on. */
+/* The voltage at a cycle, which must not be before the start of the last ramp. */
 double supply_mv(const struct supply *supply, uint64_t cycle);
 /* Changes the voltage linearly to `mv` over `cycles` from now. */
 void supply_ramp(struct supply *supply, double mv, uint64_t cycles);
@@ -32,7 +32,7 @@ void supply_schedule_power_cut(struct supply *supply, uint64_t cycle);
 /* True while a ramp of the supply or a power cut can still reset the chip. */
 bool supply_may_reset(const struct supply *supply);
 /* Arms the timers of the supply again; must be called after simavr's reset, which drops all timers. */
-void supply_reset(struct supply *supply);
+void supply_rearm_timers(struct supply *supply);
 /* Sets `holds_reset` according to the current voltage; must be called when the power is restored
  * after a cut. */
-void supply_power_on(struct supply *supply);
+void supply_update_reset(struct supply *supply);

@@ -51,7 +51,7 @@ static void on_reset(struct avr_io_t *io)
 		if (!uno->supply.holds_reset)
 			watchdog_reset(&uno->watchdog);
 	}
-	supply_reset(&uno->supply);
+	supply_rearm_timers(&uno->supply);
 	sender_reset(&uno->sender, uno->now);
 }
 

@@ -175,8 +175,8 @@ void usart_attach(struct usart *usart, struct interrupts *interrupts,
 	avr_t *avr = interrupts->avr;
 	usart->stock = stock;
 	usart->interrupts = interrupts;
-	hook_register(avr, REG_UDR0, read_data, write_data, usart);
-	hook_register(avr, REG_UCSR0A, NULL, write_status, usart);
-	hook_register(avr, REG_UCSR0B, NULL, write_control, usart);
-	hook_register(avr, REG_UBRR0L, NULL, NULL, NULL);
+	hook_read_and_write(avr, REG_UDR0, read_data, write_data, usart);
+	hook_read_and_write(avr, REG_UCSR0A, NULL, write_status, usart);
+	hook_read_and_write(avr, REG_UCSR0B, NULL, write_control, usart);
+	hook_read_and_write(avr, REG_UBRR0L, NULL, NULL, NULL);
 }

@@ -111,7 +111,7 @@ void watchdog_attach(struct watchdog *watchdog, struct interrupts *interrupts, s
 		.stock = (avr_watchdog_t *)chip_find_peripheral(avr, "watchdog"),
 	};
 	avr_register_io(avr, &watchdog->io); /* precedes simavr's own watchdog in the list */
-	hook_register(avr, REG_WDTCSR, read_control, write_control, watchdog);
+	hook_read_and_write(avr, REG_WDTCSR, read_control, write_control, watchdog);
 	avr_irq_register_notify(watchdog->stock->watchdog.irq + AVR_INT_IRQ_RUNNING, on_vector,
 	                        watchdog);
 }

@@ -37,10 +37,4 @@ impl Uno {
         };
         flash[start..start + bytes.len()].copy_from_slice(bytes);
     }
-
-    /// Clears the record of received bytes, [`Uno::received_by_uno`], which would otherwise grow as long as the UNO
-    /// runs.
-    pub(crate) fn clear_received_bytes(&mut self) {
-        self.clear_items(ffi::uno_received);
-    }
 }

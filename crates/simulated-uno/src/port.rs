@@ -30,7 +30,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use crate::pty::Pty;
-use crate::{FREQUENCY, Radio, State, Uno};
+use crate::{FREQUENCY, Radio, State, Uno, ffi};
 
 /// The time between two updates of the port and the chip, the same as in the UNO's USB chip.
 const UPDATE_PERIOD: Duration = Duration::from_millis(1);
@@ -162,7 +162,8 @@ impl Port {
         if *uno.state() == State::Alive {
             uno.run_until_cycle(self.update_target_cycle(uno.cycle()));
         }
-        uno.clear_received_bytes();
+        // This record would grow as long as the UNO runs.
+        uno.clear_items(ffi::uno_received);
         let arrived_bytes = match &mut self.radio {
             Some(radio) => radio.exchange(uno),
             None => uno.take_bytes_at(baud),

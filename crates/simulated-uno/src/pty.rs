@@ -21,11 +21,14 @@ use std::time::{Duration, Instant};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::inotify::{self, CreateFlags, ReadFlags, WatchFlags};
 use rustix::fs::{Mode, OFlags};
+use rustix::io::Errno;
 use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcsetattr};
 
 /// The baud rate until a program sets another one.
 const DEFAULT_BAUD: u32 = 115_200;
+/// The largest baud rate that [`crate::Uno::set_baud`] accepts; a program may set a higher one.
+const MAX_BAUD: u32 = 10_000_000;
 /// The longest time between fork and exec of a new process on a busy machine.
 const MAX_START_TIME: Duration = Duration::from_secs(10);
 
@@ -134,7 +137,7 @@ impl Pty {
         loop {
             match events.next() {
                 Ok(event) => on_event(event.events()),
-                Err(rustix::io::Errno::WOULDBLOCK) => return Ok(()),
+                Err(Errno::WOULDBLOCK) => return Ok(()),
                 Err(error) => return Err(error.into()),
             }
         }
@@ -159,7 +162,7 @@ impl Pty {
         self.read_events(|_rest| {})
     }
 
-    /// Returns the baud rate that the last program has set.
+    /// Returns the baud rate that the last program has set, at most [`MAX_BAUD`].
     ///
     /// # Errors
     /// Returns the system's error if the pseudo terminal fails.
@@ -167,7 +170,7 @@ impl Pty {
         // Linux returns the settings that programs have made at the port. Speed 0 means "hang up".
         Ok(match tcgetattr(&self.our_end)?.output_speed() {
             0 => f64::from(DEFAULT_BAUD),
-            baud => f64::from(baud),
+            baud => f64::from(baud.min(MAX_BAUD)),
         })
     }
 
@@ -178,7 +181,7 @@ impl Pty {
     pub(crate) fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         match self.our_end.read(buffer) {
             // EIO: no program has the port open, and nothing is left to read.
-            Err(error) if error.raw_os_error() == Some(EIO) => Ok(0),
+            Err(error) if error.raw_os_error() == Some(Errno::IO.raw_os_error()) => Ok(0),
             result => bytes_or_zero(result),
         }
     }
@@ -216,8 +219,6 @@ fn open_other_end(path: &Path, access: OFlags) -> rustix::io::Result<OwnedFd> {
     let flags = access | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK;
     rustix::fs::open(path, flags, Mode::empty())
 }
-
-const EIO: i32 = rustix::io::Errno::IO.raw_os_error();
 
 /// Converts the result of a transfer to a number of bytes; 0 if no transfer is possible at the moment.
 fn bytes_or_zero(transfer: io::Result<usize>) -> io::Result<usize> {

@@ -13,10 +13,10 @@ use std::time::{Duration, Instant};
 use lizard_time_limit::TIME_LIMIT;
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use simulated_uno::avr_gcc;
-use simulated_uno::{BackgroundPort, CYCLES_PER_MS, FREQUENCY, Fidelity, Image, Pin, Port, Uno};
+use simulated_uno::{BackgroundPort, CYCLES_PER_MS, FREQUENCY, Fidelity, Image, Port, Uno};
 
-/// Program that sends `<r` at reset, then answers every byte with that byte plus one. D9 is high from reset on. Each
-/// start is marked with the number of starts since power-on, from a variable that a reset does not clear.
+/// Program that sends `<r` at reset, then answers every byte with that byte plus one. Each start is marked with the
+/// number of starts since power-on, from a variable that a reset does not clear.
 const ECHO_PROGRAM: &str = r#"
     #include <avr/io.h>
     static volatile unsigned char starts __attribute__((section(".noinit")));
@@ -28,7 +28,6 @@ const ECHO_PROGRAM: &str = r#"
         if (MCUSR & 1 << PORF) starts = 0;
         MCUSR = 0;
         GPIOR0 = ++starts;
-        DDRB |= 1 << 1; PORTB |= 1 << 1;
         UCSR0A = 1 << U2X0; UBRR0 = 16;
         UCSR0B = 1 << RXEN0 | 1 << TXEN0;
         put('<'); put('r');
@@ -65,6 +64,12 @@ fn open(path: &Path) -> File {
 
 fn write(port: &mut File, bytes: &[u8]) {
     port.write_all(bytes).expect("the port accepts bytes");
+}
+
+fn set_baud(port: &File, baud: u32) {
+    let mut settings = tcgetattr(port).expect("the port has settings");
+    settings.set_speed(baud).expect("the speed is valid");
+    tcsetattr(port, OptionalActions::Now, &settings).expect("the port accepts settings");
 }
 
 fn read_text(port: &File, count: usize) -> String {
@@ -112,15 +117,27 @@ fn a_wrong_baud_rate_changes_the_bytes_in_both_directions() {
     let board = serve_board();
     let mut port = open(board.path());
     assert_eq!(read_text(&port, 2), "<r");
-    let mut settings = tcgetattr(&port).expect("the port has settings");
-    let result = settings.set_speed(57_600);
-    result.expect("57 600 baud is a valid speed");
-    tcsetattr(&port, OptionalActions::Now, &settings).expect("the port accepts settings");
+    set_baud(&port, 57_600);
     write(&mut port, b"0");
     // The chip reads 0, as tests/data_sheet/serial.rs explains, and sends 1. The host samples that byte at half the
     // chip's baud rate: at 3.1, 5.1 and 7.1 of the chip's bits, which are 0, then in the stop bit and on the idle
     // line.
     assert_eq!(read_bytes(&port, 1), [0b1111_1000]);
+    drop(port);
+    stop_board(board);
+}
+
+#[test]
+fn a_baud_rate_above_the_simulators_limit_does_not_end_the_simulation() {
+    let board = serve_board();
+    let mut port = open(board.path());
+    assert_eq!(read_text(&port, 2), "<r");
+    set_baud(&port, 20_000_000);
+    std::thread::sleep(Duration::from_millis(10));
+    set_baud(&port, 115_200);
+    std::thread::sleep(Duration::from_millis(10));
+    write(&mut port, b"a");
+    assert_eq!(read_text(&port, 1), "b");
     drop(port);
     stop_board(board);
 }
@@ -203,17 +220,4 @@ fn the_chip_is_at_most_one_time_slice_ahead_of_the_wall_clock() {
         chip_seconds <= wall_seconds + 0.01,
         "chip {chip_seconds} s, wall clock {wall_seconds} s"
     );
-}
-
-#[test]
-fn a_reset_clears_the_pins_but_not_the_time_and_memory() {
-    let mut uno = echo_uno();
-    uno.run_ms(1);
-    assert!(uno.is_high(Pin::d(9)));
-    uno.reset();
-    assert!(!uno.is_high(Pin::d(9)));
-    assert_eq!(uno.ms().floor(), 1.0);
-    uno.run_ms(1);
-    assert!(uno.is_high(Pin::d(9)));
-    assert_eq!(mark_values(&uno), [1, 2]);
 }

@@ -26,28 +26,28 @@ const HELLO_PROGRAM: &str = r#"
 const READER_SCRIPT: &str = r#"exec 3<>"$0"; head -c 2 <&3"#;
 
 /// Minimum number of openings, and minimum number of other programs that start during these openings.
-const MIN_OPENINGS: usize = 150;
+const MIN_COUNT: usize = 150;
 
-static STARTED_COUNT: AtomicUsize = AtomicUsize::new(0);
-static HAS_ENDED: AtomicBool = AtomicBool::new(false);
+static STARTED_PROGRAM_COUNT: AtomicUsize = AtomicUsize::new(0);
+static ARE_OPENINGS_DONE: AtomicBool = AtomicBool::new(false);
 
 fn start_programs() {
-    while !HAS_ENDED.load(Ordering::Relaxed) {
+    while !ARE_OPENINGS_DONE.load(Ordering::Relaxed) {
         let output = TIME_LIMIT.run_command(&mut Command::new("true"), b"");
         assert!(output.expect("`true` runs").status.success());
-        STARTED_COUNT.fetch_add(1, Ordering::Relaxed);
+        STARTED_PROGRAM_COUNT.fetch_add(1, Ordering::Relaxed);
     }
 }
 
 #[test]
-fn every_opening_by_another_program_resets_the_chip_once() {
+fn every_opening_resets_the_chip_once_while_programs_start() {
     let uno = Uno::with_image(avr_gcc::compile_c(HELLO_PROGRAM), Fidelity::DataSheet);
     let starters = [(); 3].map(|()| thread::spawn(start_programs));
     let port = Port::new().expect("a pseudo terminal is free");
     let board = port.in_background(uno, |_| {});
     let board = board.expect("a thread can be started");
     let mut opening_count = 0;
-    while opening_count < MIN_OPENINGS || STARTED_COUNT.load(Ordering::Relaxed) < MIN_OPENINGS {
+    while opening_count < MIN_COUNT || STARTED_PROGRAM_COUNT.load(Ordering::Relaxed) < MIN_COUNT {
         let are_all_running = starters.iter().all(|starter| !starter.is_finished());
         assert!(are_all_running, "a thread has stopped starting programs");
         opening_count += 1;
@@ -58,7 +58,7 @@ fn every_opening_by_another_program_resets_the_chip_once() {
         let output_text = String::from_utf8_lossy(&output.stdout);
         assert_eq!(output_text, "<r", "opening {opening_count}");
     }
-    HAS_ENDED.store(true, Ordering::Relaxed);
+    ARE_OPENINGS_DONE.store(true, Ordering::Relaxed);
     for starter in starters {
         let result = TIME_LIMIT.run("the end of the other programs", || starter.join());
         result.expect("the thread does not panic");

@@ -1,4 +1,4 @@
-//! The task of finding a faster gait than a given gait, for a robot on a floor.
+//! The task of finding a faster gait than a given gait, for a robot on a given ground.
 
 use lizard_robot::{CheckedGait, GroundContact, Robot};
 use thiserror::Error;
@@ -13,8 +13,8 @@ use crate::search::Search;
 const SCORING_ROBOT_COUNT: usize = 16;
 /// Offset between the seeds of the search and of the comparison, so that no random robot is in both.
 const COMPARISON_SEED_OFFSET: u64 = 1 << 40;
-/// Smallest allowed servo speed, deg/s.
-const MIN_RATE: f64 = 10.0;
+/// Smallest servo speed that a caller may request, deg/s.
+const MIN_SERVO_SPEED: f64 = 10.0;
 
 /// The error for an impossible tuning task.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -24,14 +24,13 @@ pub enum TuningError {
     Goal(#[from] GoalError),
     /// The requested servo speed is too low for walking, or higher than the robot's limits allow.
     #[error(
-        "{rate}: must be between {min_rate} and {max_rate} deg/s (limits.gait_slew in robot.toml)",
-        min_rate = MIN_RATE
+        "{requested}: must be between {MIN_SERVO_SPEED} and {limit} deg/s (limits.gait_slew in robot.toml)"
     )]
-    Rate {
+    ServoSpeed {
         /// The requested servo speed, deg/s.
-        rate: f64,
-        /// The largest allowed speed, deg/s.
-        max_rate: f64,
+        requested: f64,
+        /// The robot's limit of the servo speed, deg/s.
+        limit: f64,
     },
 }
 
@@ -41,8 +40,8 @@ pub struct Tuning {
     gait: CheckedGait,
     /// Name of the tuned gait.
     tuned_gait_name: String,
-    /// Largest servo speed, deg/s.
-    rate: f64,
+    /// Largest servo speed of the tuned gait, deg/s.
+    max_servo_speed: f64,
     /// Largest amplitude of the search, deg.
     max_amplitude: f64,
     scorer: Scorer,
@@ -50,33 +49,33 @@ pub struct Tuning {
 }
 
 impl Tuning {
-    /// Prepares the search for a faster gait on `ground`. The servo speed is limited to `rate` (deg/s) or, if `None`,
-    /// to that of the given gait. The tuned gait gets the name `name`, which must be valid in a robot.toml. The call
-    /// takes as long as a few trials, because it finds the largest amplitude within the robot's limits.
+    /// Prepares the search for a faster gait on `ground`. The servo speed is limited to `max_servo_speed` (deg/s), or
+    /// without it to that of the given gait. The tuned gait gets the name `name`, which must be valid in a robot.toml.
+    /// The call takes as long as a few calls of [`Tuning::score`], because it finds the largest amplitude within the
+    /// robot's limits.
     ///
     /// # Errors
-    /// Fails if the gait neither walks straight nor turns on the spot, or if the rate is out of range.
+    /// Fails if the gait neither walks straight nor turns on the spot, or if the servo speed is out of range.
     pub fn new(
         robot: &Robot,
         ground: &GroundContact,
         gait: &CheckedGait,
-        rate: Option<f64>,
+        max_servo_speed: Option<f64>,
         name: &str,
         seed: u64,
     ) -> Result<Self, TuningError> {
         let goal = Goal::from_gait(gait, ground)?;
-        let max_rate = robot.speed_limits().gait_slew;
-        // Without a request, the tuned gait may be as fast as the given gait's fastest servo.
-        let rate = match rate {
+        let limit = robot.speed_limits().gait_slew;
+        let max_servo_speed = match max_servo_speed {
             None => gait.audit().peak_speed.speed,
-            Some(rate) if (MIN_RATE..=max_rate).contains(&rate) => rate,
-            Some(rate) => return Err(TuningError::Rate { rate, max_rate }),
+            Some(speed) if (MIN_SERVO_SPEED..=limit).contains(&speed) => speed,
+            Some(requested) => return Err(TuningError::ServoSpeed { requested, limit }),
         };
         Ok(Self {
             gait: gait.clone(),
             tuned_gait_name: name.to_owned(),
-            rate,
-            max_amplitude: BuiltGait::find_max_amplitude(robot, goal, rate),
+            max_servo_speed,
+            max_amplitude: BuiltGait::find_max_amplitude(robot, goal, max_servo_speed),
             scorer: Scorer::new(robot, ground, goal, SCORING_ROBOT_COUNT, seed),
             seed,
         })
@@ -87,9 +86,9 @@ impl Tuning {
         self.scorer.goal()
     }
 
-    /// Largest allowed servo speed, deg/s.
-    pub const fn rate(&self) -> f64 {
-        self.rate
+    /// Largest servo speed of the tuned gait, deg/s.
+    pub const fn max_servo_speed(&self) -> f64 {
+        self.max_servo_speed
     }
 
     /// Starts the search for a kind of gait, independently of other kinds.
@@ -99,40 +98,28 @@ impl Tuning {
     }
 
     /// Computes the speed that a gait exceeds on 95 % of the random robots, mm/s or deg/s. Returns `None` if the gait
-    /// violates a limit of the robot, or if its movement has a component in another direction than the goal's. The call
+    /// violates a limit of the robot, or if its movement has a component in a direction other than the goal's. The call
     /// takes between 0.01 s and 1 s.
     pub fn score(&self, kind: GaitKind, parameters: &[f64]) -> Option<f64> {
         self.scorer.score(self.build(kind, parameters)?.gait())
     }
 
-    /// Builds the best-scored gait whose movement does not depend on unknown differences between the pads, from the
-    /// scores and parameters that the searches have found for each kind, in the order of [`GaitKind::ALL`]. Returns
-    /// `None` if there is no such gait.
+    /// Builds the gait with the best score whose movement does not depend on unknown differences between the pads.
+    /// `results_by_kind` has the scores and parameters that the searches have found, for each kind in the order of
+    /// [`GaitKind::ALL`]. Returns `None` if there is no such gait.
     pub fn build_best(
         &self,
-        results: impl IntoIterator<Item = Vec<(f64, Vec<f64>)>>,
+        results_by_kind: impl IntoIterator<Item = Vec<(f64, Vec<f64>)>>,
     ) -> Option<BuiltGait> {
-        /// The parameters of a gait of some kind, and their score.
-        struct Candidate {
-            kind: GaitKind,
-            score: f64,
-            parameters: Vec<f64>,
+        let mut candidates: Vec<(GaitKind, (f64, Vec<f64>))> = Vec::new();
+        for (kind, results) in GaitKind::ALL.into_iter().zip(results_by_kind) {
+            candidates.extend(results.into_iter().map(|result| (kind, result)));
         }
-        let mut candidates = Vec::new();
-        for (kind, results) in GaitKind::ALL.into_iter().zip(results) {
-            for (score, parameters) in results {
-                candidates.push(Candidate {
-                    kind,
-                    score,
-                    parameters,
-                });
-            }
-        }
-        candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
+        candidates.sort_by(|(_, (a, _)), (_, (b, _))| b.total_cmp(a));
         let ground = &self.scorer.ground;
         candidates
             .iter()
-            .filter_map(|candidate| self.build(candidate.kind, &candidate.parameters))
+            .filter_map(|(kind, (_, parameters))| self.build(*kind, parameters))
             .find(|built| built.gait().predict(ground).is_determined())
     }
 
@@ -141,12 +128,12 @@ impl Tuning {
         let seed = self.seed.wrapping_add(COMPARISON_SEED_OFFSET);
         let Scorer { robot, ground, .. } = &self.scorer;
         let scorer = Scorer::new(robot, ground, self.goal(), robot_count, seed);
-        Comparison::simulate(&scorer, self.rate, &self.gait, tuned_gait)
+        Comparison::simulate(&scorer, self.max_servo_speed, &self.gait, tuned_gait)
     }
 
     fn build(&self, kind: GaitKind, parameters: &[f64]) -> Option<BuiltGait> {
         let name = &self.tuned_gait_name;
-        let bars = kind.plan_gait(self.goal(), self.max_amplitude, name, parameters);
-        BuiltGait::build(&self.scorer.robot, &bars, self.rate)
+        let planned_gait = kind.plan_gait(self.goal(), self.max_amplitude, name, parameters);
+        BuiltGait::build(&self.scorer.robot, &planned_gait, self.max_servo_speed)
     }
 }

@@ -22,7 +22,7 @@ mod state;
 mod totals;
 mod twin;
 
-pub use servo::{ServoModel, UnloadedServo};
+pub use servo::ServoModel;
 pub use shape::Shape;
 pub use state::State;
 pub use totals::Totals;

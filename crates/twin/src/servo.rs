@@ -16,23 +16,22 @@ pub enum ServoModel {
     Ideal,
     /// Servos whose rate limit and dead band do not depend on the load; much faster to simulate than
     /// [`ServoModel::Motors`].
-    Unloaded(UnloadedServo),
+    Unloaded {
+        /// Largest rate of turn.
+        max_rate_deg_per_s: f64,
+        /// Width of the dead band: a servo ignores an error of up to half this width.
+        dead_band_us: f64,
+    },
     /// Servos with motors of limited torque and rate and with inertia, loaded by the pads' friction.
     Motors(Motors),
 }
 
-/// The rate limit and the dead band of an unloaded servo.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct UnloadedServo {
-    /// Largest rate of turn.
-    pub max_rate_deg_per_s: f64,
-    /// Width of the dead band: a servo ignores an error of up to half this width.
-    pub dead_band_us: f64,
-}
-
 impl ServoModel {
     /// An unloaded SG-90: 60 degrees in 0.12 s, dead band 10 us (data sheet).
-    pub const SG90: Self = Self::Unloaded(UnloadedServo::SG90);
+    pub const SG90: Self = Self::Unloaded {
+        max_rate_deg_per_s: 500.0,
+        dead_band_us: 10.0,
+    };
 
     /// Creates the model of a robot's servos at the voltage of their supply.
     pub fn for_robot(robot: &Robot) -> Self {
@@ -42,24 +41,15 @@ impl ServoModel {
     /// Computes the sweep at the end of a frame of a servo without load from the sweep `start` and the pulse's sweep
     /// `target`, all in deg; `us_per_degree` is the servo's gain.
     pub fn compute_end_sweep(&self, start: f64, target: f64, us_per_degree: f64) -> f64 {
-        match self {
-            Self::Unloaded(servo) => servo.compute_end_sweep(start, target, us_per_degree),
-            Self::Ideal | Self::Motors(_) => target,
-        }
-    }
-}
-
-impl UnloadedServo {
-    const SG90: Self = Self {
-        max_rate_deg_per_s: 500.0,
-        dead_band_us: 10.0,
-    };
-
-    /// Computes the sweep at the end of a frame from the sweep `start` and the pulse's sweep `target`, all in deg;
-    /// `us_per_degree` is the servo's gain.
-    fn compute_end_sweep(&self, start: f64, target: f64, us_per_degree: f64) -> f64 {
-        let half_band = self.dead_band_us / 2.0 / us_per_degree.abs();
-        let max_step = self.max_rate_deg_per_s * FRAME_PERIOD_S;
+        let Self::Unloaded {
+            max_rate_deg_per_s,
+            dead_band_us,
+        } = self
+        else {
+            return target;
+        };
+        let half_band = dead_band_us / 2.0 / us_per_degree.abs();
+        let max_step = max_rate_deg_per_s * FRAME_PERIOD_S;
         let end = start.clamp(target - half_band, target + half_band);
         start + (end - start).clamp(-max_step, max_step)
     }
@@ -71,9 +61,9 @@ mod tests {
 
     #[test]
     fn a_servo_turns_no_faster_than_its_largest_rate() {
-        let servo = UnloadedServo {
+        let servo = ServoModel::Unloaded {
+            max_rate_deg_per_s: 500.0,
             dead_band_us: 0.0,
-            ..UnloadedServo::SG90
         };
         assert_eq!(servo.compute_end_sweep(0.0, 6.0, 10.0), 6.0);
         assert_eq!(servo.compute_end_sweep(0.0, 60.0, 10.0), 10.0);
@@ -82,7 +72,7 @@ mod tests {
 
     #[test]
     fn a_servo_does_not_turn_inside_its_dead_band() {
-        let sg90 = UnloadedServo::SG90;
+        let sg90 = ServoModel::SG90;
         let compute_end_sweep = |start, target| sg90.compute_end_sweep(start, target, -10.0);
         assert_eq!(compute_end_sweep(3.0, 3.5), 3.0);
         assert_eq!(

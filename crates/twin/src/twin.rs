@@ -66,7 +66,7 @@ impl Twin {
                 self.sweeps = std::array::from_fn(|i| FORWARD_TURN_SIGN[i] * servo_sweeps[i]);
                 contacts
             }
-            ServoModel::Ideal | ServoModel::Unloaded(_) => {
+            ServoModel::Ideal | ServoModel::Unloaded { .. } => {
                 for (i, servo) in servos.iter().enumerate() {
                     if let Some(target) = targets[i] {
                         self.sweeps[i] = self.servo_model.compute_end_sweep(

@@ -1,7 +1,7 @@
 //! Tests of the twin. The frames of a gait, simulated one by one, move the robot as predicted for the gait.
 
 use lizard_robot::{BodyPose, CheckedGait, Drive, DriveKind, GroundContact, Robot, Travel};
-use lizard_twin::{ServoModel, Totals, Twin, UnloadedServo};
+use lizard_twin::{ServoModel, Totals, Twin};
 
 fn paper_robot() -> Robot {
     Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid")
@@ -85,10 +85,10 @@ fn a_dead_band_shortens_the_walk_by_its_fraction_of_the_stroke() {
 #[test]
 fn servos_that_are_too_slow_for_a_gait_shorten_the_stride() {
     let robot = paper_robot();
-    let slow_model = ServoModel::Unloaded(UnloadedServo {
+    let slow_model = ServoModel::Unloaded {
         max_rate_deg_per_s: 120.0,
         dead_band_us: 0.0,
-    });
+    };
     let totals = simulate_last_of_four_cycles(&robot, "walk", slow_model, robot.ground());
     assert!(
         totals.max_rate <= 120.0 + 1e-9 && totals.max_error > 5.0,

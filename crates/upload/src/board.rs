@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-/// A connection to a board. All times are board time: a simulated board may run slower or faster than this machine.
+/// A connection to a board. Times are measured on the board: the clock of a simulated board may be slower or faster than
+/// this machine's.
 pub trait Board {
     /// Resets the chip, which starts the boot loader, and sets the baud rate.
     ///
@@ -34,7 +35,7 @@ pub trait Board {
     fn discard(&mut self, duration: Duration) -> impl Future<Output = Result<(), BoardError>>;
 }
 
-/// The error of a failed connection.
+/// The reason why a connection failed.
 #[derive(Debug, thiserror::Error)]
 pub enum BoardError {
     /// Bytes could not be sent in time.

@@ -134,7 +134,7 @@ impl fmt::Display for FlashContents {
                 match &self.robot {
                     RobotInFlash::Blank => f.write_str(" without a robot")?,
                     RobotInFlash::Damaged => f.write_str(" with a damaged robot")?,
-                    RobotInFlash::Named(name) => write!(f, " robot {name}")?,
+                    RobotInFlash::Named(label) => write!(f, " robot {label}")?,
                 }
             }
         }

@@ -56,6 +56,11 @@ pub enum ImageError {
     /// There is no code at address 0, where the chip starts.
     #[error("no code at address 0, where the chip starts")]
     NoStart,
+    /// There is a robot's section, but no code.
+    #[error(
+        "the file has a robot but no code; `lizard flash --only-robot` writes a robot alone, from its robot.toml"
+    )]
+    NoCode,
     /// The robot's section is empty.
     #[error("the robot's section is empty")]
     NoRobot,
@@ -184,8 +189,10 @@ impl Image {
         if !has_ended {
             return Err(ImageError::NoEnd);
         }
-        if flash[0].is_none() {
-            return Err(ImageError::NoStart);
+        match (flash[0], flash[ROBOT_ADDRESS]) {
+            (Some(_), _) => {}
+            (None, Some(_)) => return Err(ImageError::NoCode),
+            (None, None) => return Err(ImageError::NoStart),
         }
         let end = flash.iter().rposition(Option::is_some);
         let bytes = flash[..=end.unwrap_or(0)].iter();
@@ -388,5 +395,8 @@ mod tests {
             parse_error(":0100100005EA\n:00000001FF"),
             "no code at address 0, where the chip starts"
         );
+        let robot = Image::robot_alone(vec![5; 130]).expect("the image fits");
+        let message = parse_error(&robot.to_hex());
+        assert!(message.contains("`lizard flash --only-robot`"), "{message}");
     }
 }

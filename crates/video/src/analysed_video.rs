@@ -11,7 +11,7 @@ use crate::measured_gait::MeasuredGait;
 use crate::path::{self, PathPoint, unwrap_headings};
 use crate::scene::{POSE_PARAMETER_COUNT, SHARED_PARAMETER_COUNT, Scene};
 use crate::video_error::VideoError;
-use crate::walk::{Walk, travel_components};
+use crate::walk::{Walk, mean_components};
 use crate::{cycle_path, walks};
 
 /// Standard deviation of the user's measurement of the deck tag's height, mm.
@@ -109,8 +109,7 @@ impl AnalysedVideo {
             unwrap_headings(&mut points);
             let travel = |pair: &[PathPoint]| pair[1].pose.travel_from(pair[0].pose);
             let travels: Vec<Travel> = points.windows(2).map(travel).collect();
-            travel_components(&travels)
-                .map(|values| values.iter().sum::<f64>() / values.len().max(1) as f64)
+            mean_components(&travels)
         };
         let base_movement = mean_movement(scene);
         let jacobian: Vec<[f64; 3]> = (0..parameter_count)

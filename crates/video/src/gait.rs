@@ -22,11 +22,11 @@ pub struct Gait {
 }
 
 impl Gait {
-    /// Computes the displacement per cycle divided by the cycle's duration, mm/s. A turn counts as the distance by
-    /// which it moves the legs.
+    /// Computes the length of the movement per cycle divided by the cycle's duration, mm/s. A turn counts as the
+    /// distance by which it moves the legs.
     pub fn speed(&self) -> f64 {
-        let displacement = self.path[self.path.len() - 1].travel();
-        movement_length(movement_in_mm(displacement)) / self.period
+        let travel = self.path[self.path.len() - 1].travel();
+        movement_length(movement_in_mm(travel)) / self.period
     }
 
     /// Returns the pose at a phase, relative to the start of cycle 0.
@@ -65,6 +65,7 @@ impl Gait {
 
     /// Returns the predicted rate of movement around a phase, per cycle: mm, mm, deg.
     pub(crate) fn rate_at(&self, phase: f64) -> [f64; 3] {
+        // The middle half of the time window around the phase.
         let [forward, left, turn] =
             self.movement_between(phase - HALF_WINDOW / 2.0, phase + HALF_WINDOW / 2.0);
         [forward, left, (turn / TURN_LEVER_ARM).to_degrees()].map(|value| value / HALF_WINDOW)

@@ -18,7 +18,8 @@ pub(crate) struct Fit {
     pub sum_of_squares: f64,
 }
 
-/// Finds the parameters that minimise the residuals; `None` if a parameter has no influence or a result is not finite.
+/// Finds the parameters that minimise the sum of the squared residuals; `None` if a parameter has no influence or a
+/// result is not finite.
 pub(crate) fn fit(start: &[f64], residuals: impl Fn(&[f64]) -> Vec<f64>) -> Option<Fit> {
     let mut parameters = start.to_vec();
     let mut current_residuals = residuals(&parameters);
@@ -36,13 +37,14 @@ pub(crate) fn fit(start: &[f64], residuals: impl Fn(&[f64]) -> Vec<f64>) -> Opti
                 damped[(i, i)] += damping * normal_matrix[(i, i)].max(1e-12);
             }
             let step = damped.cholesky()?.solve(&gradient);
-            let next = DVector::from_column_slice(&parameters) - step;
-            let next = next.as_slice().to_vec();
-            let next_residuals = residuals(&next);
+            let next_parameters = DVector::from_column_slice(&parameters) - step;
+            let next_parameters = next_parameters.as_slice().to_vec();
+            let next_residuals = residuals(&next_parameters);
             let next_sum = squared_norm(&next_residuals);
             if next_sum <= sum_of_squares {
                 relative_reduction = Some((sum_of_squares - next_sum) / sum_of_squares.max(1e-300));
-                (parameters, current_residuals, sum_of_squares) = (next, next_residuals, next_sum);
+                (parameters, current_residuals, sum_of_squares) =
+                    (next_parameters, next_residuals, next_sum);
                 damping = (damping / 10.0).max(1e-12);
                 break;
             }

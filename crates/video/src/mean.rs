@@ -111,6 +111,8 @@ fn student_t_probability(t: f64, degrees_of_freedom: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fastrand::Rng;
+    use lizard_studio::render::random_normal;
 
     #[test]
     fn students_distribution_matches_published_tables() {
@@ -130,26 +132,11 @@ mod tests {
         }
     }
 
-    /// Returns a source of nearly normally distributed random numbers, the same in every run.
-    fn noise_source() -> impl FnMut() -> f64 {
-        let mut state = 1u64;
-        let mut uniform = move || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            (state >> 33) as f64 / (1u64 << 31) as f64
-        };
-        move || (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-    }
-
     /// Returns the values of a walk whose cycles scatter around `mean`.
-    fn scattered_walk(
-        cycle_count: usize,
-        mean: f64,
-        noise: &mut impl FnMut() -> f64,
-    ) -> WalkValues {
+    fn scattered_walk(cycle_count: usize, mean: f64, rng: &mut Rng) -> WalkValues {
+        let cycle = |_| mean + random_normal(rng);
         WalkValues {
-            cycles: (0..cycle_count).map(|_| mean + noise()).collect(),
+            cycles: (0..cycle_count).map(cycle).collect(),
             systematic_error: 0.0,
         }
     }
@@ -166,9 +153,9 @@ mod tests {
     #[test]
     fn the_true_value_lies_within_two_standard_errors_in_95_percent_of_videos_of_three_to_ten_cycles()
      {
-        let mut noise = noise_source();
+        let mut rng = Rng::with_seed(1);
         for cycle_count in [3, 5, 10] {
-            let record_video = || vec![scattered_walk(cycle_count, 3.0, &mut noise)];
+            let record_video = || vec![scattered_walk(cycle_count, 3.0, &mut rng)];
             let hit_fraction = hit_fraction(4000, record_video);
             assert!(
                 (0.945..0.965).contains(&hit_fraction),
@@ -180,13 +167,13 @@ mod tests {
     #[test]
     fn the_true_value_lies_within_two_standard_errors_in_90_to_99_percent_of_videos_of_several_walks()
      {
-        let mut noise = noise_source();
+        let mut rng = Rng::with_seed(1);
         for (walk_spread, walk_count) in
             [(0.0, 2), (0.0, 3), (1.0, 2), (1.0, 3), (3.0, 2), (3.0, 3)]
         {
             let mut record_walk = |_| {
-                let mean = 3.0 + walk_spread * noise();
-                scattered_walk(4, mean, &mut noise)
+                let mean = 3.0 + walk_spread * random_normal(&mut rng);
+                scattered_walk(4, mean, &mut rng)
             };
             let record_video = || (0..walk_count).map(&mut record_walk).collect();
             let hit_fraction = hit_fraction(2000, record_video);

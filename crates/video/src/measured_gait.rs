@@ -6,7 +6,7 @@ use crate::cycle_path::{self, CyclePoint};
 use crate::estimate::Estimate;
 use crate::gait::Gait;
 use crate::mean::{self, Mean, WalkValues};
-use crate::walk::{Walk, travel_components};
+use crate::walk::{Walk, components};
 
 /// A gait's mean displacement, period and path per cycle, measured from videos.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,8 +33,9 @@ impl MeasuredGait {
     /// Computes the means over walks.
     pub(crate) fn from_walks(walks: Vec<Walk>, gait: &Gait) -> Self {
         let component_mean = |i: usize| {
+            let component = |travel: &Travel| components(*travel)[i];
             let walk_values = |walk: &Walk| WalkValues {
-                cycles: travel_components(&walk.cycles.travels)[i].clone(),
+                cycles: walk.cycles.travels.iter().map(component).collect(),
                 systematic_error: walk.systematic_errors()[i],
             };
             mean::compute_mean(&walks.iter().map(walk_values).collect::<Vec<_>>())

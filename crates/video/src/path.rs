@@ -57,18 +57,12 @@ pub(crate) fn between(path: &[PathPoint], [from, to]: [f64; 2]) -> &[PathPoint] 
     &path[begin..end.max(begin)]
 }
 
-/// Interpolates the pose at a time between two frames; `None` before the first or after the last frame.
+/// Interpolates the pose at a time after the first frame; `None` after the last frame.
 pub(crate) fn interpolate_at(path: &[PathPoint], seconds: f64) -> Option<BodyPose> {
     let next_index = path.partition_point(|point| point.seconds < seconds);
-    let b = path.get(next_index)?;
-    let a = &path[next_index.saturating_sub(1)];
-    let interval = b.seconds - a.seconds;
-    let fraction = match interval > 0.0 {
-        true => (seconds - a.seconds) / interval,
-        false => 1.0,
-    };
-    (fraction >= 0.0 && seconds >= a.seconds.min(b.seconds))
-        .then(|| interpolate(a.pose, b.pose, fraction))
+    let (a, b) = (path.get(next_index.checked_sub(1)?)?, path.get(next_index)?);
+    let fraction = (seconds - a.seconds) / (b.seconds - a.seconds);
+    Some(interpolate(a.pose, b.pose, fraction))
 }
 
 /// Computes the pose at a time from a parabola fitted to the frames within `half_window` seconds of that time, and to

@@ -20,11 +20,13 @@ impl Walk {
     /// Computes the part of the mean cycle's error that all cycles have in common: the errors of ruler, height, clock
     /// and camera. Forward and left, mm, and turn, deg.
     pub(crate) fn systematic_errors(&self) -> [f64; 3] {
-        let components = travel_components(&self.cycles.travels);
+        let means = mean_components(&self.cycles.travels);
         let period = self.cycles.period;
         [0, 1, 2].map(|i| {
-            let mean = components[i].iter().sum::<f64>() / components[i].len() as f64;
-            let scale_error = if i < 2 { mean * self.scale_error } else { 0.0 };
+            let scale_error = match i {
+                0 | 1 => means[i] * self.scale_error,
+                _ => 0.0,
+            };
             let clock_error = self.cycles.calm_rate[i] * period.standard_error / period.value;
             (scale_error.powi(2) + clock_error.powi(2) + self.scene_variances[i]).sqrt()
         })
@@ -42,11 +44,11 @@ pub(crate) struct Deviation {
     pub offset: [f64; 3],
 }
 
-/// Returns the forward, left and turn components of every cycle: mm, mm, deg.
-pub(crate) fn travel_components(travels: &[Travel]) -> [Vec<f64>; 3] {
+/// Computes the means of the forward, left and turn components of movements: mm, mm, deg; 0 if there is no movement.
+pub(crate) fn mean_components(travels: &[Travel]) -> [f64; 3] {
     [0, 1, 2].map(|axis| {
-        let travels = travels.iter();
-        travels.map(|travel| components(*travel)[axis]).collect()
+        let values = travels.iter().map(|travel| components(*travel)[axis]);
+        values.sum::<f64>() / travels.len().max(1) as f64
     })
 }
 

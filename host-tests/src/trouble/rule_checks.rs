@@ -194,12 +194,12 @@ fn check_stand(record: &Record) -> Result<(), String> {
     if status != [Some("stand"), Some("none")] {
         return Err(format!("status after stand: {:?}", last_status.answer));
     }
-    let late_start_cycle = record.end_cycle - 110 * MS;
+    let last_cycles = record.end_cycle - 110 * MS..record.end_cycle;
     for servo in 0..4 {
-        let is_late =
-            |(cycle, pulse): &&(u64, Pulse)| pulse.servo == servo && *cycle > late_start_cycle;
-        let late_pulses = record.pulses.iter().filter(is_late);
-        let widths: Vec<u32> = late_pulses.map(|(_, pulse)| pulse.width).collect();
+        let is_last =
+            |(cycle, pulse): &&(u64, Pulse)| pulse.servo == servo && last_cycles.contains(cycle);
+        let last_pulses = record.pulses.iter().filter(is_last);
+        let widths: Vec<u32> = last_pulses.map(|(_, pulse)| pulse.width).collect();
         let is_steady = widths.windows(2).all(|pair| pair[0] == pair[1]);
         if widths.len() < 4 || !is_steady {
             return Err(format!(
@@ -299,7 +299,7 @@ fn check_only_sent_lines(record: &Record) -> Result<(), String> {
         let was_reset = resets.any(|reset| recent_cycles.contains(&reset.cycle));
         let link_breaks_after = |cycle: u64| {
             let mut spans = record.radio_spans.iter();
-            spans.any(|link| (cycle..cycle + 200 * MS).contains(&link.end))
+            spans.any(|span| (cycle..cycle + 200 * MS).contains(&span.end))
         };
         let mut sent_lines = record.sent_lines.iter();
         let is_same_line = |(cycle, text): &(u64, String)| {
@@ -331,14 +331,14 @@ fn check_stops_are_answered(record: &Record) -> Result<(), String> {
         };
         let answer = record.printed_lines.iter().find(is_stop_answer);
         let answer_cycle = answer.map(|line| line.cycle);
-        let find_deadline = |link: &CycleSpan| {
-            let start = link.start.max(*stop);
+        let find_deadline = |span: &CycleSpan| {
+            let start = span.start.max(*stop);
             let deadline = match record.has_found_baud_rate(start) {
                 true => start + ANSWER_CYCLES,
                 false => start + RATE_SEARCH_CYCLES,
             };
             let is_undisturbed = !record.is_disturbed(&(start.saturating_sub(300 * MS)..deadline));
-            (link.end >= deadline && is_undisturbed).then_some(deadline)
+            (span.end >= deadline && is_undisturbed).then_some(deadline)
         };
         let deadline = record.radio_spans.iter().find_map(find_deadline);
         if deadline.is_some_and(|deadline| answer_cycle.is_none_or(|cycle| cycle > deadline)) {

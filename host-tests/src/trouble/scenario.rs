@@ -196,8 +196,8 @@ impl Script<'_> {
     }
 
     /// Restarts the program, unless the scenario is still at power-on, and waits for part of the start.
-    fn start_program(&mut self, is_power_on: bool) {
-        if !is_power_on {
+    fn start_program(&mut self, is_at_power_on: bool) {
+        if !is_at_power_on {
             match self.rng.u8(0..4) {
                 0 => self.say("rest"),
                 1 => self.say_random_gait(),
@@ -352,8 +352,8 @@ impl Script<'_> {
         self.say(refused_line);
         self.say("status");
         // A supply counts as good only one second after it has recovered.
-        let is_supply = |step: &Step| matches!(step, Step::Supply(_) | Step::WeakSupply(_));
-        if self.steps.iter().any(is_supply) {
+        let changes_supply = |step: &Step| matches!(step, Step::Supply(_) | Step::WeakSupply(_));
+        if self.steps.iter().any(changes_supply) {
             self.wait(1_300);
         }
         self.steps.push(Step::SayOrStand("walk".into()));

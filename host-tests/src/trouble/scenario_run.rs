@@ -47,7 +47,7 @@ struct ScenarioRun<'a> {
     noise_rng: Rng,
     record: Record,
     /// The number of starts of the program that have been handled.
-    start_count: usize,
+    handled_start_count: usize,
     /// True while the supply falls whenever three servos have pulses.
     is_supply_weak: bool,
     /// The cycle at which each servo's latest pulse began.
@@ -69,7 +69,7 @@ pub fn run_scenario(image: &Image, robot: &Robot, scenario: &Scenario) -> Record
         drive: None,
         noise_rng: Rng::with_seed(scenario.number),
         record: Record::default(),
-        start_count: 1,
+        handled_start_count: 1,
         is_supply_weak: false,
         latest_pulse_cycles: [None; 4],
     };
@@ -251,9 +251,9 @@ impl ScenarioRun<'_> {
             *pulse_cycle = last_rise.map(|edge| edge.cycle).or(*pulse_cycle);
         }
         self.record.edges.extend(edges);
-        let starts = self.uno.reset_events();
-        if starts.len() > self.start_count {
-            self.start_count = starts.len();
+        let start_count = self.uno.reset_events().len();
+        if start_count > self.handled_start_count {
+            self.handled_start_count = start_count;
             self.uno.stall_main(0);
             if let Some(stall) = self.record.stalls.last_mut() {
                 stall.end = stall.end.min(self.uno.cycle());

@@ -11,7 +11,7 @@ pub enum Step {
     Say(String),
     /// Sends a line without waiting for its answer.
     Send(String),
-    /// Sends a line; if it is refused because the servos rest, sends `stand`.
+    /// Like `Say`; if the line is refused because the servos rest, also sends `stand`.
     SayOrStand(String),
     /// Lets this many cycles pass.
     Wait(u64),
@@ -46,7 +46,7 @@ impl fmt::Display for Step {
             Self::Send(line) => write!(f, "send {line} and do not wait"),
             Self::SayOrStand(line) => write!(f, "say {line}; if the robot rests, say stand"),
             Self::Wait(cycles) => write!(f, "wait {}", format_time(*cycles)),
-            Self::Stall(cycles) => write!(f, "stall main for {}", format_time(*cycles)),
+            Self::Stall(cycles) => write!(f, "stall the main loop for {}", format_time(*cycles)),
             Self::BlockInterrupts(cycles) => {
                 write!(f, "block interrupts for {}", format_time(*cycles))
             }
@@ -56,14 +56,16 @@ impl fmt::Display for Step {
             Self::WeakSupply(true) => write!(f, "supply 2400 mV whenever three servos have pulses"),
             Self::Drive(link) => write!(
                 f,
-                "a person drives by radio at {} baud: {:.0} % packet loss, mean link time {} ms{}",
+                "a person drives by radio at {} baud: {:.0} % packet loss, {}{}",
                 link.baud,
                 100.0 * link.packet_loss,
-                link.mean_link_ms,
-                if link.reports_link {
-                    ", the module reports the link"
-                } else {
-                    ""
+                match link.mean_link_ms {
+                    0 => "a link that never ends".to_owned(),
+                    ms => format!("links of {ms} ms on average"),
+                },
+                match link.reports_link {
+                    true => ", the module reports the link",
+                    false => "",
                 }
             ),
             Self::Contact(pin, true) => write!(f, "the contact at pin {pin} closes"),
@@ -73,7 +75,7 @@ impl fmt::Display for Step {
             Self::Noise(cycles) => {
                 write!(f, "noise on the serial line for {}", format_time(*cycles))
             }
-            Self::WeakSupply(false) => write!(f, "strong supply again"),
+            Self::WeakSupply(false) => write!(f, "connect a good supply again"),
         }
     }
 }

@@ -2,7 +2,9 @@
 //! the Arduino IDE. The examples run on the simulated UNO, and their edges must match those of the Rust crate
 //! `servo-pulses`.
 
-use lizard_host_tests::{FirmwareBench, decode_text, pulse_widths, root};
+use lizard_host_tests::{
+    FirmwareBench, decode_text, pulse_widths, read_file, root, timer1_handler_cycles,
+};
 use servo_pulses::{CYCLES_PER_US, frame_cycles};
 use simulated_uno::{CYCLES_PER_MS, Edge, FREQUENCY, Fidelity, Pin, State, Uno};
 
@@ -79,8 +81,7 @@ fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
         );
     }
     assert_eq!(uno.overrun_count(), 0);
-    let readme = std::fs::read_to_string(root().join("arduino/ServoPulses/README.md"));
-    let readme = readme.expect("the README exists");
+    let readme = read_file("arduino/ServoPulses/README.md");
     for (memory, bytes) in [
         ("flash", uno.image().flash_used()),
         ("static RAM", uno.image().static_ram().into()),
@@ -88,14 +89,6 @@ fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
         let row = format!("| {memory} of the whole sketch, bytes | {bytes} |");
         assert!(readme.contains(&row), "the README has no {row}");
     }
-}
-
-/// Returns the cycles per second spent in the handlers of Timer1's compare matches.
-fn handler_cycles_per_second(uno: &Uno) -> u64 {
-    let mut handlers = uno.interrupt_stats();
-    handlers.retain(|handler| [11, 12].contains(&handler.vector));
-    let cycles: u64 = handlers.iter().map(|handler| handler.cycles).sum();
-    cycles * FREQUENCY / uno.cycle()
 }
 
 #[test]
@@ -110,7 +103,7 @@ fn the_servo_library_has_jitter_in_the_same_flood() {
             "{name}: jitter {measured_jitters:?} cycles, {} bytes of flash, {} bytes of RAM, {} cycles per second",
             image.flash_used(),
             image.static_ram(),
-            handler_cycles_per_second(&uno)
+            timer1_handler_cycles(&uno) * FREQUENCY / uno.cycle()
         );
         let is_allowed = |jitter: &u64| allowed_jitters.contains(jitter);
         assert!(measured_jitters.iter().all(is_allowed));

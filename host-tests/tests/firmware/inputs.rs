@@ -1,11 +1,10 @@
 //! Tests of a button and an obstacle switch at the pins of the running image, with the patrol from docs/gaits.md.
 
-use std::fs;
 use std::sync::LazyLock;
 
 use lizard_host::board::SimulatedBoard;
 use lizard_host::sim::frame::Frame;
-use lizard_host_tests::{FirmwareBench, root};
+use lizard_host_tests::{FirmwareBench, read_file};
 use lizard_robot::{Robot, Travel};
 use simulated_uno::{CYCLES_PER_MS, Call, Fidelity, Pin};
 
@@ -31,7 +30,6 @@ fn patrol_robot() -> &'static Robot {
 
 /// Builds the paper's robot with the patrol from docs/gaits.md, with button and obstacle switch at these pins.
 fn build_patrol_robot(button_pin: &str, obstacle_pin: &str) -> Robot {
-    let read_file = |file: &str| fs::read_to_string(root().join(file)).expect(file);
     let page_text = read_file("docs/gaits.md");
     let blocks = page_text.split("```");
     let mut patrols = blocks
@@ -103,7 +101,7 @@ fn assert_walks_ahead(bench: &mut FirmwareBench) {
 }
 
 /// Runs the board for a second. Returns true if no pulse width changes.
-fn run_second_and_check_still(bench: &mut FirmwareBench) -> bool {
+fn stays_still_for_a_second(bench: &mut FirmwareBench) -> bool {
     let frames = bench.run_for_frames(FRAMES_PER_SECOND);
     frames.iter().all(|frame| frame.widths == frames[0].widths)
 }
@@ -120,7 +118,7 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
         bench.run_ms(10_000);
         let notes = read_notes(&mut bench, line_count);
         assert_eq!(notes, ["# boot: patrol", "# waiting for button"]);
-        assert!(run_second_and_check_still(&mut bench));
+        assert!(stays_still_for_a_second(&mut bench));
         // The button bounces.
         for ms in [1, 3, 1, 2, 7, 1, 2] {
             press(&mut bench, BUTTON_PIN, ms);
@@ -157,7 +155,7 @@ fn a_stuck_button_or_a_short_press_starts_nothing() {
         bench.uno.set_contact(BUTTON_PIN, true);
         bench.say("patrol");
         bench.run_ms(5_000);
-        assert!(run_second_and_check_still(&mut bench));
+        assert!(stays_still_for_a_second(&mut bench));
         bench.uno.set_contact(BUTTON_PIN, false);
         bench.run_ms(DEBOUNCE_MS);
         // Presses shorter than two frames never close the button in three successive frames.
@@ -165,9 +163,9 @@ fn a_stuck_button_or_a_short_press_starts_nothing() {
             press(&mut bench, BUTTON_PIN, ms);
             bench.run_ms(41);
         }
-        assert!(run_second_and_check_still(&mut bench));
+        assert!(stays_still_for_a_second(&mut bench));
         press(&mut bench, BUTTON_PIN, DEBOUNCE_MS);
-        assert!(!run_second_and_check_still(&mut bench));
+        assert!(!stays_still_for_a_second(&mut bench));
     });
 }
 
@@ -226,7 +224,7 @@ fn contacts_on_the_servos_ports_change_no_pulse() {
         }
         press(&mut bench, Pin::d(8), 100);
         bench.run_ms(2_000);
-        assert!(!run_second_and_check_still(&mut bench));
+        assert!(!stays_still_for_a_second(&mut bench));
         press(&mut bench, Pin::d(4), 100);
         bench.run_ms(10_000);
         Status::read(&mut bench).assert_has("late=0");

@@ -1,4 +1,5 @@
-//! Tests that no frame is late or wrong for robots with random pins, directions and gaits.
+//! Tests that no frame is late or wrong for robots with random pins, directions and gaits, and that no step of main
+//! exceeds its bound.
 
 use lizard_core::numbers::gaits::MAX_NAME_BYTES;
 use lizard_host::bench::measure_longest_step;
@@ -36,11 +37,11 @@ fn no_frame_of_a_random_robot_is_late_or_wrong_under_any_flood() {
     for_each_in_parallel(&[0, 1], |parity| {
         for number in (*parity..robot_count).step_by(2) {
             let mut rng = rng(2_000 + number);
-            let (text, mut robot) = random_robot(&mut rng);
+            let (toml, mut robot) = random_robot(&mut rng);
             // A third of the robots get many gaits with short names, and another third many gaits with long names.
             match number % 3 {
-                1 => robot = with_many_gaits(&text, 10),
-                2 => robot = with_many_gaits(&text, MAX_NAME_BYTES),
+                1 => robot = with_many_gaits(&toml, 10),
+                2 => robot = with_many_gaits(&toml, MAX_NAME_BYTES),
                 _ => {}
             }
             let robot_name = format!("robot {number}");
@@ -55,22 +56,22 @@ fn no_frame_of_a_random_robot_is_late_or_wrong_under_any_flood() {
 
 #[test]
 fn the_longest_step_of_main_stays_within_its_bound_for_any_number_of_gaits() {
-    /// Upper bound of the cycles for `factory`, the longest command apart from the search for a gait.
-    const MAX_OTHER_COMMAND_CYCLES: usize = 34_000;
-    let (text, robot) = random_robot(&mut rng(2_000));
+    /// Upper bound of the cycles of a step that does not search for a gait's name. The longest is `factory`.
+    const MAX_CYCLES_WITHOUT_SEARCH: usize = 34_000;
+    let (toml, robot) = random_robot(&mut rng(2_000));
     let name_lengths = [10, 24, MAX_NAME_BYTES];
-    let robots = name_lengths.map(|length| with_many_gaits(&text, length));
+    let robots = name_lengths.map(|length| with_many_gaits(&toml, length));
     for robot in robots.iter().chain([&robot]) {
         let cycles =
             measure_longest_step(&FirmwareBench::elf_path(), robot).expect("the measurement runs");
         let search_cycles = robot.max_search_cycles();
         let result = format!("{cycles} cycles, bound of the search {search_cycles}");
         println!("{} gaits: {result}", robot.gaits().len());
-        let max_cycles = search_cycles.max(MAX_OTHER_COMMAND_CYCLES);
+        let max_cycles = search_cycles.max(MAX_CYCLES_WITHOUT_SEARCH);
         assert!(cycles as usize <= max_cycles, "{result}");
         // If the search is the longest step, the bound is less than twice the measured time.
         let is_tight = cycles as usize > search_cycles / 2;
-        let is_longest = search_cycles >= MAX_OTHER_COMMAND_CYCLES;
-        assert!(is_tight || !is_longest, "{result}");
+        let is_search_longest = search_cycles >= MAX_CYCLES_WITHOUT_SEARCH;
+        assert!(is_tight || !is_search_longest, "{result}");
     }
 }

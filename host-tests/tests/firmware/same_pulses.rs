@@ -7,7 +7,7 @@
 
 use lizard_host::sim::frame::{FRAME_CYCLES, servo_pins};
 use lizard_host::sim::supplies;
-use lizard_host_tests::{FirmwareBench, decode_text, load_named_robot, root};
+use lizard_host_tests::{FirmwareBench, decode_text, load_named_robot, load_robots_from_files};
 use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, State, Uno};
 
@@ -142,17 +142,12 @@ fn the_pulses_of_every_robot_match_its_record() {
         ("paper", (0x3a1b_1df5_bc67_f514, 184_384)),
         ("unequal", (0xef9f_3060_6801_8a27, 164_444)),
     ];
-    let file_stem = |entry: std::io::Result<std::fs::DirEntry>| {
-        let path = entry.expect("the folder is readable").path();
-        let name = path.file_stem().expect("a file has a name");
-        name.to_string_lossy().into_owned()
-    };
-    let folder = std::fs::read_dir(root().join("robots")).expect("robots/ is readable");
-    let mut names: Vec<String> = folder.map(file_stem).collect();
-    names.sort();
+    // The first robot is the robot under test.
+    let file_robots = load_robots_from_files().into_iter().skip(1);
+    let files: Vec<String> = file_robots.map(|named| named.name).collect();
     assert_eq!(
-        names,
-        recorded.map(|(name, _)| name),
+        files,
+        recorded.map(|(name, _)| format!("{name}.toml")),
         "expected one record for each file"
     );
     for_each_in_parallel(&recorded, |(name, expected)| {

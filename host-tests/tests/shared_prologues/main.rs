@@ -1,12 +1,10 @@
 //! Tests that functions compute the same results with shared prologues and epilogues as with their own prologues and
 //! epilogues.
 
-use std::fs;
-
 use lizard_host_tests::avr_gcc::{
     assemble, compile_to_object, link, ram_address, run_to_end, shrink,
 };
-use lizard_host_tests::root;
+use lizard_host_tests::read_file;
 use lizard_linker::ROUTINES;
 use lizard_linker::frame::LOWEST_REGISTERS;
 use simulated_uno::{Fidelity, Image, Uno};
@@ -100,7 +98,7 @@ fn a_program_computes_the_same_results_with_shared_prologues_and_epilogues() {
     // In `jumps`, only the first branch over a jump is replaced, which saves 2 bytes.
     assert_eq!(savings.branch_bytes, 2, "{savings:?}");
     let plain_image = link("", &object).expect("the object links");
-    let shrunk_image = link(ROUTINES, &shrunk).expect("the rewritten object links");
+    let shrunk_image = link(ROUTINES, &shrunk).expect("the shrunk object links");
     assert!(shrunk_image.symbol("__frame_save_2").is_some());
     let (plain_results, plain_depth) = run_stress_program(&plain_image);
     let (shrunk_results, shrunk_depth) = run_stress_program(&shrunk_image);
@@ -144,8 +142,7 @@ fn an_argument_on_the_stack_is_read_where_the_caller_put_it() {
 
 #[test]
 fn interprocedural_register_allocation_is_disabled() {
-    let flags = fs::read_to_string(root().join(".cargo/config.toml"));
-    let flags = flags.expect(".cargo/config.toml is readable");
+    let flags = read_file(".cargo/config.toml");
     let llvm_args_line = flags.lines().find(|line| line.contains("\"-Cllvm-args="));
     let llvm_args_line = llvm_args_line.expect(".cargo/config.toml lists the LLVM arguments");
     assert!(!llvm_args_line.contains("ipra"), "{llvm_args_line}");

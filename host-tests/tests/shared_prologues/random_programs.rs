@@ -1,4 +1,4 @@
-//! Tests that random C functions compute the same results before and after the linker rewrites them.
+//! Tests that random C functions compute the same results before and after the linker shrinks them.
 //!
 //! The functions have up to 30 bytes of arguments, of which 18 bytes fit into registers. The functions have arrays on
 //! the stack and call one another while a timer interrupts them.
@@ -22,7 +22,8 @@ const GROUP_SIZE: usize = 5;
 /// The number of programs in an ordinary run. Together they have 800 functions.
 const PROGRAM_COUNT: u64 = 20;
 
-/// The argument types, each with the number of bytes of an argument.
+/// The parameter types, each with the number of bytes in which an argument is passed: avr-gcc passes every argument in
+/// an even number of bytes.
 const TYPES: [(&str, usize); 5] = [
     ("uint8_t", 2),
     ("uint16_t", 2),
@@ -52,21 +53,21 @@ fn generate_expression(rng: &mut Rng, variables: &[String], depth: u8) -> String
     }
 }
 
-/// Generates the next function, which may call an earlier function, and adds its argument types to `signatures`.
+/// Generates the next function, which may call an earlier function, and adds its parameter types to `signatures`.
 fn generate_function(rng: &mut Rng, signatures: &mut Vec<Vec<&'static str>>) -> String {
     let number = signatures.len();
-    let (mut types, mut argument_bytes) = (Vec::new(), 0);
+    let (mut types, mut parameter_bytes) = (Vec::new(), 0);
     for _ in 0..rng.usize(5..11) {
         let (name, type_bytes) = TYPES[rng.usize(..TYPES.len())];
-        argument_bytes += type_bytes;
-        if argument_bytes <= 30 {
+        parameter_bytes += type_bytes;
+        if parameter_bytes <= 30 {
             types.push(name);
         }
     }
     let mut variables: Vec<String> = (0..types.len()).map(|index| format!("p{index}")).collect();
     let parameters = types.iter().zip(&variables);
     let parameters: Vec<String> = parameters.map(|(name, p)| format!("{name} {p}")).collect();
-    let arguments = variables.clone();
+    let parameter_names = variables.clone();
     let [buffer_size, limit] = [rng.usize(3..30), rng.usize(..60_000)];
     let last_index = buffer_size - 1;
     variables.push("i".into());
@@ -77,15 +78,15 @@ fn generate_function(rng: &mut Rng, signatures: &mut Vec<Vec<&'static str>>) -> 
     let group_start = number / GROUP_SIZE * GROUP_SIZE;
     let call = if number > group_start && rng.u8(..5) > 0 {
         let callee = rng.usize(group_start..number);
-        let values = signatures[callee].iter();
-        let values =
-            values.map(|name| format!("({name}){}", generate_expression(rng, &variables, 1)));
-        let values: Vec<String> = values.collect();
-        format!("sum ^= f{callee}({});", values.join(", "))
+        let types = signatures[callee].iter();
+        let arguments =
+            types.map(|name| format!("({name}){}", generate_expression(rng, &variables, 1)));
+        let arguments: Vec<String> = arguments.collect();
+        format!("sum ^= f{callee}({});", arguments.join(", "))
     } else {
         String::new()
     };
-    let [parity_value, addend] = [0; 2].map(|_| generate_expression(rng, &arguments, 0));
+    let [parity_value, addend] = [0; 2].map(|_| generate_expression(rng, &parameter_names, 0));
     signatures.push(types);
     format!(
         "__attribute__((noinline, noclone)) uint16_t f{number}({parameters}) {{
@@ -115,16 +116,16 @@ fn generate_program(rng: &mut Rng) -> String {
         .collect();
     let mut calls = String::new();
     for call in 0..2 * FUNCTION_COUNT {
-        let values = signatures[call / 2].iter();
-        let values: Vec<String> = values.map(|_| rng.u16(..).to_string()).collect();
-        let values = values.join(", ");
-        calls += &format!("results[{call}] = f{}({values});\n", call / 2);
+        let types = signatures[call / 2].iter();
+        let arguments: Vec<String> = types.map(|_| rng.u16(..).to_string()).collect();
+        let arguments = arguments.join(", ");
+        calls += &format!("results[{call}] = f{}({arguments});\n", call / 2);
     }
     format!(
         "#include <avr/io.h>
         #include <avr/interrupt.h>
         #include <stdint.h>
-        #pragma GCC optimize(\"{level}\")
+        #pragma GCC optimize(\"{optimisation}\")
         volatile uint8_t table[32] = {{1, 2, 3, 9, 8, 7}}, done;
         volatile uint16_t ticks, results[{count}];
         ISR(TIMER0_COMPA_vect) {{ ticks++; }}
@@ -135,7 +136,7 @@ fn generate_program(rng: &mut Rng) -> String {
             cli(); done = ticks > 20;
             for (;;) {{}}
         }}",
-        level = rng
+        optimisation = rng
             .choice(["O1", "O2", "Os"])
             .expect("the list is not empty"),
         count = 2 * FUNCTION_COUNT,
@@ -151,14 +152,14 @@ fn run_and_read_return_values(image: &Image) -> Vec<[u8; 4]> {
     (0..FUNCTION_COUNT as u16).map(read_values).collect()
 }
 
-/// Finds the functions of a random program that return other values after the linker has rewritten the program. Returns
-/// their numbers, and true if the linker rewrote a function. `None` if avr-gcc fails, because it runs out of registers
-/// or a branch target is too far away.
+/// Finds the functions of a random program that return other values after the linker has shrunk the program. Returns
+/// their numbers, and true if the linker has shrunk a function. `None` if avr-gcc fails, because it runs out of
+/// registers or a branch target is too far away.
 fn find_differing_functions(seed: u64) -> Option<(Vec<usize>, bool)> {
     let object = compile_to_object(&generate_program(&mut Rng::with_seed(seed))).ok()?;
     let plain_image = link("", &object).ok()?;
-    let (object, savings) = shrink(&object);
-    let shrunk_image = link(ROUTINES, &object).expect("the rewritten object links");
+    let (shrunk_object, savings) = shrink(&object);
+    let shrunk_image = link(ROUTINES, &shrunk_object).expect("the shrunk object links");
     let [plain_results, shrunk_results] =
         [plain_image, shrunk_image].map(|image| run_and_read_return_values(&image));
     let differing_functions =
@@ -177,23 +178,23 @@ fn random_functions_with_stack_arguments_compute_the_same_results() {
             .collect()
     };
     let thread_count = thread::available_parallelism().map_or(1, usize::from);
-    let tried_programs: Vec<_> = thread::scope(|scope| {
+    let compared_programs: Vec<_> = thread::scope(|scope| {
         let workers: Vec<_> = (0..thread_count).map(|_| scope.spawn(run_worker)).collect();
         let results = workers
             .into_iter()
             .map(|worker| worker.join().expect("no thread panics"));
         results.flatten().collect()
     });
-    for (seed, (differing_functions, is_rewritten)) in &tried_programs {
+    for (seed, (differing_functions, is_shrunk)) in &compared_programs {
         assert!(
             differing_functions.is_empty(),
             "program {seed}: these functions differ: {differing_functions:?}"
         );
-        assert!(is_rewritten, "program {seed}: no function was rewritten");
+        assert!(is_shrunk, "program {seed}: no function was shrunk");
     }
-    let tried_count = tried_programs.len() as u64;
+    let compiled_count = compared_programs.len() as u64;
     assert!(
-        tried_count >= seed_count * 9 / 10,
-        "only {tried_count} programs compiled"
+        compiled_count >= seed_count * 9 / 10,
+        "only {compiled_count} programs compiled"
     );
 }

@@ -1,11 +1,10 @@
 //! The crates of the workspace, as its manifest lists them.
 
-use lizard_host_tests::root;
+use lizard_host_tests::read_file;
 
 /// Lists the folders of all crates, relative to the root of the repository.
 pub fn list_crates() -> Vec<String> {
-    let manifest = std::fs::read_to_string(root().join("crates/Cargo.toml"));
-    let manifest = manifest.expect("the manifest is readable");
+    let manifest = read_file("crates/Cargo.toml");
     let members = manifest.split_once("\nmembers = [");
     let members = members.and_then(|(_, members)| members.split_once(']'));
     let (members, _) = members.expect("the manifest lists its members");

@@ -1,4 +1,4 @@
-//! Initial states of a search: each kind of EEPROM contents, combined with each activity.
+//! Initial states of a search: several EEPROM contents (memories), each combined with several activities.
 
 use lizard_core::memory::copies::COPY_ADDRESSES;
 use lizard_core::memory::record::Progress;
@@ -15,7 +15,7 @@ use crate::world::World;
 
 /// An initial state, and the actions that lead to it.
 pub struct InitialState {
-    /// A description of the EEPROM contents and the boot loader at power-on.
+    /// A description of the memory and the boot loader at power-on.
     pub conditions: &'static str,
     /// The actions since power-on.
     pub actions: Vec<Action>,
@@ -23,7 +23,7 @@ pub struct InitialState {
     pub world: World,
 }
 
-/// Names of EEPROM contents, each with the actions that make a standing robot write these contents.
+/// Names of memories, each with the actions that make a standing robot write this memory.
 const PREPARED_MEMORIES: [(&str, &[Action]); 5] = [
     ("a blank memory", &[]),
     (
@@ -76,7 +76,7 @@ const PREPARED_MEMORIES: [(&str, &[Action]); 5] = [
 /// The description of power-on with a boot loader, which hides the cause of each reset.
 const BOOT_LOADER_CONDITIONS: &str = "a boot loader and a blank memory";
 
-/// The description of power-on with a robot that the guard holds although no line has arrived.
+/// The description of power-on with the [`straying_robot`], which the guard holds before any line arrives.
 const STRAYING_CONDITIONS: &str = "saved settings and a `stand` that leaves the safe poses";
 
 /// Sequences of actions between power-on and the start of the search.
@@ -107,13 +107,13 @@ fn build_short_travel_memory(robot: &Robot) -> Eeprom {
     adjustment.travel_max = Sweep(robot.needed_travel(Servo::ALL[2]).max.0 / 2);
     settings.set_adjustment(Servo::ALL[2], adjustment);
     let mut memory = Eeprom::blank();
-    let mut writing = COPY_ADDRESSES[0].start_write();
-    while writing.advance(settings.bytes(), &mut memory) == Progress::InProgress {}
+    let mut write = COPY_ADDRESSES[0].start_write();
+    while write.advance(settings.bytes(), &mut memory) == Progress::InProgress {}
     Eeprom::with_bytes(*memory.bytes())
 }
 
-/// Returns all initial states of a robot: each EEPROM with each activity. Also includes each activity of the
-/// [`straying_robot`]. Leaves out a combination that violates a rule.
+/// Returns all initial states of a robot: each memory with each activity. Also includes the [`straying_robot`]
+/// with each activity. Leaves out a combination that violates a rule.
 pub fn prepare_all(robot: Robot<'static>) -> Vec<InitialState> {
     let mut memories: Vec<(&'static str, Eeprom)> = PREPARED_MEMORIES
         .iter()

@@ -22,9 +22,6 @@ use crate::world::{Verdict, World};
 /// Number of states that a thread takes from the queue at a time.
 const STATES_PER_CHUNK: usize = 256;
 
-/// The fingerprints of known states.
-type Fingerprints = HashSet<u64>;
-
 /// The results of a search.
 #[derive(Debug, Default)]
 pub struct SearchResult {
@@ -51,7 +48,8 @@ struct Step {
 /// The parts of a search that all threads share.
 struct Search {
     actions: Vec<Action>,
-    known_states: Vec<Mutex<Fingerprints>>,
+    /// The fingerprints of known states, in sets by their upper bits, so that threads seldom wait for one another.
+    known_states: Vec<Mutex<HashSet<u64>>>,
     /// The number of known states.
     state_count: AtomicUsize,
     max_states: usize,

@@ -23,7 +23,7 @@ use crate::small_robot::{BUTTON_PIN, NOSE_PIN};
 /// The verdict of the rules.
 pub type Verdict = Result<(), Violation>;
 
-fn report_violation(rule: Rule, observation: impl Into<String>) -> Verdict {
+fn violation(rule: Rule, observation: impl Into<String>) -> Verdict {
     Err(Violation::new(rule, observation))
 }
 
@@ -49,8 +49,8 @@ pub struct World {
     is_supply_weak: bool,
     /// True if main was late for the last frame.
     was_main_late: bool,
-    /// The last line that was sent; `None` once its answer has been checked.
-    unanswered_line: Option<&'static str>,
+    /// The last line that was sent, until its answer has been checked, which may be before it is printed; then `None`.
+    unchecked_line: Option<&'static str>,
     /// The baud rate at which lines are sent.
     sender_rate: BaudRate,
     /// The number of answers that have been checked, but not printed yet.
@@ -63,12 +63,12 @@ impl World {
         memory.write_delay = 4;
         memory.is_timed = true;
         let mut world = Self {
-            running_robot: RunningRobot::with_memory(robot, memory, Restart::default()),
+            running_robot: RunningRobot::with_memory(robot, memory, Restart::NONE),
             observer: Observer::new(checks::observer_limits(&robot)),
             now: 0,
             is_supply_weak: false,
             was_main_late: false,
-            unanswered_line: None,
+            unchecked_line: None,
             sender_rate: BaudRate::Fastest,
             checked_answer_count: 0,
         };
@@ -77,7 +77,7 @@ impl World {
         world
     }
 
-    /// Returns the state's fingerprint, which is the same for equal states.
+    /// Returns the state's fingerprint. The search treats states with the same fingerprint as one.
     pub fn fingerprint(&self) -> u64 {
         let board = &self.running_robot.board;
         let mut fingerprint = Fingerprint(coarse_fingerprint(&self.running_robot.main));
@@ -129,7 +129,7 @@ impl World {
             Action::Line(_) | Action::GarbledLine => {
                 board.unread_count() == 0
                     && !board.transmitter.is_held
-                    && !self.running_robot.is_stopped_by_watchdog()
+                    && !self.running_robot.board.are_pulses_ended()
             }
             Action::MainStep => {
                 self.running_robot.has_output()
@@ -155,7 +155,7 @@ impl World {
     /// # Errors
     /// Returns the first violation that the action causes.
     pub fn apply(&mut self, action: Action) -> Verdict {
-        let was_rest_pose_saved = self.observer.must_rest() && self.is_rest_pose_saved();
+        let must_keep_rest_pose = self.observer.must_rest() && self.is_rest_pose_saved();
         match action {
             Action::Line(_) | Action::GarbledLine
                 if self.sender_rate != self.running_robot.board.rate =>
@@ -199,8 +199,8 @@ impl World {
             Action::HeldOutput(is_held) => self.running_robot.board.transmitter.is_held = is_held,
         }
         let is_resting = self.running_robot.motion().is_resting();
-        if was_rest_pose_saved && is_resting && !self.is_rest_pose_saved() {
-            return report_violation(Rule::RestPoseKept, action.to_string());
+        if must_keep_rest_pose && is_resting && !self.is_rest_pose_saved() {
+            return violation(Rule::RestPoseKept, action.to_string());
         }
         self.check_writes()?;
         self.observer.drop_pending_promises();
@@ -220,10 +220,10 @@ impl World {
         self.record_restart(cause);
     }
 
-    /// Records a restart of the program, which loses the remaining output.
+    /// Records that the program has restarted. The output that was not yet printed is lost.
     fn record_restart(&mut self, cause: Cause) {
         self.running_robot.board.transmitter.text.clear();
-        self.unanswered_line = None;
+        self.unchecked_line = None;
         self.checked_answer_count = 0;
         self.observe(Event::ProgramStart(cause));
     }
@@ -232,25 +232,26 @@ impl World {
     /// the fault.
     fn run_frames(&mut self, count: u8) -> Verdict {
         let start = self.now;
-        let stop_before = (self.fault_code(), self.observer.stop_time());
-        let mut edges = Vec::new();
+        let (code_before, stop_time_before) = (self.fault_code(), self.observer.stop_time());
+        let mut led_changes = Vec::new();
         for _ in 0..count {
             let was_lit = self.running_robot.board.is_lit();
             self.run_frame()?;
             let is_lit = self.running_robot.board.is_lit();
             if is_lit != was_lit {
-                edges.push((self.now, is_lit));
+                led_changes.push((self.now, is_lit));
             }
         }
         if count < 100 || self.running_robot.board.transmitter.is_held {
             return Ok(());
         }
         if self.observer.has_unanswered_lines() {
-            return report_violation(Rule::AnswersAgain, "no answer within 100 frames");
+            return violation(Rule::AnswersAgain, "no answer within 100 frames");
         }
-        let is_stop_unchanged = (self.fault_code(), self.observer.stop_time()) == stop_before;
+        let is_stop_unchanged =
+            self.fault_code() == code_before && self.observer.stop_time() == stop_time_before;
         if is_stop_unchanged && self.observer.time_since_start() > self.now - start {
-            led::check_pattern(&edges, start + 3 * FRAME, self.now, stop_before.0)
+            led::check_pattern(&led_changes, start + 3 * FRAME, self.now, code_before)
                 .map_err(|message| Violation::new(Rule::LedShowsFault, message))?;
         }
         Ok(())
@@ -263,12 +264,12 @@ impl World {
     }
 
     fn run_frame(&mut self) -> Verdict {
-        if self.running_robot.is_stopped_by_watchdog() {
+        if self.running_robot.board.are_pulses_ended() {
             // Main no longer runs; the watchdog resets the processor soon.
             return self.stall_main(20);
         }
-        // The guard may hold the robot since an earlier frame, which is already reported.
-        let was_held = self.running_robot.motion().hazard().is_some();
+        // If the guard has held the robot since an earlier frame, this has been reported already.
+        let had_hazard = self.running_robot.motion().hazard().is_some();
         let frame_start = self.now;
         let was_resting = self.running_robot.motion().is_resting();
         self.running_robot.run_frame();
@@ -278,14 +279,14 @@ impl World {
             self.observe_held_boot_lines();
         }
         self.check_pulses(true)?;
-        if !was_held && self.running_robot.motion().hazard().is_some() {
+        if !had_hazard && self.running_robot.motion().hazard().is_some() {
             self.observe(Event::Fault);
         }
         // Main composes its lines at the start of the frame.
         self.observe_output(frame_start + MS)?;
         self.check_writes()?;
         let is_output_read = !self.running_robot.board.transmitter.is_held
-            && !self.running_robot.is_stopped_by_watchdog();
+            && !self.running_robot.board.are_pulses_ended();
         if is_output_read && !self.was_main_late {
             self.observer.check_stop_is_reported();
         }
@@ -298,7 +299,8 @@ impl World {
         self.observer.take_verdict()
     }
 
-    /// Stalls main. Then main runs to the end of the frame, unless the watchdog has reset the processor.
+    /// Stalls main for `ms`. If the stall ends within a frame, main runs in the rest of this frame. A reset by the
+    /// watchdog ends the stall.
     fn stall_main(&mut self, ms: u16) -> Verdict {
         self.observe(Event::MainStalled(self.now + Time::from(ms) * MS));
         for _ in 0..ms / 20 {
@@ -318,6 +320,7 @@ impl World {
             }
             self.check_pulses(false)?;
         }
+        // Main may have composed its lines during the last frame.
         self.observe_output(self.now - FRAME)
     }
 
@@ -330,14 +333,14 @@ impl World {
         was_reset
     }
 
-    /// Checks the bytes that were written to the EEPROM.
+    /// Checks that no byte was written to the EEPROM before the supply was measured.
     fn check_writes(&mut self) -> Verdict {
         let log = &mut self.running_robot.board.memory.log;
         if !log.is_empty() {
             log.clear();
             if !self.running_robot.board.adc.is_complete() {
                 let observation = "a byte is written before the supply is measured";
-                return report_violation(Rule::SafeWrites, observation);
+                return violation(Rule::SafeWrites, observation);
             }
             self.observe(Event::ByteWritten);
         }

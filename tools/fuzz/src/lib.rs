@@ -36,9 +36,9 @@ pub fn robot() -> &'static Robot {
 ///
 /// # Panics
 /// If the robot violates a rule.
-pub fn check_console(data: &[u8]) {
+pub fn check_console(bytes: &[u8]) {
     let mut board = ObservedBoard::power_on(robot(), Eeprom::blank());
-    for chunk in data.chunks(8) {
+    for chunk in bytes.chunks(8) {
         for byte in chunk {
             board.send_byte(*byte);
         }
@@ -48,15 +48,15 @@ pub fn check_console(data: &[u8]) {
     board.assert_memory_is_valid();
 }
 
-/// Starts a robot with an EEPROM that `data` defines. The first bytes change the contents of the three records, which
+/// Starts a robot with an EEPROM that `input` defines. The first bytes change the contents of the three records, which
 /// stay valid. Each further group of three bytes sets a byte at one address, which may damage a record.
 ///
 /// # Panics
 /// If the robot violates a rule.
-pub fn check_memory(data: &[u8]) {
+pub fn check_memory(input: &[u8]) {
     let robot = robot();
     let mut memory = Eeprom::blank();
-    let (records, patches) = data.split_at(data.len().min(3 * CONTENT_BYTES));
+    let (records, patches) = input.split_at(input.len().min(3 * CONTENT_BYTES));
     let addresses = [COPY_ADDRESSES[0], COPY_ADDRESSES[1], REST_POSE_ADDRESS];
     for (address, changes) in addresses.into_iter().zip(records.chunks(CONTENT_BYTES)) {
         let mut content = *Settings::for_robot(robot.firmware()).bytes();

@@ -7,8 +7,8 @@ const LINE = /^analogue (?<pin>1[4-9]) (?<mv>\d+)$|^(?<cycle>\d+) (?<byte>[0-9a-
  * a byte whose reception ends at that cycle; bytes are in chronological order. The last line is `end <cycle>`. Throws
  * an error that names the faulty line.
  */
-export function readScript(text) {
-  const analogue = [];
+export function parseScript(text) {
+  const voltages = [];
   const bytes = [];
   let endCycle;
   text.split('\n').forEach((line, index) => {
@@ -17,7 +17,7 @@ export function readScript(text) {
     if (endCycle !== undefined) throw makeError('follows `end`');
     const { pin, mv, cycle, byte, end } = LINE.exec(line)?.groups ?? {};
     if (pin) {
-      analogue.push({ channel: pin - 14, volts: mv / 1000 });
+      voltages.push({ channel: pin - 14, volts: mv / 1000 });
     } else if (cycle) {
       if (Number(cycle) < (bytes.at(-1)?.cycle ?? 0)) throw makeError('is earlier than the previous byte');
       bytes.push({ cycle: Number(cycle), byte: parseInt(byte, 16) });
@@ -28,5 +28,5 @@ export function readScript(text) {
     }
   });
   if (endCycle === undefined) throw new Error('the script has no `end <cycle>`');
-  return { analogue, bytes, endCycle };
+  return { voltages, bytes, endCycle };
 }

@@ -4,8 +4,8 @@ import test from 'node:test';
 import { delayInterruptAfterEnable } from '../src/corrections/interrupt-after-enable.js';
 import { formatFaultFixed, runProgram } from './program.js';
 
-// Both compare interrupts of timer 0 are pending when the program enables interrupts. Then main counts in r16, and the
-// handlers copy that count to r20 and r21.
+// Both compare interrupts of timer 0 are pending when the program enables interrupts. After that, main counts its
+// instructions in r16, and the handlers copy that count to r20 and r21.
 const program = (enableInstruction) => `
     jmp main
     _LOC 0x38         ; TIMER0_COMPA
@@ -22,7 +22,7 @@ const program = (enableInstruction) => `
     ldi r17, 6
     sts 0x6e, r17     ; TIMSK0: both interrupts
     ldi r17, 1
-    out 0x25, r17     ; TCCR0B: clock
+    out 0x25, r17     ; TCCR0B: start, no prescaler
     ldi r18, 0x80
     nop
     nop
@@ -35,7 +35,7 @@ const program = (enableInstruction) => `
   stop:
     rjmp stop`;
 
-const runForHandlerCounts = (corrections, enableInstruction) =>
+const runAndReadHandlerCounts = (corrections, enableInstruction) =>
   runProgram(corrections, program(enableInstruction), 100).cpu.data.slice(20, 22);
 
 // The data address of SREG is 0x5f.
@@ -43,7 +43,7 @@ const pointZBelowSreg = 'ldi r30, 0x5e\n ldi r31, 0\n';
 const [std, st] = [`${pointZBelowSreg} std Z+1, r18`, `${pointZBelowSreg} inc r30\n st Z, r18`];
 for (const enableInstruction of ['sei', 'out 0x3f, r18', 'sts 0x5f, r18', std, st]) {
   test(`one instruction runs between \`${enableInstruction}\` and an interrupt, and between two interrupts`, () => {
-    assert.deepEqual([...runForHandlerCounts([], enableInstruction)], [0, 0], formatFaultFixed('interrupt-after-enable.js'));
-    assert.deepEqual([...runForHandlerCounts([delayInterruptAfterEnable], enableInstruction)], [1, 2]);
+    assert.deepEqual([...runAndReadHandlerCounts([], enableInstruction)], [0, 0], formatFaultFixed('interrupt-after-enable.js'));
+    assert.deepEqual([...runAndReadHandlerCounts([delayInterruptAfterEnable], enableInstruction)], [1, 2]);
   });
 }

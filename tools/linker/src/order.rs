@@ -50,7 +50,7 @@ impl Pieces {
     pub fn find_order(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.sizes.len()).collect();
         let movable_count = self.sizes.len().saturating_sub(1);
-        let mut random = fastrand::Rng::with_seed(SEED);
+        let mut rng = fastrand::Rng::with_seed(SEED);
         let mut current_cost = self.compute_cost(&order);
         let (mut best_order, mut best_cost) = (order.clone(), current_cost);
         for attempts_left in (0..ATTEMPT_COUNT).rev() {
@@ -59,7 +59,7 @@ impl Pieces {
             }
             let accepted_rise =
                 u64::from(INITIAL_RISE) * u64::from(attempts_left) / u64::from(ATTEMPT_COUNT);
-            let [from, to] = [0; 2].map(|_| random.usize(..movable_count));
+            let [from, to] = [0; 2].map(|_| rng.usize(..movable_count));
             move_piece(&mut order, from, to);
             let cost = self.compute_cost(&order);
             if cost > current_cost + accepted_rise {

@@ -79,7 +79,7 @@ impl Case {
             drive: match self.legs {
                 LegDrive::Rigid => Drive::RIGID,
                 LegDrive::Strut => Drive {
-                    kind: DriveKind::Strut(robot.strut_with_coil(&robot.parts().spring)),
+                    kind: DriveKind::Strut(robot.own_strut()),
                     ..Drive::RIGID
                 },
             },

@@ -9,7 +9,7 @@ pub fn format_expected_results_table(robot: &Robot) -> String {
     let grams = |newton: f64| 1000.0 * newton / GRAVITY;
     let [min_stiffness_g, max_stiffness_g] = [0.8, 1.2].map(|factor| grams(factor * stiffness));
     let (stiffness_g, load_g) = (grams(stiffness), grams(ground.body.mean_load()));
-    let preload_g = grams(robot.strut_with_coil(&robot.parts().spring).preload);
+    let preload_g = grams(robot.own_strut().preload);
     let drag_g = grams(20.0 / ground.feet.reach);
     let friction_g = 100.0 * ground.friction_coefficient;
     let friction_ratio = ground.friction_ratio;

@@ -13,7 +13,7 @@ use crate::results::{Displacement, DisplacementPair};
 /// The name of the robot's file, without its extension.
 pub const ROBOT: &str = "grain";
 /// The compared ratios of backward to forward friction.
-pub const RATIOS: [f64; 5] = [1.0, 1.1, 1.2, 1.5, 2.0];
+pub const FRICTION_RATIOS: [f64; 5] = [1.0, 1.1, 1.2, 1.5, 2.0];
 /// The compared gaits, without mirror images. The flag is true if the gait pushes some pads against the grain.
 pub const GAITS: [(&str, bool); 5] = [
     ("run", false),
@@ -32,7 +32,7 @@ const TOLERANCE: (f64, f64, f64) = (3.0, 0.2, 2.0);
 /// The time that a gait needs to accelerate the body from rest, s. Afterwards, the motion repeats from cycle to cycle.
 const SETTLING_S: f64 = 1.5;
 
-/// The results by gait, in the order of [`RATIOS`].
+/// The results by gait, in the order of [`FRICTION_RATIOS`].
 pub type GrainResults = BTreeMap<String, Vec<DisplacementPair>>;
 
 /// Simulates a cycle in the model with level feet. Returns `None` if two feet pull against the other two: the model
@@ -69,7 +69,7 @@ pub fn simulate_all(robot: &Robot) -> Result<GrainResults, MujocoError> {
             has_shapes: false,
             ..Scene::for_assembly(&assembly)
         };
-        let ratios = RATIOS.into_iter().enumerate();
+        let ratios = FRICTION_RATIOS.into_iter().enumerate();
         ratios.map(move |(index, ratio)| Scene {
             name: make_name(gait.name(), index),
             friction_ratio: ratio,
@@ -79,7 +79,7 @@ pub fn simulate_all(robot: &Robot) -> Result<GrainResults, MujocoError> {
     batch.add(&assembly, scenes)?;
     let mujoco_displacements = batch.simulate()?;
     let grains = gaits.iter().map(|gait| {
-        let ratios = RATIOS.into_iter().enumerate();
+        let ratios = FRICTION_RATIOS.into_iter().enumerate();
         let results = ratios.map(|(index, ratio)| DisplacementPair {
             model: simulate_model(robot, gait, ratio),
             mujoco: mujoco_displacements[&make_name(gait.name(), index)],
@@ -97,7 +97,7 @@ pub(crate) fn count_settling_cycles(gait: &CheckedGait) -> u32 {
 /// Returns the results of a gait at the ratio in the robot's file.
 pub(crate) fn find_results_at_own_ratio(results: &[DisplacementPair]) -> DisplacementPair {
     let own_ratio = crate::load_robot(ROBOT).ground().friction_ratio;
-    let index = RATIOS.iter().position(|ratio| *ratio == own_ratio);
+    let index = FRICTION_RATIOS.iter().position(|ratio| *ratio == own_ratio);
     results[index.expect("the table has the file's ratio")]
 }
 
@@ -105,7 +105,7 @@ pub(crate) fn find_results_at_own_ratio(results: &[DisplacementPair]) -> Displac
 pub fn describe_disagreements(grains: &GrainResults) -> Vec<String> {
     let mut messages = Vec::new();
     for (gait, is_against_grain) in GAITS {
-        for (ratio, results) in RATIOS.into_iter().zip(&grains[gait]) {
+        for (ratio, results) in FRICTION_RATIOS.into_iter().zip(&grains[gait]) {
             let Some(model) = results.model else {
                 continue;
             };
@@ -130,7 +130,7 @@ pub fn describe_disagreements(grains: &GrainResults) -> Vec<String> {
 /// If a gait is missing.
 pub fn format_table(robot: &Robot, grains: &GrainResults) -> String {
     let mut text = format!("{:16}", "model, MuJoCo");
-    for ratio in RATIOS {
+    for ratio in FRICTION_RATIOS {
         let heading = format!("r = {ratio:.1}");
         _ = write!(text, "  {heading:>13}");
     }

@@ -292,7 +292,7 @@ impl SurfaceWalk {
 fn describe_grain_changes(stored: &GrainResults, current: &GrainResults) -> Vec<String> {
     let messages = current.iter().flat_map(|(gait, results)| {
         let stored = stored.get(gait).map_or(&[][..], Vec::as_slice);
-        let pairs = results.iter().zip(grains::RATIOS).enumerate();
+        let pairs = results.iter().zip(grains::FRICTION_RATIOS).enumerate();
         pairs.flat_map(move |(index, (results, ratio))| {
             let changes = describe_changes(stored.get(index), results);
             let describe = move |change| format!("grain: {gait} (r {ratio}): {change}");

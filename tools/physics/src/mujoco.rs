@@ -140,7 +140,7 @@ pub(crate) fn make_two_cycle_scene(
 ) -> Scene {
     let robot = assembly.robot();
     let gait = robot.gait(gait).expect("the robot has this gait");
-    let strut = robot.strut_with_coil(&robot.parts().spring);
+    let strut = robot.own_strut();
     Scene {
         name: name.to_owned(),
         excess_lengths: [case.feet.excess_length_mm(), 0.0, 0.0, 0.0],

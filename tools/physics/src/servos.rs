@@ -13,7 +13,7 @@ use crate::results::{Displacement, DisplacementPair};
 
 /// The gaits, each with the index of the compared displacement component: 0 for the distance forward, 2 for the turn.
 pub const GAITS: [(&str, usize); 4] = [("walk", 0), ("trot", 0), ("crawl", 0), ("left", 2)];
-/// The allowed difference between the model and MuJoCo, as a fraction of MuJoCo's displacement.
+/// The allowed deviation of the contact model from MuJoCo, as a fraction of MuJoCo's displacement.
 const MAX_DEVIATION: f64 = 0.10;
 
 /// The paper's robot with other servos, joints, mass and pads.
@@ -25,13 +25,13 @@ pub struct Variant {
     servo_lines: &'static str,
     /// Lines of the table `[joints]` in robot.toml.
     joint_lines: &'static str,
-    /// Friction of each pin in MuJoCo's robot, which replaces `drag`, N mm; `None` keeps `drag`.
-    pin_friction: Option<f64>,
+    /// Friction torque of each pin in MuJoCo, N mm, instead of `drag`, the total of a leg's pins; `None` for `drag`.
+    pin_torque: Option<f64>,
     /// Additional mass, g.
     extra_mass_g: f64,
     /// Friction coefficient of the pads.
-    friction: f64,
-    /// Gaits that may differ by more than [`MAX_DEVIATION`], each with the fraction that is allowed instead.
+    pad_friction: f64,
+    /// Gaits whose deviation may exceed [`MAX_DEVIATION`], each with its own allowed deviation.
     exceptions: &'static [(&'static str, f64)],
 }
 
@@ -39,34 +39,35 @@ const SG90: Variant = Variant {
     name: "SG-90",
     servo_lines: "",
     joint_lines: "",
-    pin_friction: None,
+    pin_torque: None,
     extra_mass_g: 0.0,
-    friction: 0.7,
+    pad_friction: 0.7,
     exceptions: &[],
 };
-const COPY: Variant = Variant {
+/// Copies of the SG-90 in a heavier robot, on pads with more friction.
+const SG90_COPY: Variant = Variant {
     name: "copy, 50 g more, friction 1, joints that run easily",
     servo_lines: "model = \"copy\"",
     extra_mass_g: 50.0,
-    friction: 1.0,
+    pad_friction: 1.0,
     ..SG90
 };
 const STIFF_JOINTS: Variant = Variant {
     name: "copy, 50 g more, friction 1, stiff joints",
     joint_lines: "drag = 17.0\nslider = 0.5",
-    ..COPY
+    ..SG90_COPY
 };
 
 impl Variant {
     /// All variants, in the order of the table.
     pub const ALL: [Self; 7] = [
         SG90,
-        COPY,
+        SG90_COPY,
         STIFF_JOINTS,
         Self {
             name: "the same, but 3 N mm in each pin of MuJoCo's robot",
-            pin_friction: Some(3.0),
-            // The head's and tail's pins turn when a single leg swings; without their friction, the error is 6 %.
+            pin_torque: Some(3.0),
+            // The head's and tail's pins turn when a single leg swings; without their friction, the deviation is 6 %.
             exceptions: &[("crawl", 0.17)],
             ..STIFF_JOINTS
         },
@@ -92,32 +93,32 @@ impl Variant {
     /// Loads the robot of this variant.
     ///
     /// # Panics
-    /// If robots/paper.toml does not have the replaced lines.
+    /// If a line to replace is not in robots/paper.toml.
     pub fn load_robot(&self) -> Robot {
         let own_mass = crate::load_robot("paper").ground().body.mass;
-        let servo_tables = format!(
+        let joint_and_servo_tables = format!(
             "[joints]\n{}\n[servo]\n{}\ndead_band_us = 0.0\n[servo.A1]",
             self.joint_lines, self.servo_lines
         );
-        let ground_table = format!("[ground]\nfriction = {}", self.friction);
+        let ground_table = format!("[ground]\nfriction = {}", self.pad_friction);
         let [old_mass, new_mass] =
             [own_mass, own_mass + self.extra_mass_g].map(|mass| format!("mass = {mass:.1}"));
         let replacements: [(&str, &str); 3] = [
-            ("[servo.A1]", &servo_tables),
+            ("[servo.A1]", &joint_and_servo_tables),
             ("[ground]", &ground_table),
             (&old_mass, &new_mass),
         ];
         crate::load_changed_paper(self.name, &replacements)
     }
 
-    /// Returns MuJoCo's scene of a gait's walk over two cycles, of which the second is measured.
+    /// Returns the MuJoCo scene in which the robot walks two cycles of a gait; the second is measured.
     ///
     /// # Panics
     /// If the robot has no such gait.
     pub fn make_scene(&self, name: &str, assembly: &Assembly, gait: &str) -> Scene {
         let mut scene = make_two_cycle_scene(name, assembly, gait, Case::ALL[0]);
-        if let Some(pin_friction) = self.pin_friction {
-            (scene.pin_friction, scene.motors.joint_friction.pin_torque) = (pin_friction, 0.0);
+        if let Some(pin_torque) = self.pin_torque {
+            (scene.pin_friction, scene.motors.joint_friction.pin_torque) = (pin_torque, 0.0);
         }
         scene
     }
@@ -133,7 +134,7 @@ impl Variant {
         travel.into()
     }
 
-    /// Returns a message if the model differs too much from MuJoCo in a gait.
+    /// Returns a message if the contact model deviates too much from MuJoCo in a gait.
     pub fn describe_disagreement(&self, gait: &str, results: &DisplacementPair) -> Option<String> {
         let (_, component) = GAITS.into_iter().find(|(name, _)| *name == gait)?;
         let [model, mujoco] =
@@ -152,19 +153,20 @@ impl Variant {
 pub type ServoResults = BTreeMap<String, BTreeMap<String, DisplacementPair>>;
 
 /// Returns the table of all variants in Markdown, with a dash for a missing result.
-pub fn format_servos_table(servos: &ServoResults) -> String {
+pub fn format_servos_table(results: &ServoResults) -> String {
     let headings = GAITS.map(|(gait, component)| {
         let unit = if component == 2 { "deg" } else { "mm" };
         format!(" {gait}, {unit} |")
     });
-    let lines = "---|".repeat(GAITS.len());
-    let mut table = format!("| model, MuJoCo |{}\n|---|{lines}\n", headings.concat());
+    let separators = "---|".repeat(GAITS.len());
+    let headings = headings.concat();
+    let mut table = format!("| model, MuJoCo |{headings}\n|---|{separators}\n");
     for variant in Variant::ALL {
         _ = write!(table, "| {} |", variant.name);
         for (gait, component) in GAITS {
             let find_pair = || {
-                let results = servos.get(variant.name)?.get(gait)?;
-                Some((results.model?.0[component], results.mujoco.0[component]))
+                let pair = results.get(variant.name)?.get(gait)?;
+                Some((pair.model?.0[component], pair.mujoco.0[component]))
             };
             _ = match find_pair() {
                 Some((model, mujoco)) => write!(table, " {model:.1}, {mujoco:.1} |"),

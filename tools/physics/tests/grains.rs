@@ -1,8 +1,8 @@
-//! Tests of the stored speeds on pads with a grain, which the contact model and MuJoCo computed.
+//! Tests of the speeds that the contact model and MuJoCo computed for pads with a grain, as stored in grains.json.
 //!
 //! With `BLESS_PHYSICS=1`, as in `make docs`, the tests write the speeds into docs/gaits.md and robots/grain.toml.
 
-use lizard_physics::grains::{self, GAITS, GrainResults, RATIOS};
+use lizard_physics::grains::{self, FRICTION_RATIOS, GAITS, GrainResults};
 use lizard_physics::text::{check_or_update_block, format_stored, load_stored};
 use lizard_physics::{crate_dir, load_robot};
 
@@ -11,7 +11,7 @@ use lizard_physics::{crate_dir, load_robot};
 fn compute_speeds(stored: &GrainResults, gait: &str, ratio: f64, component: usize) -> Vec<f64> {
     let robot = load_robot(grains::ROBOT);
     let period = robot.gait(gait).expect("the robot has this gait").period();
-    let index = RATIOS.iter().position(|known_ratio| *known_ratio == ratio);
+    let index = FRICTION_RATIOS.iter().position(|known| *known == ratio);
     let results = stored[gait][index.expect("the table has the ratio")];
     let displacements = results.model.into_iter().chain([results.mujoco]);
     let speeds = displacements.map(|displacement| displacement.0[component] / period);
@@ -34,16 +34,20 @@ fn the_documentation_and_the_robot_file_have_the_stored_speeds() {
 }
 
 #[test]
-fn every_result_is_stored_in_the_format_of_format_stored_and_agrees_with_the_model() {
+fn the_file_has_every_result_in_the_format_of_format_stored() {
     let stored: GrainResults = load_stored("grains.json");
     let text = std::fs::read_to_string(crate_dir().join("grains.json"));
     let text = text.expect("grains.json is readable");
     assert_eq!(text, format_stored(&stored, 2));
-    let disagreements = grains::describe_disagreements(&stored);
-    assert_eq!(disagreements, Vec::<String>::new());
     for (gait, _) in GAITS {
-        assert_eq!(stored[gait].len(), RATIOS.len(), "{gait}");
+        assert_eq!(stored[gait].len(), FRICTION_RATIOS.len(), "{gait}");
     }
+}
+
+#[test]
+fn mujocos_results_agree_with_the_models() {
+    let disagreements = grains::describe_disagreements(&load_stored("grains.json"));
+    assert_eq!(disagreements, Vec::<String>::new());
 }
 
 #[test]
@@ -52,7 +56,7 @@ fn the_stored_results_of_the_model_are_up_to_date() {
     let robot = load_robot(grains::ROBOT);
     for (name, _) in GAITS {
         let gait = robot.gait(name).expect("the robot has this gait");
-        for (ratio, results) in RATIOS.into_iter().zip(&stored[name]) {
+        for (ratio, results) in FRICTION_RATIOS.into_iter().zip(&stored[name]) {
             let current = grains::simulate_model(&robot, gait, ratio);
             assert_eq!(current.is_some(), results.model.is_some(), "{name} {ratio}");
             let Some((stored_model, current_model)) = results.model.zip(current) else {
@@ -66,19 +70,19 @@ fn the_stored_results_of_the_model_are_up_to_date() {
 }
 
 #[test]
-fn the_robot_runs_at_90_mm_per_second_and_turns_on_pads_with_a_grain() {
+fn on_pads_with_a_grain_the_robot_runs_faster_than_90_mm_per_second_and_turns() {
     let stored = load_stored("grains.json");
     let ratio = load_robot(grains::ROBOT).ground().friction_ratio;
     assert_eq!(ratio, 1.5, "the friction ratio in robots/grain.toml");
     let speeds = compute_speeds(&stored, "run", 1.5, 0);
     assert!(are_both_above(&speeds, 90.0), "run: {speeds:?} mm/s");
-    for ratio in RATIOS {
+    for ratio in FRICTION_RATIOS {
         let speeds = compute_speeds(&stored, "arc-left", ratio, 2);
         assert!(are_both_above(&speeds, 14.0), "arc-left: {speeds:?} deg/s");
     }
     for (gait, component, min_speed) in [("left", 2, 14.0), ("back", 0, 30.0)] {
         let speeds = compute_speeds(&stored, gait, 1.5, component);
-        let sizes: Vec<f64> = speeds.iter().map(|speed| speed.abs()).collect();
-        assert!(are_both_above(&sizes, min_speed), "{gait}: {speeds:?}");
+        let magnitudes: Vec<f64> = speeds.iter().map(|speed| speed.abs()).collect();
+        assert!(are_both_above(&magnitudes, min_speed), "{gait}: {speeds:?}");
     }
 }

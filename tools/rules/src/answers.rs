@@ -9,11 +9,20 @@ use crate::rule::Rule;
 /// Longest time from the answer to a motion command until all four servos have pulses.
 const MAX_WAKE_TIME: Time = 600 * MS;
 
-/// Time during which no pulse may begin after an answer that promises no pulses.
+/// Time after an answer that promises no pulses, during which no pulse may begin.
 const NO_PULSES_TIME: Time = 140 * MS;
+
+/// Time after a repeated `rest` during which no byte of the EEPROM may be written.
+const NO_WRITES_TIME: Time = 500 * MS;
 
 /// Longest time from `rest` until the complete record of the rest pose is in the EEPROM.
 const MAX_SAVE_TIME: Time = 400 * MS;
+
+/// Time before or after an answer to `status` without a fault in which a servo must get a pulse.
+pub(crate) const MAX_TIME_TO_PULSE: Time = 200 * MS;
+
+/// Time before such an answer for which the robot must have been undisturbed, otherwise the answer promises nothing.
+pub(crate) const CALM_TIME: Time = 400 * MS;
 
 /// Lines that every robot must refuse.
 const INVALID_LINES: [&str; 7] = [
@@ -48,12 +57,13 @@ impl Observer {
                 if self.disturbed_until <= sent_at {
                     self.forbid_pulses(Rule::RestEndsPulses);
                 }
-                let is_good = self.has_supply_been_good_since(self.first_rest_at);
-                let is_repeated = self.first_rest_at > self.started_at
-                    && sent_at > self.first_rest_at + MAX_SAVE_TIME;
-                if is_repeated && is_good && self.limits.is_memory_reliable {
-                    self.pending_promises.no_writes_until = Some(sent_at + 500 * MS);
+                let is_supply_good = self.has_supply_been_good_since(self.first_rest_at);
+                let has_rested = self.first_rest_at > self.started_at;
+                let is_pose_saved = has_rested && sent_at > self.first_rest_at + MAX_SAVE_TIME;
+                if is_pose_saved && is_supply_good && self.limits.is_memory_reliable {
+                    self.pending_promises.no_writes_until = Some(sent_at + NO_WRITES_TIME);
                 } else if self.first_rest_at < self.started_at {
+                    // This is the first `rest` since the start or since another command.
                     self.first_rest_at = sent_at;
                 }
             }
@@ -61,7 +71,7 @@ impl Observer {
         }
     }
 
-    /// Forbids pulses from the end of the frame on.
+    /// Forbids pulses from the end of the frame until [`NO_PULSES_TIME`] from now.
     pub(crate) fn forbid_pulses(&mut self, rule: Rule) {
         let from = self.now + self.limits.max_frame_remainder;
         self.pending_promises.no_pulses = Some((from, self.now + NO_PULSES_TIME, rule));
@@ -72,13 +82,13 @@ impl Observer {
         self.supply.has_been_good_since(time, min_good_mv)
     }
 
-    /// Checks the promises whose time has ended.
-    pub(crate) fn check_expired_promises(&mut self) {
-        if let Some((from, until, has_pulses)) = self.pending_promises.motion
+    /// Checks the promises that are due.
+    pub(crate) fn check_due_promises(&mut self) {
+        if let Some((from, until, pulsed_servos)) = self.pending_promises.motion
             && self.now > until
         {
             self.pending_promises.motion = None;
-            if let Some(servo) = has_pulses.iter().position(|has_pulse| !has_pulse)
+            if let Some(servo) = pulsed_servos.iter().position(|has_pulse| !has_pulse)
                 && !self.was_disturbed_since(from)
             {
                 let observation = format!("A{} has no pulses", servo + 1);
@@ -89,7 +99,7 @@ impl Observer {
         promises.no_writes_until.take_if(|until| self.now > *until);
         let is_due = |(until, _): &mut (Time, String)| self.now > *until;
         if let Some((until, answer)) = promises.pulses_after_status.take_if(is_due)
-            && !self.was_disturbed_since(until - 600 * MS)
+            && !self.was_disturbed_since(until - MAX_TIME_TO_PULSE - CALM_TIME)
         {
             self.record_violation(Rule::StatusNamesCause, answer);
         }
@@ -98,8 +108,8 @@ impl Observer {
     /// Checks the promises about pulses at the start of a pulse.
     pub(crate) fn check_pulse_promises(&mut self, servo: usize) {
         let now = self.now;
-        if let Some((_, _, has_pulses)) = &mut self.pending_promises.motion {
-            has_pulses[servo] = true;
+        if let Some((_, _, pulsed_servos)) = &mut self.pending_promises.motion {
+            pulsed_servos[servo] = true;
         }
         self.pending_promises.pulses_after_status = None;
         if let Some((from, until, rule)) = self.pending_promises.no_pulses
@@ -108,14 +118,16 @@ impl Observer {
                 || !self.was_disturbed_since(from - self.limits.max_frame_remainder))
         {
             let ms = (now - from + self.limits.max_frame_remainder) / MS;
-            self.record_violation(rule, format!("A{} has a pulse {ms} ms later", servo + 1));
+            let observation = format!("A{} has a pulse {ms} ms after the answer", servo + 1);
+            self.record_violation(rule, observation);
             self.pending_promises.no_pulses = None;
         }
     }
 
-    /// True if a servo must wake in its rest pose after a restart now: since its last complete pulse, the supply has
-    /// been good, and main has been undisturbed for long enough to save the pose.
-    pub(crate) fn must_keep_rest_pose(&self, servo: usize) -> bool {
+    /// True if the robot must have saved a servo's rest pose by now: since the servo's last complete pulse, the supply
+    /// has been good and the main loop undisturbed for long enough, and no settings are unsaved. After a restart, the
+    /// servo must then wake in this pose.
+    pub(crate) fn must_rest_pose_be_saved(&self, servo: usize) -> bool {
         let pulse_start = self.servos[servo].last_complete_pulse_start;
         self.limits.is_memory_reliable
             && self.now - pulse_start > MAX_SAVE_TIME

@@ -60,7 +60,7 @@ impl Observer {
     /// Returns the coarse state, which is the same for equivalent states.
     pub fn coarse_state(&self) -> CoarseState {
         let rounded_age = |time: Time| rounded_age_frames(self.now.saturating_sub(time));
-        let rounded_signed_age = |age: i64| match age > 0 {
+        let rounded_signed_age = |age: Time| match age > 0 {
             true => i16::from(rounded_age_frames(age)),
             false => -i16::from(rounded_age_frames(-age)) - 1,
         };

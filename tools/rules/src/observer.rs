@@ -326,7 +326,7 @@ impl Observer {
         self.now = self.now.max(time);
         self.permission.advance(self.now);
         self.check_end_of_pulses();
-        self.check_expired_promises();
+        self.check_due_promises();
         let stop_mv = self.limits.levels_mv[1].saturating_sub(self.limits.supply_error_mv);
         let low_since = self.now - 280 * MS;
         let is_undisturbed = low_since > self.started_at && self.disturbed_until < low_since;
@@ -356,7 +356,7 @@ impl Observer {
         let has_hung = cause == Cause::Watchdog || self.disturbed_until > ran_until - 300 * MS;
         self.check_reset(cause);
         for servo in 0..4 {
-            let is_rest_pose_saved = self.must_keep_rest_pose(servo);
+            let is_rest_pose_saved = self.must_rest_pose_be_saved(servo);
             let keeps_position = cause != Cause::Power && !self.limits.can_saved_travel_be_narrower;
             let is_ram_lost = match cause {
                 Cause::BrownOut => self.limits.can_brown_outs_clear_ram && !has_hung,

@@ -4,6 +4,7 @@ use lizard_core::console::word::{Effect, Word};
 use lizard_core::memory::restart::Cause;
 use lizard_core::virtual_board::is_answer;
 
+use crate::answers::{CALM_TIME, MAX_TIME_TO_PULSE};
 use crate::event::{MS, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
@@ -174,13 +175,13 @@ impl Observer {
         if gait == Some("rest") {
             self.forbid_pulses(Rule::NoPulsesInRest);
         } else if !has_fault
-            && self.last_motion_command_at < now - 400 * MS
-            && !self.was_disturbed_since(now - 400 * MS)
+            && self.last_motion_command_at < now - CALM_TIME
+            && !self.was_disturbed_since(now - CALM_TIME)
         {
             let mut servos = self.servos.iter();
-            let has_no_pulses = servos.all(|servo| servo.last_start < now - 200 * MS);
+            let has_no_pulses = servos.all(|servo| servo.last_start < now - MAX_TIME_TO_PULSE);
             self.pending_promises.pulses_after_status =
-                has_no_pulses.then(|| (now + 200 * MS, answer.to_owned()));
+                has_no_pulses.then(|| (now + MAX_TIME_TO_PULSE, answer.to_owned()));
         }
     }
 }

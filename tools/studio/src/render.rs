@@ -122,18 +122,13 @@ impl Studio {
             camera_roll: random_between(-20.0, 20.0),
             aim: [random_between(-25.0, 25.0), random_between(-25.0, 25.0)],
             board_tilt: 0.0,
-            strips: [
+            strips: [(-160.0, 0.0), (160.0, PI)].map(|(y, heading)| {
                 [
                     random_between(-10.0, 10.0),
-                    random_between(-165.0, -155.0),
-                    random_between(-0.06, 0.06),
-                ],
-                [
-                    random_between(-10.0, 10.0),
-                    random_between(155.0, 165.0),
-                    PI + random_between(-0.06, 0.06),
-                ],
-            ],
+                    random_between(y - 5.0, y + 5.0),
+                    heading + random_between(-0.06, 0.06),
+                ]
+            }),
             print_scale: [1.0; 2],
             tag_distance_factor: 1.0,
             deck_tag_height: 83.0,
@@ -157,30 +152,25 @@ impl Studio {
 
     /// Returns the camera's optics, in the axes of the tilted board.
     fn optics(&self) -> Optics {
-        let tilt = self.camera_tilt.to_radians();
-        let direction = self.camera_direction.to_radians();
+        let [tilt, direction] = [self.camera_tilt, self.camera_direction].map(f64::to_radians);
         let horizontal = [tilt.sin() * direction.cos(), tilt.sin() * direction.sin()];
         let forward = [horizontal[0], horizontal[1], -tilt.cos()];
         let distance = self.camera_height / tilt.cos();
-        let eye = [
-            self.aim[0] - distance * forward[0],
-            self.aim[1] - distance * forward[1],
-            self.camera_height,
-        ];
+        let [eye_x, eye_y] = [0, 1].map(|i| self.aim[i] - distance * forward[i]);
+        let eye_from_edge = [eye_x - TILT_EDGE_X_MM, eye_y, self.camera_height];
         // The axis to the right is level before the roll.
         let level_right = [direction.sin(), -direction.cos(), 0.0];
         let down = cross_product(forward, level_right);
         let (sin, cos) = self.camera_roll.to_radians().sin_cos();
         let right = [0, 1, 2].map(|i| cos * level_right[i] + sin * down[i]);
-        let [x, y, z] = self.to_board_axes([eye[0] - TILT_EDGE_X_MM, eye[1], eye[2]]);
+        let [x, y, z] = self.to_board_axes(eye_from_edge);
         let axes = [right, cross_product(forward, right), forward];
-        let [width, height] = self.size.map(|length| length as f64);
         Optics {
             eye: [x + TILT_EDGE_X_MM, y, z],
             axes: axes.map(|axis| self.to_board_axes(axis)),
-            focal_length: self.focal_length * width,
+            focal_length_px: self.focal_length * self.size[0] as f64,
             distortion: self.distortion,
-            image_centre: [(width - 1.0) / 2.0, (height - 1.0) / 2.0],
+            image_centre: self.size.map(|length| (length as f64 - 1.0) / 2.0),
         }
     }
 
@@ -194,27 +184,25 @@ impl Studio {
     pub fn render_background(&self, rng: &mut Rng) -> Background {
         let [width, height] = self.size;
         let optics = self.optics();
-        let mut grey_levels = vec![0f32; width * height];
-        for (i, grey) in grey_levels.iter_mut().enumerate() {
+        let grey_of_pixel = |i: usize| {
             let (x, y) = ((i % width) as f64, (i / width) as f64);
             let pixel_centre = optics.point_at_height([x, y], 0.0);
             let is_near_strip = (0..2).any(|strip| {
                 let [u, v] = LocalAxes::new(self.strips[strip]).to_local(pixel_centre);
                 u.abs() < sheet::STRIP_SIZE[0] && v.abs() < sheet::STRIP_SIZE[1]
             });
-            let sample = |dx: f64, dy: f64| {
+            if !is_near_strip {
+                return self.floor_grey as f32;
+            }
+            average_over_pixel(|dx, dy| {
                 self.floor_grey_at(optics.point_at_height([x + dx, y + dy], 0.0))
-            };
-            *grey = match is_near_strip {
-                true => average_over_pixel(sample) as f32,
-                false => self.floor_grey as f32,
-            };
-        }
+            }) as f32
+        };
         let noise = (0..NOISE_COUNT).map(|_| (self.noise * random_normal(rng)) as f32);
         Background {
             studio: self.clone(),
+            grey_levels: (0..width * height).map(grey_of_pixel).collect(),
             optics,
-            grey_levels,
             noise: noise.collect(),
         }
     }
@@ -252,11 +240,9 @@ impl Studio {
         if x.abs() > sheet::CARD_SIZE[0] / 2.0 || y < min_y || y > min_y + sheet::CARD_SIZE[1] {
             return None;
         }
-        Some(match tag_grey_at(sheet::DECK_TAG_ID, [x, y]) {
-            Some(_) if self.covered_tags.contains(&sheet::DECK_TAG_ID) => PAPER_GREY,
-            Some(grey) => grey,
-            None => PAPER_GREY,
-        })
+        let is_covered = self.covered_tags.contains(&sheet::DECK_TAG_ID);
+        let tag_grey = tag_grey_at(sheet::DECK_TAG_ID, [x, y]).filter(|_| !is_covered);
+        Some(tag_grey.unwrap_or(PAPER_GREY))
     }
 }
 
@@ -275,7 +261,7 @@ struct Optics {
     eye: Vector,
     /// The camera's axes: right, down, forward.
     axes: [Vector; 3],
-    focal_length: f64,
+    focal_length_px: f64,
     distortion: f64,
     image_centre: [f64; 2],
 }
@@ -284,7 +270,7 @@ impl Optics {
     /// Returns the point that a pixel shows at a height: the intersection of the pixel's ray with the plane at that
     /// height.
     fn point_at_height(&self, pixel: [f64; 2], height: f64) -> [f64; 2] {
-        let distorted = [0, 1].map(|i| (pixel[i] - self.image_centre[i]) / self.focal_length);
+        let distorted = [0, 1].map(|i| (pixel[i] - self.image_centre[i]) / self.focal_length_px);
         // Inverts the lens distortion by iteration, which converges fast because the distortion is small.
         let [mut u, mut v] = distorted;
         for _ in 0..3 {
@@ -300,10 +286,10 @@ impl Optics {
     /// Returns the pixel that shows a point at a height.
     fn project(&self, [x, y]: [f64; 2], height: f64) -> [f64; 2] {
         let offset = [x - self.eye[0], y - self.eye[1], height - self.eye[2]];
-        let component_along = |axis: &Vector| (0..3).map(|i| axis[i] * offset[i]).sum::<f64>();
-        let [right, down, depth] = [0, 1, 2].map(|i| component_along(&self.axes[i]));
+        let component_along = |axis: Vector| (0..3).map(|i| axis[i] * offset[i]).sum::<f64>();
+        let [right, down, depth] = self.axes.map(component_along);
         let [u, v] = [right / depth, down / depth];
-        let scale = self.focal_length * self.distortion_factor(u, v);
+        let scale = self.focal_length_px * self.distortion_factor(u, v);
         let [x, y] = self.image_centre;
         [x + scale * u, y + scale * v]
     }
@@ -332,7 +318,7 @@ impl Background {
         };
         let rows: Vec<_> = (0..height).map(axes_in_row).collect();
         let middle_axes = rows[height / 2][SHUTTER_SAMPLES / 2];
-        let body_extent = [(BODY_HALF_SIZE[0] + 5.0), (BODY_HALF_SIZE[1] + 5.0)];
+        let body_extent = BODY_HALF_SIZE.map(|length| length + 5.0);
         self.for_each_pixel(middle_axes, body_extent, BODY_HEIGHT_MM, |i, [x, y]| {
             let [u, v] = middle_axes.to_robot(self.optics.point_at_height([x, y], BODY_HEIGHT_MM));
             if u.abs() < BODY_HALF_SIZE[0] && v.abs() < BODY_HALF_SIZE[1] {
@@ -345,7 +331,6 @@ impl Background {
         ];
         let card_height = studio.deck_tag_height;
         self.for_each_pixel(middle_axes, card_extent, card_height, |i, [x, y]| {
-            let axes_of_row = &rows[i / width];
             let background_grey = f64::from(grey_levels[i]);
             let card_grey = |axes: &LocalAxes| {
                 average_over_pixel(|dx, dy| {
@@ -354,8 +339,8 @@ impl Background {
                     grey.unwrap_or(background_grey)
                 })
             };
-            grey_levels[i] =
-                (axes_of_row.iter().map(card_grey).sum::<f64>() / SHUTTER_SAMPLES as f64) as f32;
+            let card_greys = rows[i / width].iter().map(card_grey);
+            grey_levels[i] = (card_greys.sum::<f64>() / SHUTTER_SAMPLES as f64) as f32;
         });
         let mut grey = Vec::with_capacity(grey_levels.len());
         for (i, pixels) in grey_levels.chunks(NOISE_RUN_LENGTH).enumerate() {
@@ -385,16 +370,16 @@ impl Background {
             let floor_y = y + forward * sin - right * cos;
             self.optics.project([floor_x, floor_y], height)
         });
-        let size = self.studio.size;
         let pixel_range = |i: usize| {
             let positions = corners.iter().map(|corner| corner[i]);
             let min = positions.clone().fold(f64::INFINITY, f64::min);
             let max = positions.fold(0.0, f64::max);
-            (min.max(0.0) as usize)..((max + 1.0).max(0.0) as usize).min(size[i])
+            (min.max(0.0) as usize)..((max + 1.0) as usize).min(self.studio.size[i])
         };
         for row in pixel_range(1) {
             for column in pixel_range(0) {
-                visit(row * size[0] + column, [column as f64, row as f64]);
+                let index = row * self.studio.size[0] + column;
+                visit(index, [column as f64, row as f64]);
             }
         }
     }

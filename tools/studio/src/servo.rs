@@ -73,7 +73,7 @@ impl Servo {
     pub fn simulate(&self, side: f64) -> CardAngles {
         let commands = list_commands(side);
         let pulses = self.simulate_pulses(&commands);
-        let (mut angle, mut rate, mut horn) = (0.0, 0.0, 0.0f64);
+        let (mut angle, mut rate, mut horn_angle) = (0.0, 0.0, 0.0f64);
         let mut angles = Vec::new();
         for pulse in pulses {
             for _ in 0..(PULSE_INTERVAL_S / STEP_S).round() as usize {
@@ -88,8 +88,8 @@ impl Servo {
                 rate += speed_error * STEP_S / self.rotor_time_constant;
                 rate -= rate.clamp(-max_change, max_change);
                 angle += rate * STEP_S;
-                horn = horn.clamp(angle - self.play / 2.0, angle + self.play / 2.0);
-                angles.push(self.neutral_heading + horn);
+                horn_angle = horn_angle.clamp(angle - self.play / 2.0, angle + self.play / 2.0);
+                angles.push(self.neutral_heading + horn_angle);
             }
         }
         CardAngles(angles)

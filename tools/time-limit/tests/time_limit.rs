@@ -1,5 +1,5 @@
 //! Tests of waits with a time limit: a wait that hangs fails with a message, and every other wait succeeds.
-#![cfg(unix)] // the tests start programs of Unix
+#![cfg(unix)] // the tests start Unix programs
 
 use std::io::ErrorKind;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -1,7 +1,7 @@
 //! The JavaScript class that calibrates a robot.
 #![allow(clippy::missing_errors_doc)] // each rejects with the page's own error, or with a message about the refusal
 
-use lizard_calibrate::{SCALE_TURNS_DEG, SIGN_TURNS_DEG, SendError};
+use lizard_calibrate::{ReplaceError, SCALE_TURNS_DEG, SIGN_TURNS_DEG};
 use wasm_bindgen::prelude::*;
 
 use crate::calibration::{from_js, to_js};
@@ -124,8 +124,10 @@ impl Calibrator {
     ) -> Result<(), JsValue> {
         let outcome = self.0.replace(&from_js(&calibration)?).await;
         outcome.map_err(|error| match error {
-            SendError::Refused(error) | SendError::Mixed(error) => error_to_js(error),
-            SendError::Differs => make_js_error("The robot did not accept the whole calibration."),
+            ReplaceError::Refused(error) | ReplaceError::Mixed(error) => error_to_js(error),
+            ReplaceError::Differs => {
+                make_js_error("The robot did not accept the whole calibration.")
+            }
         })
     }
 }

@@ -1,4 +1,5 @@
-//! The upload of firmware and robot from a browser to a board, with the page order and the messages of `lizard flash`.
+//! The upload of firmware and robot from a browser to a board, which writes the pages of flash in the same order as
+//! `lizard flash` and has the same messages.
 
 use js_sys::Function;
 use lizard_core::numbers::mark::Mark;

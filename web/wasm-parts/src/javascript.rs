@@ -59,7 +59,6 @@ impl Parts {
     }
 
     /// Describes the model for the page, without triangles.
-    #[must_use]
     #[wasm_bindgen(unchecked_return_type = "ModelDescription")]
     pub fn describe(&self) -> JsValue {
         to_js(self.0.describe())
@@ -75,7 +74,6 @@ impl Parts {
 
     /// Returns x, y, cosine and sine of every mount for servo angles and leg lags in deg; undefined if a loop does not
     /// close, or if an array does not have four numbers.
-    #[must_use]
     pub fn pose(
         &self,
         #[wasm_bindgen(unchecked_param_type = "number[]")] angles: &[f64],

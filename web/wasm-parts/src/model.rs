@@ -74,7 +74,7 @@ pub struct PartEntry {
 
 /// A step of the guide.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
-pub struct StepEntry {
+pub struct GuideStepEntry {
     /// The headline of the step.
     pub title: &'static str,
     /// The instructions, as Markdown.
@@ -89,7 +89,7 @@ pub struct ModelDescription {
     /// Every printed part that the robot has.
     pub parts: Vec<PartEntry>,
     /// The steps of the guide.
-    pub steps: Vec<StepEntry>,
+    pub steps: Vec<GuideStepEntry>,
     /// The number of mounts.
     pub mount_count: usize,
     /// Distance from the plate's top down to the soles of the feet, mm.
@@ -130,7 +130,6 @@ impl Model {
     }
 
     /// Describes the model for the page, without triangles.
-    #[must_use]
     pub fn describe(&self) -> ModelDescription {
         let mut sole_z: f64 = 0.0;
         let mut next_bought_index = self.needed_parts().count();
@@ -161,7 +160,7 @@ impl Model {
             file: part.file_stem(),
             count: part.count(),
         };
-        let make_step_entry = |step: &Step| StepEntry {
+        let make_step_entry = |step: &Step| GuideStepEntry {
             title: step.title,
             instructions: step.instructions.clone(),
         };
@@ -188,7 +187,6 @@ impl Model {
     /// Returns the placement of every mount in the chassis frame: x and y of its origin, mm, and the unit vector of its
     /// x axis. `angles` are the servo angles (deg, chassis frame), and `lags` are the lags of the legs behind the
     /// servos (deg, foot forward positive). `None` if a loop does not close.
-    #[must_use]
     pub fn place_mounts(&self, angles: [f64; 4], lags: [f64; 4]) -> Option<Vec<[f64; 4]>> {
         let pose = self.assembly.robot().lizard().solve(&angles.into()).ok()?;
         let plans = &self.assembly.layout().legs;
@@ -253,7 +251,7 @@ impl Model {
     pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Result<Option<f64>, Refusal> {
         let proof = self.assembly.prove(progress);
         proof.check().map_err(BuildError::from)?;
-        Ok(proof.nearest_separate_pair().map(|pair| pair.lower_bound))
+        Ok(proof.separate_pairs.first().map(|pair| pair.lower_bound))
     }
 }
 

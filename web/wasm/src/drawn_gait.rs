@@ -7,6 +7,7 @@
 use std::f64::consts::TAU;
 
 use lizard_kinematics::{End, Vector};
+use lizard_robot::edit::to_key;
 use lizard_robot::{Harmonic, Path, Robot};
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
@@ -52,12 +53,15 @@ impl DrawnGait {
         let points: Vec<[f64; 2]> = self.points.iter().map(scale_point).collect();
         let samples = sample_evenly(&points)?;
         let harmonic_count = self.harmonic_count.clamp(1, MAX_HARMONIC_COUNT);
-        let [(centre_x, x), (centre_y, y)] = [0, 1].map(|axis| {
+        let [(centre_x, x_harmonics), (centre_y, y_harmonics)] = [0, 1].map(|axis| {
             let values: Vec<f64> = samples.iter().map(|sample| sample[axis]).collect();
             compute_harmonics(&values, harmonic_count)
         });
-        let centre = [centre_x, centre_y];
-        Some(Path { centre, x, y })
+        Some(Path {
+            centre: [centre_x, centre_y],
+            x: x_harmonics,
+            y: y_harmonics,
+        })
     }
 
     /// Formats the gait as tables of robot.toml; `None` for an unknown `end`, or if the line has no length.
@@ -74,7 +78,7 @@ impl DrawnGait {
         };
         let ([centre_x, centre_y], x, y) =
             (path.centre, format_series(&path.x), format_series(&path.y));
-        let (name, end) = (&self.name, &self.end);
+        let (name, end) = (to_key(&self.name), &self.end);
         let period = (self.period * 1000.0).round() / 1000.0;
         Some(format!(
             "[gait.{name}]\nperiod = {period:?}\n[gait.{name}.{end}]\n\
@@ -82,8 +86,8 @@ impl DrawnGait {
         ))
     }
 
-    /// Returns points of the end point's path at equal time steps, mm in the frame of head or tail. `None` for an
-    /// unknown `end`, or if the line has no length.
+    /// Samples the path of the end point at equal time steps, mm in the frame of head or tail. `None` for an unknown
+    /// `end`, or if the line has no length.
     pub fn shown_points(&self, robot: &Robot) -> Option<Vec<[f64; 2]>> {
         let path = self.smoothed_path(robot)?;
         let point_at = |i: usize| {
@@ -99,8 +103,8 @@ fn compute_harmonics(values: &[f64], harmonic_count: usize) -> (f64, Vec<Harmoni
     let compute_mean = |transform: &dyn Fn(f64, f64) -> f64| {
         let count = values.len() as f64;
         let indexed_values = values.iter().enumerate();
-        let terms = indexed_values.map(|(i, value)| transform(*value, i as f64 / count));
-        terms.sum::<f64>() / count
+        let summands = indexed_values.map(|(i, value)| transform(*value, i as f64 / count));
+        summands.sum::<f64>() / count
     };
     let compute_harmonic = |order: usize| {
         let order = order as f64;
@@ -148,9 +152,17 @@ fn sample_evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
 
 #[cfg(test)]
 mod tests {
+    use lizard_twin::Twin;
+
     use super::*;
     use crate::paper::{PAPER_TOML, load_paper_robot, load_paper_robot_and_twin};
-    use crate::trial::{Alternative, EditedGait};
+    use crate::trial::{Alternative, EditedGait, RefusedTrial, Trial};
+
+    /// Tries a gait on the twin's robot.
+    fn try_gait(twin: &Twin, drawn_gait: DrawnGait) -> Result<Trial, RefusedTrial> {
+        let trial = EditedGait::DrawnGait(drawn_gait).try_on(twin);
+        trial.expect("the line has a length")
+    }
 
     /// Makes a gait along a circle about the neutral point of head or tail.
     fn make_circular_gait(robot: &Robot, end: End, radius_mm: f64) -> DrawnGait {
@@ -173,11 +185,11 @@ mod tests {
     fn the_end_point_follows_the_drawn_circle() {
         let (robot, twin) = load_paper_robot_and_twin();
         for end in End::ALL {
-            let edited_gait = EditedGait::DrawnGait(make_circular_gait(&robot, end, 6.0));
-            let trial = edited_gait.try_on(&twin).expect("the line has a length");
+            let drawn_gait = make_circular_gait(&robot, end, 6.0);
+            let trial = try_gait(&twin, drawn_gait.clone());
             let table = trial.expect("the gait is valid").table;
             assert!(table.contains(&format!("[gait.mine.{end}]")), "{table}");
-            let text = edited_gait.put_into(PAPER_TOML, &robot);
+            let text = EditedGait::DrawnGait(drawn_gait).put_into(PAPER_TOML, &robot);
             let text = text.expect("the line has a length");
             let robot = Robot::parse(&text).expect("the robot with the gait is valid");
             let gait = robot.gait("mine").expect("the gait was added");
@@ -210,49 +222,40 @@ mod tests {
     #[test]
     fn a_circle_that_is_too_large_is_offered_the_nearest_valid_size() {
         let (robot, twin) = load_paper_robot_and_twin();
-        let drawn_gait = make_circular_gait(&robot, End::Head, 40.0);
-        let try_gait = |drawn_gait: &DrawnGait| {
-            let edited_gait = EditedGait::DrawnGait(drawn_gait.clone());
-            edited_gait.try_on(&twin).expect("the line has a length")
-        };
-        let refused_trial = try_gait(&drawn_gait).expect_err("the circle is too large");
-        let alternatives = refused_trial.alternatives;
+        let large_gait = make_circular_gait(&robot, End::Head, 40.0);
+        let result = try_gait(&twin, large_gait.clone());
+        let alternatives = result.expect_err("the circle is too large").alternatives;
         let [Alternative { parameter, value }] = alternatives[..] else {
             panic!("only a size is offered, no period: {alternatives:?}");
         };
         assert_eq!(parameter, "size");
-        let with_size = |size: f64| DrawnGait {
-            size,
-            ..drawn_gait.clone()
+        let try_size = |size: f64| {
+            let gait = DrawnGait {
+                size,
+                ..large_gait.clone()
+            };
+            try_gait(&twin, gait)
         };
-        let is_valid = |drawn_gait: DrawnGait| try_gait(&drawn_gait).is_ok();
-        assert!(is_valid(with_size(value)), "{value}");
-        assert!(!is_valid(with_size(value + 0.01)), "{value}");
+        assert!(try_size(value).is_ok(), "{value}");
+        assert!(try_size(value + 0.01).is_err(), "{value}");
     }
 
     #[test]
     fn a_gait_that_is_too_fast_is_offered_the_nearest_valid_period() {
         let (robot, twin) = load_paper_robot_and_twin();
-        let try_gait = |drawn_gait: &DrawnGait| {
-            let edited_gait = EditedGait::DrawnGait(drawn_gait.clone());
-            edited_gait.try_on(&twin).expect("the line has a length")
+        let try_period = |period: f64| {
+            let gait = DrawnGait {
+                period,
+                ..make_circular_gait(&robot, End::Head, 8.0)
+            };
+            try_gait(&twin, gait)
         };
-        let fast_gait = DrawnGait {
-            period: 0.2,
-            ..make_circular_gait(&robot, End::Head, 8.0)
-        };
-        let refused_trial = try_gait(&fast_gait).expect_err("the gait is too fast");
+        let refused_trial = try_period(0.2).expect_err("the gait is too fast");
         let mut alternatives = refused_trial.alternatives.iter();
         let offer = alternatives.find(|alternative| alternative.parameter == "period");
         let slow_period = offer.expect("a longer period is offered").value;
-        let with_period = |period: f64| DrawnGait {
-            period,
-            ..fast_gait.clone()
-        };
-        let is_valid = |drawn_gait: DrawnGait| try_gait(&drawn_gait).is_ok();
-        assert!(is_valid(with_period(slow_period)), "{slow_period} s");
-        let is_faster_valid = is_valid(with_period(slow_period - 0.01));
-        assert!(!is_faster_valid, "{slow_period} s");
+        assert!(try_period(slow_period).is_ok(), "{slow_period} s");
+        assert!(try_period(slow_period - 0.01).is_err(), "{slow_period} s");
     }
 
     #[test]

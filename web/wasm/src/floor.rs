@@ -41,7 +41,7 @@ impl Floor {
     /// Returns a robot's own values.
     pub fn for_robot(robot: &Robot) -> Self {
         let ground = robot.ground();
-        let own_strut = robot.strut_with_coil(&robot.parts().spring);
+        let own_strut = robot.own_strut();
         let strut = ground.drive.strut().unwrap_or(&own_strut);
         Self {
             friction: ground.friction_coefficient,
@@ -138,6 +138,29 @@ mod tests {
             };
             assert_eq!(invalid_floor.to_ground(&robot), *robot.ground());
         }
+    }
+
+    #[test]
+    fn the_ground_has_every_value_of_the_floor() {
+        let robot = parse_robot_with("");
+        let floor = Floor {
+            friction: 0.4,
+            ratio: 1.2,
+            mass: 300.0,
+            kind: LegDrive::Strut,
+            force: 2.5,
+            rate: 0.3,
+            play: 0.2,
+            leaf: 1.5,
+            twist: -0.6,
+        };
+        let ground = floor.to_ground(&robot);
+        let kind = DriveKind::Strut(robot.strut_with_spring(2.5, 0.3));
+        assert_eq!(ground.drive, Drive { kind, play: 0.2 });
+        let pads = [ground.friction_coefficient, ground.friction_ratio];
+        let feet = [ground.stance.stiffness, ground.stance.twist];
+        assert_eq!((pads, feet), ([0.4, 1.2], [1.5, -0.6]));
+        assert_eq!(ground.body.mass, 300.0);
     }
 
     #[test]

@@ -61,12 +61,12 @@ pub(crate) fn from_js<T: DeserializeOwned>(value: &JsValue) -> Result<T, JsError
 }
 
 /// The page's robot, its place on the floor, its core, and the search for a faster gait.
-#[wasm_bindgen]
+#[wasm_bindgen(js_name = Robot)]
 #[derive(Default)]
-pub struct Robot(PageState);
+pub struct PageRobot(PageState);
 
-#[wasm_bindgen]
-impl Robot {
+#[wasm_bindgen(js_class = Robot)]
+impl PageRobot {
     /// Creates an instance without a robot.
     #[wasm_bindgen(constructor)]
     pub fn new() -> Self {
@@ -277,8 +277,8 @@ impl Robot {
 
 /// The search for a faster gait.
 #[cfg(feature = "tune")]
-#[wasm_bindgen]
-impl Robot {
+#[wasm_bindgen(js_class = Robot)]
+impl PageRobot {
     /// Prepares the search for a faster gait; returns the number of gaits to try and the speed that no servo may
     /// exceed. Returns null if no robot is loaded.
     #[wasm_bindgen(js_name = beginSearch, unchecked_return_type = "SearchExtent | Refusal")]

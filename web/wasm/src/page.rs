@@ -9,9 +9,9 @@ use serde::Serialize;
 use tsify::Tsify;
 
 use crate::description::{Description, find_servo_model};
-#[cfg(feature = "tune")]
-use crate::faster_search::{FasterSearch, SearchExtent, SearchTask};
 use crate::floor::{Floor, LegDrive};
+#[cfg(feature = "tune")]
+use crate::gait_search::{GaitSearch, SearchExtent, SearchTask};
 use crate::place::Place;
 use crate::prediction::GaitPrediction;
 use crate::refusal::Refusal;
@@ -66,7 +66,7 @@ pub struct PageState {
     running_core: Option<RunningCore>,
     /// The prepared search; `None` if no search was prepared since the robot was loaded.
     #[cfg(feature = "tune")]
-    pub(crate) search: Option<FasterSearch>,
+    pub(crate) search: Option<GaitSearch>,
 }
 
 impl PageState {
@@ -227,7 +227,7 @@ impl PageState {
     /// Returns the reason if the search cannot start.
     #[cfg(feature = "tune")]
     pub fn begin_search(&mut self, task: &SearchTask) -> Option<Result<SearchExtent, Refusal>> {
-        let search = FasterSearch::begin(self.twin()?, task);
+        let search = GaitSearch::begin(self.twin()?, task);
         Some(search.map(|search| self.search.insert(search).extent()))
     }
 

@@ -23,11 +23,11 @@ impl Place {
 }
 
 impl From<BodyPose> for Place {
-    fn from(place: BodyPose) -> Self {
+    fn from(pose: BodyPose) -> Self {
         Self {
-            x: -place.left,
-            y: place.forward,
-            heading: place.heading.to_degrees(),
+            x: -pose.left,
+            y: pose.forward,
+            heading: pose.heading.to_degrees(),
         }
     }
 }

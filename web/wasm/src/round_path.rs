@@ -34,16 +34,16 @@ impl RoundPath {
         simulated_twin.set_ground(*twin.ground());
         let neutral: [f64; 4] = robot.neutral_pose().into();
         let mut sweeps_by_frame = RoutineRow::simulate_sweeps(robot, robot.routine(name)?);
-        let (mut places, mut frame_count, mut place) = (Vec::new(), 0, BodyPose::START);
+        let (mut places, mut frame_count, mut body_pose) = (Vec::new(), 0, BodyPose::START);
         for sweeps in sweeps_by_frame.by_ref().take(MAX_FRAMES) {
             if frame_count % FRAMES_PER_PLACE == 0 {
-                places.push(place.into());
+                places.push(body_pose.into());
             }
             frame_count += 1;
             let angles = std::array::from_fn(|i| neutral[i] + FORWARD_TURN_SIGN[i] * sweeps[i]);
-            place = simulated_twin.simulate_angles(angles).body_pose;
+            body_pose = simulated_twin.simulate_angles(angles).body_pose;
         }
-        places.push(place.into());
+        places.push(body_pose.into());
         Some(Self {
             places,
             seconds: frame_count as f64 / FRAMES_PER_SECOND,

@@ -47,7 +47,7 @@ pub struct SliderScene {
     pub tips: [Point; 2],
     /// Front end of the slider's rear half, into which the front half slides.
     pub tube: Point,
-    /// Travel from nominal, mm.
+    /// Travel from the nominal length, mm.
     pub travel: f64,
 }
 
@@ -184,11 +184,11 @@ mod tests {
         // In the neutral pose, the couplers barely reach each other.
         let gaits_start = PAPER_TOML.find("[gait.walk]");
         let gaits_start = gaits_start.expect("paper.toml has this gait");
-        let loose_toml = PAPER_TOML[..gaits_start]
+        let short_coupler_toml = PAPER_TOML[..gaits_start]
             .replace("l2 = 50.0", "l2 = 34.0")
             .replace("l3 = 50.0", "l3 = 34.0")
             .replace("type2 = 0.3", "type2 = 0.1");
-        let robot = Robot::parse(&loose_toml).expect("the neutral pose is allowed");
+        let robot = Robot::parse(&short_coupler_toml).expect("the neutral pose is allowed");
         let mut twin = Twin::new(&robot, ServoModel::Ideal);
         twin.simulate_angles([170.0, 10.0, 318.59, 221.41]);
         let fault = Scene::compute(&twin).expect_err("the couplers cannot meet");

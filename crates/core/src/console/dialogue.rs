@@ -54,12 +54,6 @@ pub struct Console {
     watch: Watch,
 }
 
-impl Default for Console {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Console {
     /// Creates a console that has received nothing; it writes the banner first.
     pub const fn new() -> Self {
@@ -82,10 +76,10 @@ impl Console {
     /// new baud rate, or `None` if the rate stays the same.
     pub fn advance_frame(&mut self, control: &Controller) -> Option<BaudRate> {
         self.silence_ms = self.silence_ms.saturating_add(FRAME_MS);
-        let deadman_ms = control.deadman_ms();
+        let deadman_ms = control.settings().deadman_ms();
         if deadman_ms != 0 && self.silence_ms >= deadman_ms {
             // If the link breaks within `walk 12`, later noise must not complete the partial line as `walk 1`.
-            self.line.invalidate_partial_line();
+            self.line.mark_partial_line_garbled();
         }
         if self.has_output(control) {
             self.rate_detector.record_unread_bytes();

@@ -69,7 +69,7 @@ impl Line {
     }
 
     /// Marks a partial line as garbled, unless it is blank.
-    pub fn invalidate_partial_line(&mut self) {
+    pub fn mark_partial_line_garbled(&mut self) {
         self.is_garbled |= !self.has_ended && !self.text().is_empty();
     }
 
@@ -152,8 +152,7 @@ mod tests {
             let text = "x".repeat(length);
             let bytes = std::format!("{text}\rstand\r");
             let first_line = (length <= 63).then_some(text);
-            let expected_lines = [first_line, Some("stand".to_string())];
-            assert_eq!(split_lines(bytes), expected_lines);
+            assert_eq!(split_lines(bytes), [first_line, Some("stand".to_string())]);
         }
         // Leading white space counts towards the 63 characters.
         assert_eq!(split_lines(std::format!("{:>64}\r", "stand")), [None]);
@@ -169,8 +168,7 @@ mod tests {
             ] {
                 assert_eq!(split_lines(line), [Some("walk".to_string())]);
             }
-            let deleted_line = std::format!("stand{five_deletions}\r");
-            assert_eq!(split_lines(deleted_line), []);
+            assert_eq!(split_lines(std::format!("stand{five_deletions}\r")), []);
         }
     }
 

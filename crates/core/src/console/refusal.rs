@@ -218,6 +218,10 @@ mod tests {
                 WrongArguments(Text::PoseUsage),
                 "2 pose takes four angles in degrees, with at most two decimals",
             ),
+            (
+                WrongArguments(Text::BootUsage),
+                "2 boot takes a gait, a routine or rest",
+            ),
             (AngleOutOfRange(Servo::A1), "3 A1 must be 61.37..215.36"),
             (LineError::TooLong, "6 a line has at most 63 characters"),
         ] {

@@ -144,7 +144,7 @@ texts! {
     DirUsage = "dir takes a servo 1..4 and + or -";
     ScaleUsage = "scale takes a servo 1..4 and us per degree, with at most two decimals";
     ScaleRange = "scale must be 5..20";
-    BootUsage = "boot takes the name of a gait, or rest";
+    BootUsage = "boot takes a gait, a routine or rest";
     DeadmanUsage = "deadman takes a whole number of milliseconds, 0..60000";
     DeadmanRange = "deadman must be 0..60000";
     TooNarrowForGaits = "'s travel must cover the gaits' range, ";

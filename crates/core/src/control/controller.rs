@@ -74,12 +74,6 @@ pub struct Controller {
     hold_reason: Option<Hazard>,
 }
 
-impl Default for Controller {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Controller {
     /// Creates a controller that has no robot; [`Controller::begin`] must follow.
     pub const fn new() -> Self {
@@ -195,16 +189,6 @@ impl Controller {
         }
         self.safety.advance_led(hazard.is_some());
         pulses
-    }
-
-    /// True while the LED is lit.
-    pub const fn is_lit(&self) -> bool {
-        self.safety.is_lit()
-    }
-
-    /// The time without a command after which a gait ends, ms; 0 if it never ends.
-    pub fn deadman_ms(&self) -> u16 {
-        self.settings.deadman_ms()
     }
 
     /// Records that a byte was received, which means that a computer is connected.

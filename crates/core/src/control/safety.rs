@@ -23,18 +23,6 @@ pub struct Health {
     pub is_contact_closed: bool,
 }
 
-impl Default for Health {
-    /// Returns the health of a board without a fault, whose supply has not been measured yet.
-    fn default() -> Self {
-        Self {
-            supply: Reading::default(),
-            late_edges: 0,
-            is_stack_intact: true,
-            is_contact_closed: false,
-        }
-    }
-}
-
 /// The reaction to a frame's events. Of several reactions, the last one in this list counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reaction {
@@ -105,12 +93,6 @@ impl Notice {
 
 /// Frames from the start of the program to the `boot` action: three seconds.
 const FRAMES_TO_BOOT: u8 = 3 * FRAMES_PER_SECOND as u8;
-
-impl Default for Safety {
-    fn default() -> Self {
-        Self::new()
-    }
-}
 
 impl Safety {
     /// Creates the monitor at power-on.

@@ -1,8 +1,8 @@
 //! Proved bounds on the difference between integer and floating-point results.
 //!
-//! Each bound is the sum of the largest effects of all roundings of a number, in the order of the roundings. Only the
-//! errors of the sines of [`crate::guard::trig`] are measured: a test of that module compares the sines at every angle.
-//! If a test finds an error beyond its bound, the code or this derivation is wrong.
+//! Each bound is the sum of the largest effects of all roundings that lead to a result. The parts below follow the
+//! order of the calculation. Only the errors of the sines of [`crate::guard::trig`] are measured: a test of that module
+//! compares the sines at every angle. If a test finds an error beyond its bound, the code or this derivation is wrong.
 //!
 //! Lengths of a five-bar (head or tail) are in `U`, two steps of its links' scale; the code computes the distance
 //! between the crank tips in this unit. `k` is the vector from the left crank tip to the right one, `s = k^2`, `c1` and
@@ -36,7 +36,7 @@
 //!
 //! **3. The tables.** See [`ShapeError`].
 //!
-//! **4. The products** of [`crate::guard::five_bar`]: the rounded square has an error of half its step, each shift an
+//! **4. The products** of [`crate::guard::five_bar`]: the rounded square has an error of half its unit, each shift an
 //! error of at most one unit of its result, and each reciprocal an error of less than one of its units.
 //!
 //! **5. A range.** For a set of many pairs of angles, only the range of the distance `|k|` is known, `[near, far]`;
@@ -56,11 +56,11 @@ use crate::numbers::units::Scale;
 /// The largest error of a sine or a cosine, which a test of [`crate::guard::trig`] determines.
 pub const MAX_DIRECTION_ERROR: f64 = 4.5e-5;
 
-/// The step of a margin, a number in Q15.
-pub const Q15_STEP: f64 = 1.0 / 32768.0;
+/// The unit of a margin, a number in Q15.
+pub const Q15_UNIT: f64 = 1.0 / 32768.0;
 
-/// The step of a value read from a table, a number in Q10.
-const Q10_STEP: f64 = 1.0 / 1024.0;
+/// The unit of a value read from a table, a number in Q10.
+const Q10_UNIT: f64 = 1.0 / 1024.0;
 
 /// The type-2 margin below which the tables may have no correct value. The lower limit of a table's argument determines
 /// the largest margin, a sine, at which the value is missing:
@@ -71,37 +71,37 @@ const Q10_STEP: f64 = 1.0 / 1024.0;
 /// - The table over `s` ends at `R / 1024`, where the sine is at most 0.063, because this part is read only if
 ///   `N < R / 2048`.
 ///
-/// Two kinds of values exist, but are wrong. A rise above 32, the largest value of an entry, is cut off, so the value
-/// is too small; a step that begins at 32 ends at `17/16 R / 1024`, where the sine is at most 0.065. For couplers of
-/// nearly equal length, the table over `s` holds the largest rise at all arguments below the peak, so the value is too
-/// large (see [`MAX_OVERSTATED_MARGIN`]).
+/// In two cases the tables have a value, but a wrong one. A rise above 32, the largest value of an entry, is cut off,
+/// so the value is too small; an interval at whose beginning the rise is 32 ends at `17/16 R / 1024`, where the sine is
+/// at most 0.065. For couplers of nearly equal length, the table over `s` holds the largest rise at all arguments below
+/// the peak, so the value is too large (see [`MAX_OVERSTATED_MARGIN`]).
 ///
 /// Where the tables have no correct value, the true margin is below a tenth: by part 2 of the derivation, it is at most
 /// the square root of `m'^2 + q`. With the shortest couplers, of 2048 U, and `e` at most 3.1, `q` is at most
 /// `7.3 |k| / ab`: 0.0071 for stretched couplers of equal length, where `m'` is 0.031, and 0.0031 for folded couplers
 /// of a ratio of 8, where `m'` is 0.077.
-pub const MIN_KNOWN_MARGIN: f64 = 0.08;
+pub const MIN_BOUNDED_MARGIN: f64 = 0.08;
 
 /// The largest type-2 margin, a sine, that results from a value of the tables that is too large (see
-/// [`MIN_KNOWN_MARGIN`]). It is so small because the peak of the table over `s` is below `2 N`.
+/// [`MIN_BOUNDED_MARGIN`]). It is so small because the peak of the table over `s` is below `2 N`.
 pub const MAX_OVERSTATED_MARGIN: f64 = 0.045;
 
 /// The largest errors of the triangle's shape that is read from the tables of a pair of couplers.
 ///
-/// A table has sixteen steps per octave. Over a step of length `h`, a straight line differs from a function `f` by at
-/// most `h^2 / 8` times the largest second derivative of `f`. As `h` is at most a sixteenth of the argument `t`, the
-/// difference is at most `|t^2 f''| / 2048`. For a product of powers of straight lines, where `n` is an exponent, `p +
-/// q t` a line and `l = q t / (p + q t)`,
+/// A table has sixteen intervals per octave. Over an interval of length `h`, a straight line differs from a function
+/// `f` by at most `h^2 / 8` times the largest second derivative of `f`. As `h` is at most a sixteenth of the argument
+/// `t`, the difference is at most `|t^2 f''| / 2048`. For a product of powers of straight lines, where `power` is an
+/// exponent, `p + q t` a line and `l = q t / (p + q t)`,
 ///
 /// ```text
-/// t^2 f'' = f ((sum of n l)^2 - sum of n l^2)
+/// t^2 f'' = f ((sum of power l)^2 - sum of power l^2)
 /// ```
 ///
-/// `Product::max_bend_and_value` computes a bound of `|t^2 f''|`, the bend, over a step, from the ends of the range of
-/// each `l`. Below its peak the function of the table over `s` is constant, so it has no bend. The following roundings
-/// add to the error: the rounding of the entries and of the value read, together 1 unit of Q10 (1.5 for the skew, whose
-/// entries are rounded to nearest and whose value is rounded down); the rounding of the position within a step to 16
-/// bits; and the rounding of `R` and `N` down to whole units, by at most 1/4.
+/// `Product::max_bend_and_value` computes a bound of `|t^2 f''|`, the bend, over an interval, from the ends of the
+/// range of each `l`. Below its peak the function of the table over `s` is constant, so it has no bend. The following
+/// roundings add to the error: the rounding of the entries and of the value read, together 1 unit of Q10 (1.5 for the
+/// skew, whose entries are rounded to nearest and whose value is rounded down); the rounding of the position within an
+/// interval to 16 bits; and the rounding of `R` and `N` down to whole units, by at most 1/4.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShapeError {
     /// The largest error of the rise, dimensionless.
@@ -138,15 +138,16 @@ impl ShapeError {
                 if argument_range[0] <= argument_range[1] {
                     let [max_bend, max_value] =
                         product.max_bend_and_value(argument_range, first_argument);
-                    let error = max_bend / 2048.0 + max_value / 65536.0 + Q10_STEP;
-                    // The relative error from rounding R and N down, taken as twice its first-order term.
-                    let limit_distances = [
+                    let error = max_bend / 2048.0 + max_value / 65536.0 + Q10_UNIT;
+                    // The relative error from rounding R and N down, taken as twice its first-order term, which depends
+                    // on the distances of `s` from R and N.
+                    let distances = [
                         (reach_sq - max_tips_sq).max(reach_sq / 4.0 / argument_ratio),
                         (min_tips_sq - folded_sq)
                             .max(folded_sq / argument_ratio)
                             .max(1.0),
                     ];
-                    let relative_rounding = 0.25 / limit_distances[0] + 0.25 / limit_distances[1];
+                    let relative_rounding = 0.25 / distances[0] + 0.25 / distances[1];
                     rise_error = rise_error.max(error + max_value * relative_rounding);
                 }
             };
@@ -186,12 +187,12 @@ impl ShapeError {
         );
         let min_argument = min_tips_sq.max(reach_sq / argument_ratio);
         let skew = (reach_sq * folded_sq).sqrt() / min_argument;
-        // For f = 1 / t, |t^2 f''| is 2 f; a step begins at most a sixteenth below the argument.
+        // For f = 1 / t, |t^2 f''| is 2 f; an interval begins at most a sixteenth below the argument.
         let reading_error = 2.0 * skew * (17.0 / 16.0) / 2048.0 + skew / 65536.0;
         let skew_error = if left == right {
             0.0
         } else {
-            reading_error + 1.5 * Q10_STEP + 1.0 / min_argument
+            reading_error + 1.5 * Q10_UNIT + 1.0 / min_argument
         };
         Self {
             rise: rise_error,
@@ -212,8 +213,8 @@ struct Factor {
 struct Product([Factor; 3]);
 
 impl Product {
-    /// Computes upper bounds of `|t^2 f''|` and of the value over a range of `t`. The range is extended by a step at
-    /// either end, but not below `first_argument`.
+    /// Computes upper bounds of `|t^2 f''|` and of the value over a range of `t`. The range is extended by an interval
+    /// at either end, but not below `first_argument`.
     fn max_bend_and_value(&self, [low, high]: [f64; 2], first_argument: f64) -> [f64; 2] {
         let t_ends = [(low * 16.0 / 17.0).max(first_argument), high * 17.0 / 16.0];
         let (mut sum_range, mut square_sum_range, mut max_value) = ([0.0; 2], [0.0; 2], 1.0f64);
@@ -253,82 +254,58 @@ impl Product {
     }
 }
 
-/// The rounded lengths of a five-bar, on which the errors of its margins depend.
-#[derive(Clone, Copy, Debug)]
-pub struct RoundedLengths {
-    /// The scale of the five-bar's lengths.
-    pub scale: Scale,
-    /// The left and the right coupler in whole steps.
-    pub couplers: [i16; 2],
-}
-
-impl From<&FiveBarLengths> for RoundedLengths {
-    fn from(lengths: &FiveBarLengths) -> Self {
-        Self {
-            scale: lengths.scale,
-            couplers: lengths.couplers,
-        }
-    }
-}
-
 /// The largest errors of a five-bar's margins, at one pair of crank angles or over a range of pairs.
 #[derive(Clone, Copy, Debug)]
-pub struct EndErrors {
+pub struct MarginErrors {
     /// The error of the type-2 margin's magnitude, a sine.
     pub type2: f64,
     /// The error of the left crank's type-1 margin, a sine.
     pub type1_left: f64,
     /// The error of the right crank's type-1 margin, a sine.
     pub type1_right: f64,
-    /// The error of the distance between the crank tips along the base, mm.
+    /// The error of the component of `k` along the base, mm.
     pub gap_x: f64,
     /// The smallest true type-2 margin in the range, a sine; 0 if the loop does not close in all of the range.
     pub min_type2: f64,
     /// True if the tables have a correct value in all of the range. Otherwise the computed margins may be too small by
     /// more than these errors, and a type-2 margin of at most [`MAX_OVERSTATED_MARGIN`] may be too large.
-    pub are_margins_known: bool,
+    pub do_bounds_hold: bool,
 }
 
-impl EndErrors {
-    /// Computes the errors for a true five-bar, in mm, its lengths rounded to steps, and crank angles in its own frame,
-    /// deg. If the loop does not close, `type2` is the largest margin that the integer arithmetic may return.
+impl MarginErrors {
+    /// Computes the errors from the exact lengths of a five-bar, mm, the same lengths in steps, and the crank angles in
+    /// its own frame, deg. If the loop does not close, `type2` is the largest margin that the integer arithmetic may
+    /// return.
     pub fn at_angles(
         five_bar: &kinematics::FiveBar,
-        rounded_lengths: impl Into<RoundedLengths>,
+        rounded_lengths: &FiveBarLengths,
         angles: [f64; 2],
     ) -> Self {
         let [left, right] = angles.map(Vector::from_angle);
         let tip = |crank: f64, direction: Vector| [crank * direction.x, crank * direction.y];
-        let (left_tip, right_tip) = (
-            tip(five_bar.left_crank_length, left),
-            tip(five_bar.right_crank_length, right),
-        );
+        let left_tip = tip(five_bar.left_crank_length, left);
+        let right_tip = tip(five_bar.right_crank_length, right);
         let distance_mm =
             (five_bar.base + right_tip[0] - left_tip[0]).hypot(right_tip[1] - left_tip[1]);
         let direction_sums = [left.x.abs() + right.x.abs(), left.y.abs() + right.y.abs()];
-        Self::compute(
-            five_bar,
-            rounded_lengths.into(),
-            direction_sums,
-            [distance_mm; 2],
-        )
+        Self::compute(five_bar, rounded_lengths, direction_sums, [distance_mm; 2])
     }
 
     /// Computes the largest errors over all crank angles at which the distance between the crank tips is `near` to
     /// `far`, mm.
     pub fn over_range(
         five_bar: &kinematics::FiveBar,
-        rounded_lengths: impl Into<RoundedLengths>,
+        rounded_lengths: &FiveBarLengths,
         [near, far]: [f64; 2],
     ) -> Self {
-        Self::compute(five_bar, rounded_lengths.into(), [2.0; 2], [near, far])
+        Self::compute(five_bar, rounded_lengths, [2.0; 2], [near, far])
     }
 
     /// Computes the errors from the sums of `|cos|` and `|sin|` of the two crank directions, and from the range of the
     /// distance between the crank tips. Single letters have their meaning in the module's derivation.
     fn compute(
         five_bar: &kinematics::FiveBar,
-        rounded_lengths: RoundedLengths,
+        rounded_lengths: &FiveBarLengths,
         [cosine_sum, sine_sum]: [f64; 2],
         range_mm: [f64; 2],
     ) -> Self {
@@ -346,8 +323,8 @@ impl EndErrors {
         let cosine_at = |k: f64| (a * a + b * b - k * k) / (2.0 * a * b);
         let (near_cosine, far_cosine) = (cosine_at(near), cosine_at(far));
         let c = near_cosine.abs().max(far_cosine.abs());
-        let min_area = 2.0 * (a - 0.25) * (b - 0.25);
-        let c_error = (far + 0.25 + z) / min_area;
+        let min_denominator = 2.0 * (a - 0.25) * (b - 0.25);
+        let c_error = (far + 0.25 + z) / min_denominator;
         let can_close = c <= 1.0;
         let sine_sq = |c: f64| (1.0 - c * c).max(0.0);
         let contains_right_angle = near_cosine > 0.0 && far_cosine < 0.0;
@@ -372,14 +349,15 @@ impl EndErrors {
         let shape_error = ShapeError::compute(left, right, tips_sq_range);
         let [left, right] = [left, right].map(f64::from);
         let mean_coupler = (left + right) / 2.0;
-        let square_step = 2f64.powi((mean_coupler * mean_coupler).log2().floor() as i32 - 14);
+        let square_unit = 2f64.powi((mean_coupler * mean_coupler).log2().floor() as i32 - 14);
         let max_rise = 2.0 * left / 2.0 * right / 2.0 * high_root / tips_sq_range[0].max(1.0)
             + shape_error.rise;
-        let product_error = (shape_error.rise * tips_sq_range[1] + max_rise * square_step / 2.0)
+        let product_error = (shape_error.rise * tips_sq_range[1] + max_rise * square_unit / 2.0)
             / (left * right / 2.0);
-        let area = left * right / square_step;
-        let area_error = (1.0 / (area - 1.0) + Q15_STEP) * (high_root + product_error);
-        let type2_error = sine_error + product_error + 2.0 * Q15_STEP + area_error + Q15_STEP;
+        let coupler_product = left * right / square_unit;
+        let reciprocal_error =
+            (1.0 / (coupler_product - 1.0) + Q15_UNIT) * (high_root + product_error);
+        let type2_error = sine_error + product_error + 2.0 * Q15_UNIT + reciprocal_error + Q15_UNIT;
 
         let line_turn = (e / near.max(e)).asin();
         let type1_error = |coupler: f64| {
@@ -391,7 +369,7 @@ impl EndErrors {
                 * (2f64.sqrt() * 2.0 * a / min_k + shape_error.rise + shape_error.skew)
                 + max_k * shape_error.rise.hypot(shape_error.skew)
                 + 2.0;
-            tip_turn + scaled_sine_error / (2.0 * a) + 1.01 * coupler / 2f64.powi(27) + Q15_STEP
+            tip_turn + scaled_sine_error / (2.0 * a) + 1.01 * coupler / 2f64.powi(27) + Q15_UNIT
         };
         Self {
             type2: type2_error,
@@ -399,7 +377,7 @@ impl EndErrors {
             type1_right: type1_error(right),
             gap_x: e_x / u_per_mm,
             min_type2: m,
-            are_margins_known: can_close && low_root >= MIN_KNOWN_MARGIN,
+            do_bounds_hold: can_close && low_root >= MIN_BOUNDED_MARGIN,
         }
     }
 
@@ -451,13 +429,13 @@ mod tests {
             };
             let (distance_mm, width_mm) = (exact_pose.gap.length(), 10f64.powf(log_width));
             let range = [(distance_mm - fraction_below * width_mm).max(0.0), distance_mm + fraction_above * width_mm];
-            let errors_at_angles = EndErrors::at_angles(&five_bar, &robot.content.ends[0], [a1, a2]);
-            let errors_over_range = EndErrors::over_range(&five_bar, &robot.content.ends[0], range);
+            let errors_at_angles = MarginErrors::at_angles(&five_bar, &robot.content.ends[0], [a1, a2]);
+            let errors_over_range = MarginErrors::over_range(&five_bar, &robot.content.ends[0], range);
             prop_assert!(errors_over_range.min_type2 <= exact_pose.type2 + 1e-12);
-            if !errors_over_range.are_margins_known {
+            if !errors_over_range.do_bounds_hold {
                 return Ok(());
             }
-            prop_assert!(errors_at_angles.are_margins_known);
+            prop_assert!(errors_at_angles.do_bounds_hold);
             for (name, error, bound) in [
                 ("type-2", errors_at_angles.type2, errors_over_range.type2),
                 ("type-1 left", errors_at_angles.type1_left, errors_over_range.type1_left),

@@ -48,9 +48,6 @@ pub struct EndMargins {
 }
 
 impl<'a> FiveBar<'a> {
-    /// A linkage without links, which never closes.
-    pub const NONE: Self = Self::new(LinkLengths::NONE, CouplerTables::NONE);
-
     /// Creates a linkage from its link lengths and the tables of its couplers.
     pub const fn new(links: LinkLengths, tables: CouplerTables<'a>) -> Self {
         Self { links, tables }

@@ -103,11 +103,12 @@ mod tests {
 
         #[test]
         fn a_stroke_includes_its_ends_but_no_step_beyond_them(
+            slider in any_slider(),
             min in 1u16..60_000,
             stroke_length in 1u16..5_000,
         ) {
             let max = min + stroke_length;
-            let slider = Slider { stroke_min: min, stroke_max: max, ..Slider::NONE };
+            let slider = Slider { stroke_min: min, stroke_max: max, ..slider_in_steps(&slider, -10.0, 10.0) };
             let square = |length: u16| u32::from(length) * u32::from(length);
             prop_assert!(slider.allows(square(min)) && slider.allows(square(max)));
             prop_assert!(!slider.allows(square(min) - 1) && !slider.allows(square(max) + 1));

@@ -107,7 +107,7 @@ pub fn read_latest<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings
 pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> SavedState {
     let mut state = read_latest(robot, memory, settings);
     if matches!(state, SavedState::Latest | SavedState::OneCopy) {
-        if settings.first_unfit_servo(robot).is_none() {
+        if settings.cover_gaits(robot) {
             return state;
         }
         state = SavedState::Unfit;

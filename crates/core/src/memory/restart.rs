@@ -8,10 +8,9 @@ use crate::numbers::rate::BaudRate;
 use crate::numbers::units::PulseWidth;
 
 /// The cause of a reset.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Cause {
     /// Power was switched on.
-    #[default]
     Power,
     /// The reset button was pressed, or a computer opened the port.
     External,
@@ -42,7 +41,7 @@ pub struct ServoState {
 }
 
 /// The information that survived a reset.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Restart {
     /// The reset's cause.
     pub cause: Cause,

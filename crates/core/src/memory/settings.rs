@@ -192,13 +192,12 @@ impl Settings {
             .apply(&robot.servo_calibration(servo))
     }
 
-    /// Returns the first servo whose travel does not cover the range that the gaits need; `None` if there is no such
-    /// servo.
+    /// True if the travel of every servo covers the range that the gaits need.
     #[inline(never)]
-    pub fn first_unfit_servo(&self, robot: &Robot) -> Option<Servo> {
-        Servo::all().find(|servo| {
-            let calibration = self.calibration(*servo, robot);
-            !robot.needed_travel(*servo).is_within(&calibration)
+    pub fn cover_gaits(&self, robot: &Robot) -> bool {
+        Servo::all().all(|servo| {
+            let calibration = self.calibration(servo, robot);
+            robot.needed_travel(servo).is_within(&calibration)
         })
     }
 

@@ -88,17 +88,6 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Creates the motion of a robot at power-on: its servos wake, then the robot stands.
-    pub fn new(robot: Robot<'static>) -> Self {
-        let mut motion = Self::unstarted(robot);
-        motion.speed_percent = FULL_SPEED_PERCENT;
-        motion.start_standing();
-        for servo in Servo::all() {
-            motion.calibrate(servo, motion.robot.servo_calibration(servo));
-        }
-        motion
-    }
-
     /// Creates a motion that has not begun. [`Motion::load_robot`] or [`Motion::start_standing`] must follow, then
     /// [`Motion::calibrate`] for every servo. With [`Robot::NONE`] all bits of the motion are zero, so it requires no
     /// initial value in flash.

@@ -141,8 +141,7 @@ mod tests {
             assert_eq!(offset_channel.sweep(wave, phase), plain_sweep);
             let reversed_channel = channel_with(0x1800, -(1 << 14));
             assert_eq!(reversed_channel.sweep(wave, phase), Sweep(-plain_sweep.0));
-            let still_channel = channel_with(0x1800, 0);
-            assert_eq!(still_channel.sweep(wave, phase), Sweep(0));
+            assert_eq!(channel_with(0x1800, 0).sweep(wave, phase), Sweep(0));
         }
     }
 

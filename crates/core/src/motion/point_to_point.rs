@@ -210,8 +210,7 @@ mod tests {
 
     #[test]
     fn a_move_to_the_current_pose_takes_eight_frames() {
-        let sweeps = compute_sweeps(77, 77, Slew::new(1000));
-        assert_eq!(sweeps, [77; 9]);
+        assert_eq!(compute_sweeps(77, 77, Slew::new(1000)), [77; 9]);
         let path = PointToPointMove::new(&to_pose([0; 4]), &to_pose([9; 4]), Slew::new(1000));
         let fraction = path.fraction_per_frame;
         assert_eq!(fraction, 32_768 / 8, "each frame covers an equal fraction");

@@ -7,7 +7,7 @@
 //! [`crate::guard::clearance`] accepts every pose in every cell. A pose outside the cells is not necessarily unsafe;
 //! the guard measures it.
 
-use lizard_avr::{Flash, flash};
+use lizard_avr::Flash;
 
 use crate::numbers::units::Sweep;
 
@@ -19,10 +19,6 @@ pub const ROW_BITS: u32 = 8;
 
 /// The binary logarithm of a column's width in steps of a sweep (1/65536 turn); the width is 0.7 deg.
 pub const COLUMN_BITS: u32 = 7;
-
-flash! {
-    const NO_ROWS: [[i8; 2]; 0] = [];
-}
 
 /// The map of the certified cells of a pair of servos, with rows in a table that several maps share. In a cell, every
 /// condition of the guard that depends only on these two servos holds.
@@ -36,11 +32,6 @@ pub struct CellMap<'a> {
     row_count: u8,
     /// The rows of all maps.
     rows: Flash<'a, [[i8; 2]]>,
-}
-
-impl CellMap<'static> {
-    /// A map without cells, with which the guard measures every pose.
-    pub const NONE: Self = Self::from_rows(0, 0, 0, NO_ROWS.as_slice());
 }
 
 impl<'a> CellMap<'a> {
@@ -149,11 +140,6 @@ mod tests {
 
     #[test]
     fn a_map_without_rows_contains_nothing() {
-        for row in i16::MIN..=i16::MAX {
-            for column in COLUMNS {
-                assert!(!CellMap::NONE.contains(Sweep(row), Sweep(column)));
-            }
-        }
         assert_matches_reference(-5, &[]);
     }
 

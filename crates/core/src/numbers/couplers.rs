@@ -36,16 +36,6 @@ pub struct CouplerTables<'a> {
     pub skew: Option<Flash<'a, Table>>,
 }
 
-impl CouplerTables<'_> {
-    /// No tables: every shape is unknown.
-    pub const NONE: Self = Self {
-        rise: None,
-        stretched_rise: None,
-        folded_rise: None,
-        skew: None,
-    };
-}
-
 lizard_avr::pod! {
     /// The lengths of a five-bar's two couplers, in steps, and values derived from these lengths.
     #[derive(Debug, PartialEq, Eq)]
@@ -64,16 +54,6 @@ lizard_avr::pod! {
 }
 
 impl CouplerLengths {
-    /// Couplers without length, which never close a loop.
-    pub const NONE: Self = Self {
-        left: 0,
-        right: 0,
-        reach_sq: 0,
-        folded_sq: 0,
-        reach_zeros: 32,
-        folded_zeros: 32,
-    };
-
     /// Creates the lengths of a left and a right coupler, in steps.
     pub const fn new(left: i16, right: i16) -> Self {
         let [reach_sq, folded_sq] = compute_limits_sq(left, right);

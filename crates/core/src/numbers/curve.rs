@@ -28,11 +28,6 @@ pub struct Curve<'a> {
 }
 
 impl<'a> Curve<'a> {
-    /// Creates the curve of the function in `table`, which is defined up to `max_argument`.
-    pub const fn new(table: Flash<'a, Table>, max_argument: u32) -> Self {
-        Self::with_leading_zeros(table, max_argument.leading_zeros() as u16)
-    }
-
     /// Creates the curve of the function in `table`, which is defined up to an argument with `zeros` leading zeros.
     pub const fn with_leading_zeros(table: Flash<'a, Table>, zeros: u16) -> Self {
         Self {
@@ -106,6 +101,11 @@ mod tests {
         })
     }
 
+    /// Creates the curve of the function in `table`, which is defined up to `max_argument`.
+    fn make_curve(table: &Table, max_argument: u32) -> Curve<'_> {
+        Curve::with_leading_zeros(Flash::from(table), max_argument.leading_zeros() as u16)
+    }
+
     /// Falling functions that fill the table: a logarithm, a negative root, and a straight line.
     const FUNCTIONS: [fn(f64) -> f64; 3] = [
         |u| -2900.0 * u.log2(),
@@ -126,7 +126,7 @@ mod tests {
         ) {
             let function = FUNCTIONS[function_index];
             let table = make_table(max_argument, function);
-            let curve = Curve::new(Flash::from(&table), max_argument);
+            let curve = make_curve(&table, max_argument);
             let argument = (f64::from(max_argument >> octave) * octave_fraction) as u32;
             if argument < (max_argument >> OCTAVE_COUNT).max(1) {
                 return Ok(());
@@ -145,7 +145,7 @@ mod tests {
             index in 0..ENTRY_COUNT,
         ) {
             let table: Table = core::array::from_fn(|index| 5000 - 50 * index as i16);
-            let curve = Curve::new(Flash::from(&table), max_argument);
+            let curve = make_curve(&table, max_argument);
             let entry_argument = argument_at(max_argument, index);
             if (u64::from(max_argument >> OCTAVE_COUNT)..=max_argument.into()).contains(&entry_argument) {
                 prop_assert_eq!(curve.at(entry_argument as u32), Some(table[index]));
@@ -157,7 +157,7 @@ mod tests {
     fn between_two_entries_any_function_is_rounded_to_nearest() {
         for slope in [-5, 5] {
             let table: Table = core::array::from_fn(|index| slope * index as i16);
-            let curve = Curve::new(Flash::from(&table), 1 << 20);
+            let curve = make_curve(&table, 1 << 20);
             // In the last octave, the distance between entries is 1/16 of the octave.
             for argument in (1 << 20..1 << 21).step_by(997) {
                 let octaves = f64::from(argument) / f64::from(1 << 20) - 1.0;
@@ -174,7 +174,7 @@ mod tests {
     fn a_curve_has_no_value_below_its_first_octave() {
         let table = [7; ENTRY_COUNT];
         for max_argument in [0, 1, 1023, 1024, 5000, 1 << 20, u32::MAX] {
-            let curve = Curve::new(Flash::from(&table), max_argument);
+            let curve = make_curve(&table, max_argument);
             // The table covers the entire octave that contains 1/1024 of the largest argument.
             let min_argument: u32 = (max_argument >> OCTAVE_COUNT)
                 .checked_ilog2()

@@ -39,21 +39,6 @@ lizard_avr::pod! {
 }
 
 impl LinkLengths {
-    /// A linkage without links, which never closes.
-    pub const NONE: Self = Self {
-        base: 0,
-        left_crank: 0,
-        right_crank: 0,
-        couplers: CouplerLengths::NONE,
-        square_shift: 1,
-        area_shift: 0,
-        area_reciprocal: 0,
-        left_reciprocal: 0,
-        right_reciprocal: 0,
-        scale: Scale { bits: 0 },
-        padding: 0,
-    };
-
     /// Creates the link lengths, in steps of `scale`, and computes their factors. The sum of base and cranks must be at
     /// most [`MAX_LENGTH_STEPS`].
     ///

@@ -2,11 +2,10 @@
 
 /// A baud rate of the serial port. The variants are numbered from the fastest to the slowest; the number is stored in
 /// RAM that survives a reset.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum BaudRate {
     /// 115 200 baud, the rate on the USB port.
-    #[default]
     Fastest,
     /// 57 600 baud, half of the fastest rate.
     Half,

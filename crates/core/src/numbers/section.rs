@@ -71,7 +71,8 @@ lizard_avr::pod! {
         pub name: [u8; MAX_NAME_BYTES],
         /// The hash that identifies the robot, which is the CRC-32 of all parts except the header and the maps.
         pub hash: u32,
-        /// The hash of the servo pins, pulses and neutral angles, with which saved settings are stored.
+        /// The hash of the servo pins, pulses and neutral angles. Settings are saved with it, and are valid only for
+        /// servos with the same hash.
         pub servo_hash: u32,
     }
 }
@@ -88,7 +89,7 @@ lizard_avr::pod! {
         pub neutral_angles: [Angle; 4],
         /// The calibration of the servos.
         pub calibration: [Calibration; 4],
-        /// The range of each servo's sweeps that the gaits need.
+        /// The range of sweeps that the gaits need from each servo.
         pub needed_travel: [SweepRange; 4],
         /// The smallest allowed margins.
         pub limits: Limits,
@@ -173,8 +174,8 @@ pub enum SectionError {
     Harmful,
 }
 
-/// The offset of the first byte that the CRC covers.
-const CRC_RANGE_START: usize = offset_of!(Header, name);
+/// The offset of the first byte that the checksum covers.
+const CHECKED_START: usize = offset_of!(Header, name);
 
 /// Checks the section at the beginning of a region, and returns the section's length.
 ///
@@ -196,7 +197,7 @@ pub fn check(flash: Region) -> Result<u16, SectionError> {
         return Err(SectionError::Damaged);
     }
     let mut checksum = Checksum::EMPTY;
-    let mut offset = CRC_RANGE_START as u16;
+    let mut offset = CHECKED_START as u16;
     while offset < length {
         checksum = checksum.with_byte(flash.read(offset));
         offset += 1;

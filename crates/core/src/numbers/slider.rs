@@ -34,18 +34,6 @@ lizard_avr::pod! {
 }
 
 impl Slider {
-    /// A slider without length.
-    pub const NONE: Self = Self {
-        scale: Scale { bits: 0 },
-        offset: 0,
-        base: 0,
-        front_arm: 0,
-        rear_arm: 0,
-        nominal_length: 0,
-        stroke_min: 0,
-        stroke_max: 0,
-    };
-
     /// True if a squared length, in squared steps, is within the stroke.
     pub fn allows(&self, length_sq: u32) -> bool {
         let square = |length| mul_unsigned(length, length);

@@ -185,8 +185,7 @@ mod tests {
     #[test]
     fn every_hundredth_of_a_degree_survives_conversion_to_an_angle_and_back() {
         for centideg in 0..36_000u16 {
-            let angle = Angle::from_centideg(centideg.into());
-            assert_eq!(angle.centideg(), centideg);
+            assert_eq!(Angle::from_centideg(centideg.into()).centideg(), centideg);
         }
     }
 

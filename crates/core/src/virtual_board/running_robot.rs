@@ -27,7 +27,7 @@ pub struct RunningRobot {
 impl RunningRobot {
     /// Powers on a robot with good supplies and a blank EEPROM.
     pub fn power_on(robot: Robot<'static>) -> Self {
-        Self::with_memory(robot, Eeprom::blank(), Restart::default())
+        Self::with_memory(robot, Eeprom::blank(), Restart::NONE)
     }
 
     /// Starts a robot with this EEPROM after a restart.
@@ -60,17 +60,12 @@ impl RunningRobot {
         self.main.console().has_output(self.main.control())
     }
 
-    /// True once the watchdog has ended the pulses and the main loop has stopped until the reset.
-    pub const fn is_stopped_by_watchdog(&self) -> bool {
-        self.board.are_pulses_ended()
-    }
-
     /// Runs steps of the main loop until it only waits for time to pass.
     ///
     /// # Panics
     /// Panics if the main loop never becomes idle.
     pub fn settle(&mut self) {
-        if self.is_stopped_by_watchdog() {
+        if self.board.are_pulses_ended() {
             return;
         }
         for _ in 0..100_000 {
@@ -202,7 +197,7 @@ impl RunningRobot {
     /// until the reset. Returns true if the processor was reset.
     pub fn stall(&mut self, ms: u16) -> bool {
         let mut is_reset = self.board.pass_time(ms);
-        while self.is_stopped_by_watchdog() && !is_reset {
+        while self.board.are_pulses_ended() && !is_reset {
             is_reset = self.board.pass_time(1);
         }
         if is_reset {

@@ -60,7 +60,7 @@ fn a_stall_below_125_ms_changes_nothing_and_a_longer_stall_restarts_the_program(
     assert!(!hung_robot.board.are_pulses_ended());
     let restart = hung_robot.board.last_restart();
     assert_eq!((restart.cause, restart.reset_count), (Cause::Watchdog, 1));
-    let servo_state = restart.servo_state_before.expect("it is in the RAM");
+    let servo_state = restart.servo_state_before.expect("the RAM has kept it");
     assert_eq!(servo_state.pose, pose);
 }
 
@@ -72,7 +72,7 @@ fn a_reset_keeps_the_pose_and_a_loss_of_power_does_not() {
     robot.board.send(b"stand\r");
     robot.reset(Cause::External);
     let servo_state_before = robot.board.last_restart().servo_state_before;
-    assert_eq!(servo_state_before.expect("it is in the RAM").pose, pose);
+    assert_eq!(servo_state_before.expect("the RAM has kept it").pose, pose);
     let claim = "bytes that the main loop has not read are lost";
     assert_eq!(robot.board.unread_count(), 0, "{claim}");
     robot.cycle_power(None);

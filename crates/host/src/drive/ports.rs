@@ -41,10 +41,11 @@ struct PortReport {
 
 impl PortReport {
     fn from_port(port: UsbPort) -> Self {
+        let [vendor, product] = port.chip.map(|id| format!("{id:04x}"));
         Self {
-            vendor: format!("{:04x}", port.vendor_id),
-            product: format!("{:04x}", port.product_id),
-            chip: describe_chip([port.vendor_id, port.product_id]),
+            vendor,
+            product,
+            chip: describe_chip(port.chip),
             may_open: port::may_open(&port.name),
             open_in: port::find_holder(&port.name),
             name: port
@@ -91,12 +92,7 @@ fn format_ports(ports: &[PortReport]) -> String {
     for report in ports {
         let name = report.name.as_deref().unwrap_or("no name");
         let chip = report.chip.unwrap_or("not the chip of a UNO");
-        let PortReport {
-            port,
-            vendor,
-            product,
-            ..
-        } = report;
+        let (port, vendor, product) = (&report.port, &report.vendor, &report.product);
         _ = write!(text, "{port}  {name} ({vendor}:{product}), {chip}");
         if let Some(program) = &report.open_in {
             _ = write!(text, "; open in {program}");
@@ -117,19 +113,18 @@ fn format_ports(ports: &[PortReport]) -> String {
 mod tests {
     use super::*;
 
-    fn port_report(vendor_id: u16, product_id: u16, product_name: Option<&str>) -> PortReport {
+    fn port_report(chip: [u16; 2], product_name: Option<&str>) -> PortReport {
         PortReport::from_port(UsbPort {
             name: "/dev/no-such-port".to_owned(),
-            vendor_id,
-            product_id,
+            chip,
             product_name: product_name.map(str::to_owned),
         })
     }
 
     #[test]
     fn the_list_shows_usb_ids_and_the_kind_of_board() {
-        let uno = port_report(0x2341, 0x0043, Some("Arduino_Uno\u{1b}"));
-        let clone = port_report(0x1a86, 0x7523, None);
+        let uno = port_report([0x2341, 0x0043], Some("Arduino_Uno\u{1b}"));
+        let clone = port_report([0x1a86, 0x7523], None);
         let output = format_ports(&[uno, clone]);
         let output: Vec<&str> = output.lines().collect();
         for (line, part) in [
@@ -148,7 +143,7 @@ mod tests {
 
     #[test]
     fn the_list_shows_the_remedy_and_the_program_for_a_forbidden_port() {
-        let mut forbidden_port = port_report(0x2341, 0x0043, None);
+        let mut forbidden_port = port_report([0x2341, 0x0043], None);
         forbidden_port.may_open = false;
         forbidden_port.open_in = Some("screen (process 7)".to_owned());
         let output = format_ports(&[forbidden_port]);
@@ -157,7 +152,7 @@ mod tests {
             "{output}"
         );
         assert!(output.contains("usermod -aG dialout"), "{output}");
-        let mut free_port = port_report(0x2341, 0x0043, None);
+        let mut free_port = port_report([0x2341, 0x0043], None);
         free_port.may_open = true;
         assert!(!format_ports(&[free_port]).contains("dialout"));
     }

@@ -21,7 +21,7 @@ use crate::shared::spread::{SpreadArgs, Spreadable};
 /// Number of sampling rings in the inscribed circle of a single design.
 const FINE_RING_COUNT: usize = 128;
 /// Number of sampling rings in the inscribed circles of many designs.
-pub const COARSE_RING_COUNT: usize = 32;
+const COARSE_RING_COUNT: usize = 32;
 
 /// Dimensional synthesis of the head and tail five-bar
 ///

@@ -182,7 +182,7 @@ fn compute_report(robot: &Robot, solution: &Solution) -> Report {
 /// Returns the singular pose of `kind` nearest to the crank angles `angles`, and its distance in degrees; `None` if
 /// there is no such pose. Scans the singularity curves over all left crank angles, then repeats the scan around the
 /// nearest pose with smaller steps.
-pub fn find_nearest_singularity(
+fn find_nearest_singularity(
     five_bar: &FiveBar,
     kind: Singularity,
     angles: [f64; 2],

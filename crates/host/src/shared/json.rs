@@ -4,17 +4,17 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-/// Prints the value as a line of JSON if `is_json` is true, otherwise the text that `format_text` returns.
+/// Prints the value as a line of JSON if `prints_json` is true, otherwise the text that `format_text` returns.
 ///
 /// # Errors
 /// Fails if standard output cannot be written.
 pub fn print_json_or_text(
-    is_json: bool,
+    prints_json: bool,
     value: &impl Serialize,
     format_text: impl FnOnce() -> String,
 ) -> Result<(), crate::Failure> {
     let mut out = io::stdout().lock();
-    match is_json {
+    match prints_json {
         true => write_line(&mut out, value)?,
         false => out.write_all(format_text().as_bytes())?,
     }

@@ -17,7 +17,7 @@ use crate::simulate::sim::supplies;
 /// Longest wait for an answer after a command was sent, ms. The firmware answers much sooner.
 const ANSWER_TIMEOUT_MS: u64 = 200;
 /// Longest wait for the banner after power-on, ms.
-pub(crate) const BANNER_TIMEOUT_MS: u64 = 500;
+const BANNER_TIMEOUT_MS: u64 = 500;
 /// Cycles of the UNO per byte on the serial line, rounded up.
 const CYCLES_PER_BYTE: u64 = 1400;
 

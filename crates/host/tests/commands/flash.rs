@@ -21,28 +21,32 @@ const BOOT_LOADER_START: usize = 0x7e00;
 #[test]
 fn flash_without_built_firmware_fails_only_because_the_port_is_missing() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
+    fs::write(folder.path().join("a.hex"), HEX).expect("the file is written");
     let cases = "
         flash /dev/no-such-port => no-such-port
         flash /dev/no-such-port --only-robot => no-such-port
         flash /dev/no-such-port --robot large => no-such-port
+        flash /dev/no-such-port --image a.hex => lizard: /dev/no-such-port does not exist; USB serial ports of this machine: ...
     ";
     expect_refusals(folder.path(), cases);
 }
 
 #[test]
-fn flash_image_writes_the_image_of_any_robot_in_an_empty_folder() {
+fn flash_image_writes_the_image_of_any_robot_and_creates_missing_folders() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     for (name, options) in [("large", ""), ("unequal", "--only-robot")] {
         let command = format!("flash image --robot {name} {options}");
         let start = Instant::now();
-        let outcome = run_line_in(folder.path(), &format!("{command} --output x.hex"));
+        let line = format!("{command} --output new/{name}/x.hex");
+        let outcome = run_line_in(folder.path(), &line);
         let duration = start.elapsed();
         assert!(duration < Duration::from_secs(20), "{duration:?}");
         assert_eq!(outcome.stderr, "");
         let output = outcome.expect_success();
-        assert!(output.starts_with("x.hex: "), "{output}");
+        let file = format!("new/{name}/x.hex");
+        assert!(output.starts_with(&format!("{file}: ")), "{output}");
         assert_contains(&output, &format!("robot {name} "));
-        let text = fs::read_to_string(folder.path().join("x.hex")).expect("the file is readable");
+        let text = fs::read_to_string(folder.path().join(file)).expect("the file is readable");
         let piped_text = run_line_in(folder.path(), &command).expect_success();
         assert!(piped_text == text, "the piped image equals the file");
         // The simulator's HEX reader shares no code with the writer.
@@ -82,16 +86,6 @@ fn flash_image_refuses_an_invalid_robot_and_writes_no_file() {
     run_line_in(folder.path(), "flash image --robot x.toml --output x.hex")
         .expect_refusal_with("x.toml");
     assert!(!folder.path().join("x.hex").exists());
-}
-
-#[cfg(unix)]
-#[test]
-fn the_refusal_of_a_missing_port_names_the_port() {
-    let folder = tempfile::tempdir().expect("a temporary folder is created");
-    fs::write(folder.path().join("a.hex"), HEX).expect("the file is written");
-    run_line_in(folder.path(), "flash /dev/no-such-port --image a.hex").expect_refusal_with(
-        "lizard: /dev/no-such-port does not exist; USB serial ports of this machine: ...",
-    );
 }
 
 #[test]

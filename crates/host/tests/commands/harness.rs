@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use lizard_time_limit::TIME_LIMIT;
+use tempfile::NamedTempFile;
 
 /// The result of a run of `lizard`.
 #[derive(Debug)]
@@ -140,35 +141,29 @@ pub fn with_paper(args: &str) -> String {
 }
 
 /// A temporary robot file, which `drop` removes.
-pub struct TemporaryRobot(PathBuf);
+pub struct TemporaryRobot(NamedTempFile);
 
 impl TemporaryRobot {
     /// Copies the paper's robot file with some changes.
-    pub fn from_paper(name: &str, changes: &[(&str, &str)]) -> Self {
-        Self::from_file("robots/paper.toml", name, changes)
+    pub fn from_paper(changes: &[(&str, &str)]) -> Self {
+        Self::from_file("robots/paper.toml", changes)
     }
 
     /// Copies a file of the repository with some changes.
-    pub fn from_file(source_path: &str, name: &str, changes: &[(&str, &str)]) -> Self {
+    pub fn from_file(source_path: &str, changes: &[(&str, &str)]) -> Self {
         let mut text = read_file(source_path);
         for (old, new) in changes {
             assert!(text.contains(old), "{source_path} has no {old:?}");
             text = text.replacen(old, new, 1);
         }
-        let path = std::env::temp_dir().join(format!("{}-{name}.toml", std::process::id()));
-        std::fs::write(&path, text).expect("the file is written");
-        Self(path)
+        let file = NamedTempFile::new().expect("a temporary file is created");
+        std::fs::write(file.path(), text).expect("the file is written");
+        Self(file)
     }
 
     /// Adds the option for this robot file to a command line.
     pub fn add_option(&self, args: &str) -> String {
-        format!("{args} --robot {}", self.0.display())
-    }
-}
-
-impl Drop for TemporaryRobot {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_file(&self.0);
+        format!("{args} --robot {}", self.0.path().display())
     }
 }
 

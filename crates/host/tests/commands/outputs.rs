@@ -114,14 +114,6 @@ fn an_output_to_standard_output_is_appended_to_the_text_before_it() {
 }
 
 #[test]
-fn flash_image_creates_missing_folders() {
-    let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let line = "flash image --robot large --output new/folder/x.hex";
-    run_line_in(folder.path(), line).expect_success();
-    assert!(folder.path().join("new/folder/x.hex").is_file());
-}
-
-#[test]
 #[cfg(unix)]
 fn a_broken_link_called_robot_toml_is_an_error() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");

@@ -16,7 +16,7 @@ fn make_parts(name: &str, options: &str) -> (PathBuf, Outcome) {
 /// Runs `lizard parts` with the paper's robot, which gets additional tables.
 fn make_parts_with_tables(name: &str, tables: &str) -> (PathBuf, Outcome) {
     let tables = format!("{tables}\n[limits]");
-    let robot = TemporaryRobot::from_paper(name, &[("[limits]", &tables)]);
+    let robot = TemporaryRobot::from_paper(&[("[limits]", &tables)]);
     make_parts(name, &robot.add_option(""))
 }
 
@@ -82,7 +82,7 @@ fn the_option_corner_writes_only_the_parts_of_one_corner() {
 #[test]
 fn a_wrong_mass_is_reported_with_the_correct_mass() {
     let make_summary = |options: &str| make_parts("parts-light", options).1.expect_success();
-    let light_robot = TemporaryRobot::from_paper("light", &[("mass = 435.0", "mass = 280.0")]);
+    let light_robot = TemporaryRobot::from_paper(&[("mass = 435.0", "mass = 280.0")]);
     let light_summary = make_summary(&light_robot.add_option(""));
     assert_contains(&light_summary, "The parts weigh 435 g");
     let advice = "\n[body]\nmass = 435.0\n";

@@ -9,7 +9,7 @@ use crate::harness::{assert_contains, read_file};
 fn matches_page(line: &str, page_line: &str) -> bool {
     page_line
         .strip_suffix("...")
-        .map_or(line == page_line, |start| line.starts_with(start))
+        .map_or(line == page_line, |prefix| line.starts_with(prefix))
 }
 
 #[test]
@@ -24,26 +24,26 @@ fn every_example_line_of_the_quickstart_gets_the_answer_on_the_page() {
     for line in &greeting[1..] {
         assert!(page.contains(line), "{line}");
     }
-    let mut line_count = 0;
+    let mut command_count = 0;
     for block in page.split("```text\n").skip(1) {
-        let block = block.split("```").next().expect("the block has a text");
+        let (block, _) = block.split_once("```").expect("the block has an end");
         for exchange in block.split("> ").skip(1) {
             let lines: Vec<&str> = exchange.lines().collect();
-            let (line, page_lines) = lines.split_first().expect("a line follows the prompt");
-            let mut answer = board.send(format!("{line}\r").as_bytes());
+            let (command, page_lines) = lines.split_first().expect("a line follows the prompt");
+            let mut answer_lines = board.send(format!("{command}\r").as_bytes());
             // After 100 frames, all motion has ended.
-            answer.extend(board.run_frames(100));
-            let mut line_pairs = answer.iter().zip(page_lines);
-            let is_as_shown = answer.len() == page_lines.len()
-                && line_pairs.all(|(answer, page_line)| matches_page(answer, page_line));
+            answer_lines.extend(board.run_frames(100));
+            let mut line_pairs = answer_lines.iter().zip(page_lines);
+            let is_as_shown = answer_lines.len() == page_lines.len()
+                && line_pairs.all(|(line, page_line)| matches_page(line, page_line));
             assert!(
                 is_as_shown,
-                "{line}\n  expected {page_lines:#?}\n  got {answer:#?}"
+                "{command}\n  expected {page_lines:#?}\n  got {answer_lines:#?}"
             );
-            line_count += 1;
+            command_count += 1;
         }
     }
-    assert!(line_count > 20, "{line_count} lines");
+    assert!(command_count > 20, "{command_count} commands");
 }
 
 #[test]
@@ -52,28 +52,28 @@ fn the_firmware_prints_every_message_of_the_troubleshooting_table() {
     let messages = read_file("crates/core/src/console/text.rs");
     let table = page.split_once("## Troubleshooting");
     let (_, table) = table.expect("the page has a troubleshooting table");
-    let mut codes = [false; 10];
+    let mut is_code_listed = [false; 10];
     let mut row_count = 0;
     for row in table.lines().filter(|line| line.starts_with('|')) {
         row_count += 1;
         for quoted in row.split('`').skip(1).step_by(2) {
-            let answer = if let Some(refusal) = quoted.strip_prefix("err ") {
+            let message = if let Some(refusal) = quoted.strip_prefix("err ") {
                 let (code, reason) = refusal.split_at(1);
-                codes[code.parse::<usize>().expect("a refusal has a code")] = true;
+                is_code_listed[code.parse::<usize>().expect("a refusal has a code")] = true;
                 reason
             } else if quoted.starts_with("# ") {
                 quoted
             } else {
                 continue;
             };
-            for phrase in answer.split("...") {
+            for phrase in message.split("...") {
                 assert_contains(&messages, phrase.trim_matches([' ', ',']));
             }
         }
     }
     assert!(row_count > 17, "{row_count} rows");
     assert!(
-        !codes[0] && codes[1..].iter().all(|is_listed| *is_listed),
-        "codes in the table: {codes:?}"
+        !is_code_listed[0] && is_code_listed[1..].iter().all(|is_listed| *is_listed),
+        "codes in the table: {is_code_listed:?}"
     );
 }

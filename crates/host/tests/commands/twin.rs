@@ -14,7 +14,7 @@ fn find_object(line: &str, key: &str, value: &str) -> Value {
 fn a_round_of_a_routine_matches_the_prediction_of_lizard_gaits() {
     const ROUTINES: &str = "[routine.tour]\nsteps = [\"walk 2\", \"rest 1 s\", \"left 2\", \"trot 1\", \"arc-left 2\"]\n\
          [routine.gaze]\nsteps = [\"look 1\"]\n[gait.stand]";
-    let robot = TemporaryRobot::from_paper("routines", &[("[gait.stand]", ROUTINES)]);
+    let robot = TemporaryRobot::from_paper(&[("[gait.stand]", ROUTINES)]);
     let run_twin = |routine: &str, servo: &str| {
         let line = format!("twin --json --gait {routine} --servo {servo}");
         let command = format!("{routine} 1");
@@ -57,7 +57,7 @@ fn robots_with_grained_pads_walk_and_turn_as_fast_as_docs_state() {
         let servo = format!("[servo]\nmodel = {servo}\n[servo.A1]");
         let friction_key = format!("friction = {friction}");
         let changes = [("[servo.A1]", &*servo), ("# friction = 0.7", &friction_key)];
-        let robot = TemporaryRobot::from_file("robots/grain.toml", "grain", &changes);
+        let robot = TemporaryRobot::from_file("robots/grain.toml", &changes);
         let rows = run_line(&robot.add_option("twin --json"), "").expect_json_lines();
         let find_value = |gait: &str, pointer: &str| {
             let row = rows.iter().find(|row| row["command"] == gait);

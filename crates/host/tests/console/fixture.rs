@@ -10,6 +10,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use lizard_time_limit::TIME_LIMIT;
+use rustix::process::{Pid, Signal, kill_process};
 use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
 use rustix::termios::{Winsize, tcsetwinsize};
 use tempfile::TempDir;
@@ -23,9 +24,9 @@ fn robot_path() -> PathBuf {
 }
 
 /// Prepares a run of `lizard`, with the robot under test if the board is simulated.
-pub fn lizard_command(folder: &TempDir, line: &str) -> Command {
+pub fn lizard_command(folder: &TempDir, command_line: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
-    let mut words = line.split_whitespace();
+    let mut words = command_line.split_whitespace();
     command.args(words.clone());
     if words.any(|word| ["sim", "--sim"].contains(&word)) {
         command.arg("--robot").arg(robot_path());
@@ -38,10 +39,11 @@ pub fn lizard_command(folder: &TempDir, line: &str) -> Command {
 /// Runs a command line of `lizard`; returns standard output, standard error and the exit code.
 pub fn run_unchecked(
     folder: &TempDir,
-    line: &str,
+    command_line: &str,
     input: impl AsRef<[u8]>,
 ) -> (String, String, Option<i32>) {
-    let output = TIME_LIMIT.run_command(&mut lizard_command(folder, line), input.as_ref());
+    let mut command = lizard_command(folder, command_line);
+    let output = TIME_LIMIT.run_command(&mut command, input.as_ref());
     let output = output.expect("the program ends");
     let [stdout, stderr] =
         [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
@@ -52,12 +54,12 @@ pub fn run_unchecked(
 #[track_caller]
 pub fn run(
     folder: &TempDir,
-    line: &str,
+    command_line: &str,
     input: impl AsRef<[u8]>,
     expected_code: i32,
 ) -> (String, String) {
-    let (stdout, stderr, code) = run_unchecked(folder, line, input);
-    assert_eq!(code, Some(expected_code), "{line}: {stderr}");
+    let (stdout, stderr, code) = run_unchecked(folder, command_line, input);
+    assert_eq!(code, Some(expected_code), "{command_line}: {stderr}");
     (stdout, stderr)
 }
 
@@ -65,6 +67,11 @@ pub fn run(
 pub fn wait_for_exit(child: &mut Child) -> ExitStatus {
     let status = TIME_LIMIT.wait_for_exit(child);
     status.expect("the program exits")
+}
+
+/// Sends a signal to a program.
+pub fn send_signal(child: &Child, signal: Signal) {
+    kill_process(Pid::from_child(child), signal).expect("the process exists");
 }
 
 /// Returns the first gait of the robot under test that moves.
@@ -94,8 +101,8 @@ impl Uno {
 
     fn start_with(folder: &TempDir, options: &str) -> Self {
         let link = folder.path().join("uno");
-        let line = format!("sim --pty {} {options}", link.display());
-        let mut command = lizard_command(folder, &line);
+        let command_line = format!("sim --pty {} {options}", link.display());
+        let mut command = lizard_command(folder, &command_line);
         let child = command.stdout(Stdio::null()).spawn();
         let child = child.expect("the program starts");
         let mut uno = Self { child, link };
@@ -140,7 +147,7 @@ pub fn open_terminal() -> (File, OwnedFd, PathBuf) {
 
 /// Starts `lizard` in its own pseudo terminal, 100 columns wide; returns the test's side of the terminal and the
 /// program.
-pub fn spawn_in_terminal(folder: &TempDir, line: &str) -> (File, Child) {
+pub fn spawn_in_terminal(folder: &TempDir, command_line: &str) -> (File, Child) {
     let (test_side, program_side, _) = open_terminal();
     let size = Winsize {
         ws_row: 30,
@@ -150,7 +157,7 @@ pub fn spawn_in_terminal(folder: &TempDir, line: &str) -> (File, Child) {
     };
     tcsetwinsize(&program_side, size).expect("the size is set");
     let copy_stdio = || Stdio::from(program_side.try_clone().expect("the clone succeeds"));
-    let child = lizard_command(folder, line)
+    let child = lizard_command(folder, command_line)
         .stdin(copy_stdio())
         .stdout(copy_stdio())
         .stderr(copy_stdio())
@@ -168,8 +175,8 @@ pub struct TerminalSession {
 }
 
 impl TerminalSession {
-    pub fn start(folder: &TempDir, line: &str) -> Self {
-        let (test_side, child) = spawn_in_terminal(folder, line);
+    pub fn start(folder: &TempDir, command_line: &str) -> Self {
+        let (test_side, child) = spawn_in_terminal(folder, command_line);
         let mut screen_reader = test_side.try_clone().expect("the clone succeeds");
         let (sender, receiver) = mpsc::channel();
         std::thread::spawn(move || {

@@ -1,23 +1,20 @@
-//! Tests of `lizard console` and the other commands for a board, with a simulated UNO on a pseudo terminal. The tests
-//! run in real time, so each test takes a few seconds.
+//! Tests of `lizard console` and the other commands for a board, with a simulated UNO on a pseudo terminal, and of all
+//! commands at a terminal. The tests run in real time, so each test takes a few seconds.
 #![cfg(target_os = "linux")]
 
 mod by_radio;
 mod fixture;
+mod terminal;
 
 use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::Path;
-use std::process::{Child, Stdio};
+use std::process::Stdio;
 
 use lizard_time_limit::TIME_LIMIT;
-use rustix::process::{Pid, Signal, kill_process};
-use rustix::termios::{LocalModes, tcgetattr};
+use rustix::process::Signal;
 
-use fixture::{
-    Device, TerminalSession, Uno, find_moving_gait, lizard_command, run, spawn_in_terminal,
-    wait_for_exit,
-};
+use fixture::{Device, TerminalSession, Uno, lizard_command, run, send_signal, wait_for_exit};
 
 #[test]
 fn console_prints_the_banner_and_the_answers_to_a_script_in_order() {
@@ -41,7 +38,8 @@ fn console_prints_the_banner_and_the_answers_to_a_script_in_order() {
         ]
     );
     assert!(stdout.contains("\n# A4 trim 0.00 limit "), "{stdout}");
-    assert!(stderr.contains("(a simulated UNO)"), "no port: {stderr}");
+    let is_port_named = stderr.contains("(a simulated UNO)");
+    assert!(is_port_named, "{stderr}");
     run(&folder, "console --sim", "cal\nstop\nquit\nfly\n", 0);
     // A line that is not UTF-8 does not end the script: `stop` must not be lost.
     let (stdout, stderr) = run(&folder, "console --sim", b"fly\xff\nstop\n", 1);
@@ -60,8 +58,8 @@ fn restore_writes_a_backup_to_the_board_and_a_refused_calibration_changes_nothin
     };
     let restore = |file: &str, text: &str, expected_code: i32| {
         fs::write(folder.path().join(file), text).expect("the file is written");
-        let line = format!("calibrate restore {file} {port}");
-        run(&folder, &line, "", expected_code)
+        let command_line = format!("calibrate restore {file} {port}");
+        run(&folder, &command_line, "", expected_code)
     };
     let first_text = back_up("a.toml");
     let changed_text = first_text.replacen("trim = 0.0", "trim = -1.75", 1);
@@ -110,8 +108,8 @@ fn info_prints_a_boards_firmware_and_settings_and_changes_nothing() {
 fn a_terminal_session_has_line_editing_and_reconnects_to_an_unplugged_board() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let uno = Uno::start(&folder);
-    let line = format!("console --record a.jsonl {}", uno.port());
-    let mut session = TerminalSession::start(&folder, &line);
+    let command_line = format!("console --record a.jsonl {}", uno.port());
+    let mut session = TerminalSession::start(&folder, &command_line);
     session.wait_for("# lizard ");
     session.wait_for("no fault");
     // Ctrl-A moves the cursor to the start of the line, where the missing letter is inserted.
@@ -122,13 +120,18 @@ fn a_terminal_session_has_line_editing_and_reconnects_to_an_unplugged_board() {
     drop(uno);
     session.wait_for("the port is gone: the board was unplugged, or its cable is loose");
     session.wait_for("waiting for the board");
+    session.press_and_wait("\x1b", "> stop");
+    session.press_and_wait("stand 9\r", "> stand 9");
     let _uno = Uno::start(&folder);
     session.wait_for("is connected again: # lizard ");
+    session.wait_for("(not sent or not answered: `stand 9`)");
+    session.wait_for("ok stop");
     session.press_and_wait("stand\r", "ok stand");
     session.press("\x04");
     assert_eq!(session.wait_for_exit(), Some(0));
     let history = fs::read_to_string(folder.path().join("lizard/history"));
-    assert_eq!(history.expect("the history is readable"), "stop\nstand\n");
+    let history = history.expect("the history is readable");
+    assert_eq!(history, "stop\nstand 9\nstand\n");
     let recording = fs::read_to_string(folder.path().join("a.jsonl"));
     let recording = recording.expect("the file is readable");
     let has_banner = recording.contains("\"note\":\"# lizard ");
@@ -139,8 +142,8 @@ fn a_terminal_session_has_line_editing_and_reconnects_to_an_unplugged_board() {
 fn the_recording_of_a_script_shows_that_the_port_disappeared() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let uno = Uno::start(&folder);
-    let line = format!("console --record a.jsonl {}", uno.port());
-    let mut child = lizard_command(&folder, &line)
+    let command_line = format!("console --record a.jsonl {}", uno.port());
+    let mut child = lizard_command(&folder, &command_line)
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
@@ -151,7 +154,7 @@ fn the_recording_of_a_script_shows_that_the_port_disappeared() {
         read_recording().contains("\"begin\":")
     });
     drop(uno);
-    // The program's input is still open.
+    // The program must end although its input is still open.
     assert_eq!(wait_for_exit(&mut child).code(), Some(1));
     let recording = read_recording();
     assert!(recording.ends_with("\"gone\":null}\n"), "{recording}");
@@ -204,7 +207,7 @@ fn replay_draws_and_summarises_a_recorded_session() {
         assert!(stdout.contains(line), "{line}: {stdout}");
     }
     let drawing = fs::read_to_string(folder.path().join("a.svg")).expect("the file is readable");
-    // If the machine pauses for a second, all four servos' curves have a gap.
+    // A machine that pauses for a second leaves a gap, which splits each servo's curve into two.
     let curve_count = drawing.matches("<polyline").count();
     assert!(
         curve_count >= 4 && curve_count.is_multiple_of(4),
@@ -222,8 +225,8 @@ fn a_command_refuses_a_port_that_another_program_has_open() {
     let port = uno.port();
     let mut other_session = TerminalSession::start(&folder, &format!("console {port}"));
     other_session.wait_for("# lizard ");
-    let line = format!("calibrate backup a.toml {port}");
-    let (_, stderr) = run(&folder, &line, "", 1);
+    let command_line = format!("calibrate backup a.toml {port}");
+    let (_, stderr) = run(&folder, &command_line, "", 1);
     let owner_text = format!("is open in lizard (process {})", other_session.child.id());
     other_session.press("\x03");
     assert!(stderr.contains(&owner_text), "{stderr}");
@@ -237,8 +240,8 @@ fn the_error_for_a_board_without_lizard_firmware_shows_its_output() {
         // Writing fails while no program has the port open.
         let _ = terminal.write_all(b"Grbl 1.1h ['$' for help]\r\n");
     });
-    let line = format!("calibrate backup a.toml {}", device.port);
-    let (_, stderr) = run(&folder, &line, "", 1);
+    let command_line = format!("calibrate backup a.toml {}", device.port);
+    let (_, stderr) = run(&folder, &command_line, "", 1);
     device.stop();
     let expected = "this is not a lizard: expected `# lizard ...`, got `Grbl 1.1h ['$' for help]`";
     assert!(stderr.contains(expected), "{stderr}");
@@ -247,7 +250,7 @@ fn the_error_for_a_board_without_lizard_firmware_shows_its_output() {
 }
 
 #[test]
-fn the_error_for_a_silent_board_counts_the_unanswered_lines() {
+fn the_error_for_a_board_that_becomes_silent_counts_the_lines_not_sent() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let mut received_bytes: Vec<u8> = Vec::new();
     let device = Device::start(move |terminal| {
@@ -259,8 +262,8 @@ fn the_error_for_a_silent_board_counts_the_unanswered_lines() {
             let _ = terminal.write_all(b"ok gait=rest pose=1,2,3,4 fault=none\r\n");
         }
     });
-    let line = format!("console --record a.jsonl {}", device.port);
-    let (_, stderr) = run(&folder, &line, "walk\nspeed 50\nstop\n", 1);
+    let command_line = format!("console --record a.jsonl {}", device.port);
+    let (_, stderr) = run(&folder, &command_line, "walk\nspeed 50\nstop\n", 1);
     device.stop();
     let expected = "lizard: the robot did not accept 3 of 3 lines, the first `walk`: not sent\n";
     assert!(stderr.ends_with(expected), "{stderr}");
@@ -279,7 +282,7 @@ fn commands_refuse_invalid_input_with_a_message() {
         "other.toml: format must be \"lizard calibration 1\": this is not a calibration";
     let not_a_session = "other.toml: this is not a session of `lizard console --record`: \
         \"lizard record 1\" is missing";
-    for (line, expected) in [
+    for (command_line, expected) in [
         (
             "console /dev/no-such-port",
             "/dev/no-such-port does not exist; USB serial ports of this machine: ",
@@ -293,15 +296,16 @@ fn commands_refuse_invalid_input_with_a_message() {
             "calibrate reads single keys; run it in a terminal",
         ),
     ] {
-        let (stdout, stderr) = run(&folder, line, "", 2);
+        let (stdout, stderr) = run(&folder, command_line, "", 2);
         let message = stderr.trim().strip_prefix("lizard: ");
         let is_expected = message.is_some_and(|message| message.starts_with(expected));
-        assert!(is_expected && stdout.is_empty(), "{line}: {stderr}");
+        let is_as_expected = is_expected && stdout.is_empty();
+        assert!(is_as_expected, "{command_line}: {stderr}");
     }
 }
 
 #[test]
-fn the_link_to_a_simulated_board_replaces_no_other_file_and_ends_with_the_board() {
+fn the_symlink_to_a_simulated_board_replaces_no_other_file_and_ends_with_the_board() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let (board_link, other_link) = (folder.path().join("uno"), folder.path().join("other"));
     std::os::unix::fs::symlink("a-file", &other_link).expect("the link is created");
@@ -316,9 +320,10 @@ fn the_link_to_a_simulated_board_replaces_no_other_file_and_ends_with_the_board(
 
     // A killed run leaves a broken link, which a new run replaces.
     std::os::unix::fs::symlink("/dev/pts/999999", &board_link).expect("the link is created");
-    let line = format!("sim --pty {}", board_link.display());
+    let command_line = format!("sim --pty {}", board_link.display());
     // A standard output that cannot be written to must not end the board.
-    let child = lizard_command(&folder, &line).stdout(full_device()).spawn();
+    let mut command = lizard_command(&folder, &command_line);
+    let child = command.stdout(full_device()).spawn();
     let mut child = child.expect("the program starts");
     TIME_LIMIT.wait_for("a port at the end of the link", || board_link.exists());
     send_signal(&child, Signal::TERM);
@@ -329,24 +334,7 @@ fn the_link_to_a_simulated_board_replaces_no_other_file_and_ends_with_the_board(
 }
 
 #[test]
-fn draw_prints_no_drawing_to_a_terminal_and_merge_reads_no_parts_from_it() {
-    let folder = tempfile::tempdir().expect("a temporary folder is created");
-    for (line, message) in [
-        (
-            "draw --wiring",
-            "lizard: standard output is a terminal; write the SVG to a file with --output",
-        ),
-        ("merge", "lizard: no parts given; "),
-    ] {
-        let mut session = TerminalSession::start(&folder, line);
-        session.wait_for(message);
-        assert!(!session.new_text.contains("<svg"), "{line}");
-        assert_eq!(session.wait_for_exit(), Some(2), "{line}");
-    }
-}
-
-#[test]
-fn a_backup_on_a_full_device_ends_with_code_1() {
+fn a_backup_whose_output_cannot_be_printed_ends_with_code_1() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let mut command = lizard_command(&folder, "calibrate backup a.toml --sim");
     let mut child = command
@@ -361,123 +349,4 @@ fn a_backup_on_a_full_device_ends_with_code_1() {
 fn full_device() -> File {
     let device = File::options().write(true).open("/dev/full");
     device.expect("the device can be opened")
-}
-
-fn send_signal(child: &Child, signal: Signal) {
-    kill_process(Pid::from_child(child), signal).expect("the process exists");
-}
-
-/// Reads the state of a process, as `ps` prints it: S for sleeping, R for running, T for stopped.
-fn read_process_state(child: &Child) -> char {
-    let path = format!("/proc/{}/stat", child.id());
-    let stat = fs::read_to_string(path).expect("the process exists");
-    let (_, rest) = stat.rsplit_once(") ").expect("a state follows the name");
-    rest.chars().next().expect("the state is a letter")
-}
-
-/// True if a terminal is in cooked mode: programs get whole lines, and keys are echoed.
-fn is_cooked(terminal: &File) -> bool {
-    let modes = tcgetattr(terminal).expect("the terminal has modes");
-    modes
-        .local_modes
-        .contains(LocalModes::ICANON | LocalModes::ECHO)
-}
-
-#[test]
-fn control_z_restores_the_terminal_and_the_program_can_continue() {
-    let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let uno = Uno::start(&folder);
-    let port = uno.port();
-    for (command, first_text, keys, next_text) in [
-        ("console", "no fault", "stop\r", "ok stop"),
-        ("calibrate", "before you begin", "\r", "fit the horns"),
-    ] {
-        let mut session = TerminalSession::start(&folder, &format!("{command} {port}"));
-        session.wait_for(first_text);
-        assert!(!is_cooked(&session.keys), "{command}");
-        session.press("\x1a");
-        TIME_LIMIT.wait_for("a stopped program", || {
-            read_process_state(&session.child) == 'T'
-        });
-        assert!(is_cooked(&session.keys), "{command}");
-        send_signal(&session.child, Signal::CONT);
-        TIME_LIMIT.wait_for("raw mode", || !is_cooked(&session.keys));
-        session.press_and_wait(keys, next_text);
-        session.press(if command == "console" { "\x04" } else { "q" });
-        assert_eq!(session.wait_for_exit(), Some(0), "{command}");
-    }
-}
-
-#[test]
-fn a_program_ends_when_its_terminal_is_closed() {
-    let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let uno = Uno::start(&folder);
-    let port = uno.port();
-    for (command, first_text) in [("console", "no fault"), ("calibrate", "before you begin")] {
-        let line = format!("{command} {port}");
-        let (mut test_side, mut child) = spawn_in_terminal(&folder, &line);
-        let printed_text = TIME_LIMIT.run(first_text, move || {
-            let mut text = String::new();
-            let mut bytes = [0; 4096];
-            while !text.contains(first_text) {
-                let count = test_side.read(&mut bytes).expect("output is readable");
-                text.push_str(&String::from_utf8_lossy(&bytes[..count]));
-            }
-            // This closes the terminal, since no other process has the test's side open.
-            drop(test_side);
-            text
-        });
-        assert!(printed_text.contains(first_text));
-        let code = wait_for_exit(&mut child).code();
-        assert_eq!(code, Some(0), "{command}");
-    }
-}
-
-#[test]
-fn sigterm_restores_the_terminal() {
-    let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let uno = Uno::start(&folder);
-    let port = uno.port();
-    for (command, first_text) in [("console", "no fault"), ("calibrate", "before you begin")] {
-        let mut session = TerminalSession::start(&folder, &format!("{command} {port}"));
-        session.wait_for(first_text);
-        assert!(!is_cooked(&session.keys), "{command}");
-        send_signal(&session.child, Signal::TERM);
-        let code = wait_for_exit(&mut session.child).code();
-        assert_eq!(code, Some(0), "{command}");
-        assert!(is_cooked(&session.keys), "{command}");
-    }
-}
-
-#[test]
-fn console_does_not_say_that_an_ended_simulated_robot_continues() {
-    let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let mut session = TerminalSession::start(&folder, "console --sim");
-    session.wait_for("no fault");
-    let gait = find_moving_gait(&folder);
-    session.press_and_wait(&format!("{gait}\r"), &format!("ok {gait}"));
-    session.wait_for(&format!("{gait}  "));
-    session.press("\x04");
-    TIME_LIMIT.wait_for("the end of the program", || {
-        let status = session.child.try_wait();
-        status.expect("the wait succeeds").is_some()
-    });
-    TIME_LIMIT.poll(|| {
-        session.read_output();
-        session.new_text.contains("\x1b[?2004l")
-    });
-    let text = &session.new_text;
-    assert!(!text.contains("continues its gait"), "{text:?}");
-}
-
-#[test]
-fn control_characters_of_a_robot_file_do_not_reach_the_terminal() {
-    let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let text = include_str!("../../../../robots/paper.toml");
-    let text = format!("{text}\n[gait.\"\\u001b]0;owned\\u0007\"]\nperiod = 1.0\n");
-    fs::write(folder.path().join("bad.toml"), text).expect("the file is written");
-    let (_, stderr) = run(&folder, "gaits --robot bad.toml", "", 2);
-    assert!(stderr.contains("]0;owned"), "{stderr}");
-    let control_count = stderr.trim_end().matches(|c: char| c.is_control()).count();
-    assert_eq!(control_count, 0, "{stderr:?}");
 }

@@ -4,7 +4,6 @@ use fastrand::Rng;
 
 use super::*;
 use crate::card::CardPose;
-use crate::key::{PLAY_INDEX, TWIST_INDEX};
 use crate::problem::MODEL_ERROR;
 
 /// Number of gaits.

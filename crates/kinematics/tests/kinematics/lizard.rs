@@ -42,12 +42,12 @@ proptest! {
     #[test]
     fn all_four_loops_close_in_the_chassis_frame((robot, pose, solution) in any_solved_robot()) {
         let [t1, t4, t8, t5] = pose;
-        // In chassis angles both loops have the same vector equation, although the frames of the ends are mirrored.
+        // With angles in the chassis frame, one equation holds for both ends, although their own frames are mirrored.
         let head = loop_residuals(&robot.end(End::Head), [t1, solution.theta2(), solution.theta3(), t4]);
         let tail = loop_residuals(&robot.end(End::Tail), [t5, solution.theta6(), solution.theta7(), t8]);
         prop_assert!(head[0].hypot(head[1]) < 1e-9);
         prop_assert!(tail[0].hypot(tail[1]) < 1e-9);
-        // R10 + R14 = R11 + R12 + R13, and the same on the right.
+        // The paper's R10 + R14 = R11 + R12 + R13 on the left, as a difference, and the same loop on the right.
         let ([a1, a2, a3, a4], l) = (robot.shafts(), &robot.links);
         let left = a1 + cis(t1 + 90.0) * l.l14
             - a4 - cis(t5 - 90.0) * l.l11 - cis(solution.left.phi()) * (l.l12 + l.l13 + solution.left.s);
@@ -80,8 +80,9 @@ proptest! {
         prop_assert!((original.margins.type1[2] - mirrored.margins.type1[3]).abs() < 1e-9);
     }
 
+    // The ranges of A2, A3 and A4 are the mirror images of A1's.
     #[test]
-    fn every_pose_in_the_papers_safe_box_is_safe(
+    fn every_pose_with_a1_between_94_and_162_degrees_is_safe(
         t1 in 94.0..162.0f64, t4 in 18.0..86.0f64, t8 in 18.0..86.0f64, t5 in 94.0..162.0f64,
     ) {
         let solution = paper_lizard().solve(&[t1, t4, -t8, -t5].into()).unwrap();
@@ -112,13 +113,13 @@ fn each_violated_limit_has_its_message() {
     let slider_message = "left slider travel +47.09 mm is above +45.00 mm";
     let crossed_message = "head crank tips are crossed: -18.57 mm from left to right";
     // The leg is beyond its change point: its margin is large enough in magnitude, but negative.
-    let beyond_message = "margin leg_rf -0.319 is below 0.300";
+    let change_point_message = "margin leg_rf -0.319 is below 0.300";
     for (pose, message) in [
         ([176.0, a2, a3, a4], leg_message),
         ([60.0, 60.0, a3, a4], arm_message),
         ([88.0, a2, a3, 272.0], slider_message),
         ([50.0, 130.0, a3, a4], crossed_message),
-        ([138.59, 341.41, 318.59, 221.41], beyond_message),
+        ([138.59, 341.41, 318.59, 221.41], change_point_message),
     ] {
         assert_eq!(violation_messages(pose), [message]);
     }

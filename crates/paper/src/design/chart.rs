@@ -1,4 +1,4 @@
-//! The performance charts: the performance of every design in the triangle of r1, r2 and r3.
+//! The performance charts: the performance of every design in the triangle of [`Proportions`].
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::performance::Performance;
 use super::proportions::Proportions;
 
-/// A point of the charts, with lengths in units of D.
+/// A point of the charts. Lengths are in the unit D: the sum of crank, coupler and half the base, divided by 0.9.
 #[derive(Clone, Copy, Serialize)]
 pub struct ChartPoint {
     /// The point in the triangle of proportions.
@@ -17,8 +17,9 @@ pub struct ChartPoint {
     pub performance: Performance,
 }
 
-/// Computes the charts at the points of [`grid_points`](super::grid_points), on all cores. The results and
-/// their order are the same in every run. Calls `report_progress` after each point.
+/// Computes the charts at these points, usually those of [`grid_points`](super::grid_points), on all cores. The
+/// inscribed circle of each design is sampled on `ring_count` rings. The results and their order are the same in every
+/// run. Calls `report_progress` after each point.
 pub fn compute_chart_points(
     points: Vec<Proportions>,
     ring_count: usize,

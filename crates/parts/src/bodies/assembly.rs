@@ -4,7 +4,6 @@ use lizard_kinematics::{Real, Solution, Vector};
 use lizard_robot::Robot;
 
 use crate::bodies::builder::AssemblyBuilder;
-use crate::bodies::cranks::Cranks;
 use crate::bodies::layout::Layout;
 use crate::bodies::{chassis, ends, legs, links, sliders, struts};
 use crate::layers::body::{Body, Mount, end_and_index};
@@ -71,7 +70,6 @@ impl Assembly {
     }
 
     /// Returns the same robot with changed bodies, for tests and for custom parts.
-    #[must_use]
     pub fn with_changed_bodies(mut self, change: impl FnOnce(&mut Vec<Body>)) -> Self {
         change(&mut self.bodies);
         self
@@ -86,21 +84,20 @@ impl Assembly {
 
     /// Computes the placement of a mount's frame at a pose without lags of the legs.
     pub fn placement(&self, mount: Mount, pose: &Solution) -> Placement {
-        let (lizard, directions) = (self.robot.lizard(), pose.legs.map(|leg| leg.direction));
-        self.placement_for_cranks(mount, &Cranks { lizard, directions })
+        self.placement_for_cranks(mount, pose.legs.map(|leg| leg.direction))
     }
 
-    /// Computes the placement of a mount's frame from crank directions of any number type.
+    /// Computes the placement of a mount's frame from the directions of the cranks: unit vectors of any number type,
+    /// chassis frame, servo order. Only the directions for the mount's own servos must be valid.
     pub(crate) fn placement_for_cranks<T: Real>(
         &self,
         mount: Mount,
-        cranks: &Cranks<T>,
+        cranks: [Vector<T>; 4],
     ) -> Placement<T> {
-        let placement_on_crank = |servo: usize, origin: Vector| {
-            Placement::new(Vector::constant(origin), cranks.directions[servo])
-        };
+        let placement_on_crank =
+            |servo: usize, origin: Vector| Placement::new(Vector::constant(origin), cranks[servo]);
         let link_placement = |servo: usize| placement_on_crank(servo, self.layout.shafts[servo]);
-        let legs = &self.layout.legs;
+        let (lizard, legs) = (self.robot.lizard(), &self.layout.legs);
         match mount {
             Mount::Chassis => {
                 let Placement { origin, x_axis } = Placement::CHASSIS;
@@ -120,14 +117,14 @@ impl Assembly {
             }
             Mount::Coupler(servo) => {
                 let (end, index) = end_and_index(servo);
-                let five_bar = cranks.five_bar(end);
+                let five_bar = lizard.end_pose_unchecked(end, cranks);
                 let tip = [five_bar.left_tip, five_bar.right_tip][index];
                 let coupler_direction = [five_bar.left_coupler, five_bar.right_coupler][index];
-                let origin = self.robot.lizard().to_chassis(end, tip);
+                let origin = lizard.to_chassis(end, tip);
                 Placement::new(origin, end.mirror(coupler_direction))
             }
             Mount::Sleeve(side) | Mount::Rod(side) => {
-                let slider = cranks.slider(side);
+                let slider = lizard.side_pose_unchecked(side, cranks);
                 let rear_shaft = Vector::constant(self.layout.shafts[side.servos()[1]]);
                 let tip = match mount {
                     Mount::Rod(_) => slider.front_tip,

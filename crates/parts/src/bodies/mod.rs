@@ -6,7 +6,6 @@
 pub(crate) mod assembly;
 pub(crate) mod builder;
 pub(crate) mod chassis;
-pub(crate) mod cranks;
 pub(crate) mod decoration;
 pub(crate) mod ends;
 pub(crate) mod fittings;

@@ -14,7 +14,7 @@ pub fn format_dxf(sheet: &Sheet, kerf: f64) -> String {
     let [low, high] = compute_sheet_bounds(sheet);
     let (name, thickness, half_kerf) = (&sheet.name, sheet.thickness, kerf / 2.0);
     dxf.add_group(999, format!(
-        "{name}: mm, 1:1, {thickness:.2} mm thick; lines are the part's edge, cut {half_kerf:.2} mm outside (kerf {kerf} mm)"
+        "{name}: mm, 1:1, {thickness:.2} mm thick; lines are the part's edge, cut {half_kerf:.2} mm away in the waste (kerf {kerf} mm)"
     ));
     dxf.add_groups(&[(0, "SECTION"), (2, "HEADER")]);
     dxf.add_groups(&[(9, "$ACADVER"), (1, "AC1009")]);

@@ -21,8 +21,8 @@ pub fn format_svg(sheet: &Sheet, kerf: f64) -> String {
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.3}mm\" height=\"{height:.3}mm\" \
          viewBox=\"0 0 {width:.3} {height:.3}\">\n\
-         <desc>{name}: 1:1 in mm, {thickness:.2} mm thick. Lines are the edge of the part; a cutter goes {half_kerf:.2} mm \
-         outside of them (kerf {kerf} mm).</desc>\n"
+         <desc>{name}: 1:1 in mm, {thickness:.2} mm thick. Lines are the edge of the part; the cutter's path is \
+         {half_kerf:.2} mm away from them, on the side of the waste (kerf {kerf} mm).</desc>\n"
     );
     for (SheetLayer { name, loops }, colour) in sheet.layers.iter().zip(COLOURS.iter().cycle()) {
         let style = format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"0.1\"");

@@ -14,9 +14,15 @@ use crate::part::Part;
 /// Formats a body's name for the guide, such as `M3 x 12` for a screw, or noun and engraved mark for a printed part,
 /// such as `link, marked 13`. Returns `None` for a lead, and for a printed body that is not in `parts`.
 pub fn format_name(body: &Body, parts: &[Part]) -> Option<String> {
+    // The narrowest layer of a screw is its shank.
+    let shank_diameter = || {
+        let layers = body.prisms.iter();
+        let diameters = layers.map(|layer| layer.filled_shapes[0].diameter());
+        diameters.fold(f64::INFINITY, f64::min)
+    };
     Some(match body.kind {
-        Kind::Screw(length) => format!("M3 x {length}"),
-        Kind::HexScrew(length) => format!("M3 x {length}, hexagon head"),
+        Kind::Screw(length) => format!("M{} x {length}", shank_diameter()),
+        Kind::HexScrew(length) => format!("M{} x {length}, hexagon head", shank_diameter()),
         Kind::HornScrew(length) => format!("horn screw, {length} mm"),
         Kind::Nut => "lock nut".to_owned(),
         Kind::Standoff(length) => format!("standoff, {length} mm"),
@@ -115,4 +121,19 @@ pub fn make_servo_and_end_labels(assembly: &Assembly, pose: &Solution) -> Vec<La
     let ends = [(end_y, "HEAD"), (-end_y, "TAIL")];
     let ends = ends.map(|(y, name)| label_at(Vector::new(0.0, y), name));
     servos.chain(ends).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_screws_name_has_the_diameter_in_robot_toml() {
+        let text = include_str!("../../../../robots/paper.toml");
+        let robot = lizard_robot::Robot::parse(&format!("{text}\n[parts.screw]\ndiameter = 2.5"));
+        let assembly = Assembly::new(&robot.expect("the robot is valid"));
+        let screw = assembly.body("screw height LF");
+        let name = format_name(screw.expect("the foot has a screw"), &[]);
+        assert_eq!(name.as_deref(), Some("M2.5 x 10"));
+    }
 }

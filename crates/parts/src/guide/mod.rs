@@ -109,14 +109,13 @@ fn make_guide(
     let mut files = vec![OutputFile::new("guide/robot.svg", robot_picture)];
     let mut text = format!(
         "# Building the robot\n\n![The robot](robot.svg)\n\n{INTRODUCTION}\n\n{}\n",
-        format_part_notes(&parts)
+        format_part_notes(&parts, assembly.robot().parts().screw.diameter)
     );
     let _ = writeln!(text, "## What is needed\n\n{bill}");
     let mut added_bodies: Vec<&Body> = Vec::new();
     for (number, step) in (1..).zip(&steps) {
-        let is_added = |body: &Body| added_bodies.iter().any(|added| added.name == body.name);
-        let is_new = |body: &&Body| step.adds(body) && !is_added(body);
-        let new_bodies: Vec<&Body> = assembly.bodies().iter().filter(is_new).collect();
+        let bodies = assembly.bodies().iter();
+        let new_bodies: Vec<&Body> = bodies.filter(|body| step.adds(body)).collect();
         let (title, instructions) = (step.title, &step.instructions);
         let _ = writeln!(text, "## {number}. {title}\n\n{instructions}\n");
         if new_bodies.is_empty() {
@@ -152,8 +151,8 @@ fn make_guide(
     Ok(files)
 }
 
-/// Formats the guide's text about holes to drill, and about the marks on the parts.
-fn format_part_notes(parts: &[Part]) -> String {
+/// Formats the guide's text about holes to drill for screws of this diameter, mm, and about the marks on the parts.
+fn format_part_notes(parts: &[Part], screw_diameter: f64) -> String {
     let format_holes = |part: &Part| match part.build_printed_layers() {
         (_, 0) => None,
         (_, 1) => Some(format!("a hole in each {}", part.name)),
@@ -161,7 +160,7 @@ fn format_part_notes(parts: &[Part]) -> String {
     };
     let hole_texts: Vec<_> = parts.iter().filter_map(format_holes).collect();
     format!(
-        "Some holes are closed by one printed layer of {PRINT_LAYER_MM} mm, because a pocket is below them during printing. Open them with a 3 mm drill \
+        "Some holes are closed by one printed layer of {PRINT_LAYER_MM} mm, because a pocket is below them during printing. Open them with a {screw_diameter} mm drill \
          or a screw: {}. Parts that exist in two mirrored forms have the numbers of their servos engraved, such as 13 for A1 and A3.",
         hole_texts.join(", ")
     )

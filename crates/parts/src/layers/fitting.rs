@@ -99,7 +99,7 @@ pub struct FittingSpec {
     pub grams: f64,
     /// Size of the reserved space: to the right, forward, up, mm.
     pub size: [f64; 3],
-    /// Article to buy, without rating and size.
+    /// Article to buy, without rating and size; empty for a piece of the second terminal strip and for an option.
     pub article: &'static str,
     /// Position on the robot, in words.
     pub place: &'static str,
@@ -180,7 +180,7 @@ impl Fitting {
                 name: "ground strip",
                 grams: 18.0,
                 size: [17.5, 97.0, 14.5],
-                article: "terminal strip, 12 ways, pitch 8 mm, for ground",
+                article: "terminal strip, 12 ways, pitch 8 mm (3 A size)",
                 place: "under the plate, left",
                 fastening: "two cable ties through the plate's slots",
                 examples: strip_examples(12.0),
@@ -189,7 +189,7 @@ impl Fitting {
                 name: "supply strip",
                 grams: 9.0,
                 size: [17.5, 49.0, 14.5],
-                article: "terminal strip, 6 ways of the second strip, for +5 V",
+                article: "",
                 place: "under the plate, right",
                 fastening: "two cable ties through the plate's slots",
                 examples: strip_examples(6.0),
@@ -198,7 +198,7 @@ impl Fitting {
                 name: "signal strip",
                 grams: 7.5,
                 size: [17.5, 41.0, 14.5],
-                article: "terminal strip, 5 ways of the second strip, for the signals",
+                article: "",
                 place: "on the deck's left wing, rear half",
                 fastening: "foam tape, and a cable tie through the wing's slots",
                 examples: strip_examples(5.0),
@@ -207,7 +207,7 @@ impl Fitting {
                 name: "plus way",
                 grams: 1.5,
                 size: [17.5, 8.5, 14.5],
-                article: "terminal strip, the last way of the second strip, for 7.4 V",
+                article: "",
                 place: "on the deck's right wing, between switch and fuse",
                 fastening: "foam tape",
                 examples: strip_examples(1.0),
@@ -291,7 +291,7 @@ impl Fitting {
                 name: "place for a radio module",
                 grams: 0.0,
                 size: [16.5, 37.5, 8.0],
-                article: "radio module with a serial line",
+                article: "",
                 place: "on the deck's left wing, front half",
                 fastening: "foam tape",
                 examples: [
@@ -302,18 +302,15 @@ impl Fitting {
         }
     }
 
-    /// Formats the row of the bill of materials; empty for a piece of another strip and for an optional part.
+    /// Formats the row of the bill of materials; empty for a part that is listed otherwise or not at all.
     pub fn format_bill_row(self) -> String {
         let FittingSpec { article, size, .. } = self.spec();
         let [x, y, z] = size;
         let max_size = format!("at most {x} x {y} x {z} mm");
         match self {
-            Self::GroundStrip => {
-                format!("terminal strip, 12 ways, pitch 8 mm (3 A size), {max_size}")
-            }
             // A second strip is cut into the supply, signal and plus pieces.
             Self::SupplyStrip => Self::GroundStrip.format_bill_row(),
-            Self::SignalStrip | Self::PlusTerminal | Self::RadioSpace => String::new(),
+            _ if article.is_empty() => String::new(),
             Self::Resistor | Self::Strap | Self::BatteryPlug | Self::BarrelPlug => {
                 article.to_owned()
             }
@@ -328,7 +325,7 @@ impl Fitting {
     pub fn price_class(self) -> PriceClass {
         match self {
             Self::Resistor => PriceClass::A,
-            Self::Converter | Self::Alarm | Self::RadioSpace => PriceClass::C,
+            Self::Converter | Self::Alarm => PriceClass::C,
             _ => PriceClass::B,
         }
     }

@@ -1,6 +1,6 @@
 //! Joints at which the robot's closed loops are cut to obtain a tree of bodies. Constraints close the loops again.
 
-use lizard_kinematics::{End, Side, Vector};
+use lizard_kinematics::{End, Side};
 use lizard_robot::servo::LEG_NAMES;
 
 use crate::layers::body::Mount;
@@ -14,8 +14,8 @@ pub(super) struct CutJoint {
     pub name: String,
     /// The two bodies.
     pub bodies: [Node; 2],
-    /// The common point, frame of the first body, mm.
-    pub point: Vector,
+    /// Position of the common point on the x axis of the first body's frame, mm.
+    pub x: f64,
 }
 
 impl CutJoint {
@@ -30,15 +30,7 @@ impl Writer<'_> {
     pub(super) fn list_cut_joints(&self) -> Vec<CutJoint> {
         let lizard = self.assembly.robot().lizard();
         let mut joints = Vec::new();
-        // Each point is on the x axis of the first body.
-        let mut add_joint = |name: String, bodies: [Node; 2], x: f64| {
-            let point = Vector::new(x, 0.0);
-            joints.push(CutJoint {
-                name,
-                bodies,
-                point,
-            });
-        };
+        let mut add_joint = |name, bodies, x| joints.push(CutJoint { name, bodies, x });
         for end in End::ALL {
             let bodies = end.servos().map(Mount::Coupler).map(Node::OnMount);
             let length = lizard.end(end).left_coupler_length;

@@ -26,7 +26,6 @@ pub struct Block {
 
 impl Floor {
     /// Creates a level floor without blocks, with the friction coefficients of robot.toml.
-    #[must_use]
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
             blocks: Vec::new(),

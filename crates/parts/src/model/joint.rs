@@ -1,6 +1,5 @@
 //! Joints of the models: names without spaces, ranges, motors, springs, friction.
 
-use lizard_kinematics::Side;
 use lizard_robot::SLOT_LENGTH;
 use lizard_robot::servo::SERVO_NAMES;
 
@@ -42,18 +41,14 @@ impl Writer<'_> {
                 let play = self.scene.play.to_radians();
                 [-play, play]
             }
-            (None, Node::OnMount(Mount::Rod(side))) => self.stroke_range(side).map(|mm| mm * MILLI),
+            (None, Node::OnMount(Mount::Rod(side))) => {
+                let (limits, neutral_stroke) = (robot.limits(), self.neutral.side(side).s);
+                [limits.stroke_min, limits.stroke_max].map(|limit| (limit - neutral_stroke) * MILLI)
+            }
             (None, Node::SlotPin(_)) => [0.0, SLOT_LENGTH * MILLI],
             _ => return None,
         };
         Some(range.map(round))
-    }
-
-    /// Smallest and largest change of a slider's length from neutral, mm.
-    fn stroke_range(&self, side: Side) -> [f64; 2] {
-        let limits = self.assembly.robot().limits();
-        let neutral_stroke = self.neutral.side(side).s;
-        [limits.stroke_min, limits.stroke_max].map(|limit| limit - neutral_stroke)
     }
 
     /// Largest torque (N m) and largest rate (rad/s) of the motor that drives a body's joint; `None` if no motor does.
@@ -85,7 +80,7 @@ impl Writer<'_> {
             (None, Node::OnMount(Mount::Rod(_))) => [0.0, friction.slider_force],
             (None, Node::Pad(_)) => [self.leaf_damping(), 0.0],
             // Grease damps a link that moves freely within its play.
-            (None, Node::OnMount(Mount::Link(_))) => [1e-5, 0.0],
+            (None, Node::OnMount(Mount::Link(_))) => [1e-5, self.scene.pin_friction * MILLI],
             (None, Node::SlotPin(_)) => [0.1, 0.0],
             _ => [0.0, self.scene.pin_friction * MILLI],
         };

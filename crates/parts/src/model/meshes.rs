@@ -29,7 +29,6 @@ impl Piece {
 
 impl Pieces<'_> {
     /// Makes the meshes for URDF and SDF, mm, each in the frame of its body and with its file name in the mesh folder.
-    #[must_use]
     pub fn make_meshes(&self, scene: &Scene) -> Vec<OutputFile> {
         let mut mesh_files = Vec::new();
         for node in Node::all(scene.strut_spring.is_some(), scene.play > 0.0) {

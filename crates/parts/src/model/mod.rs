@@ -46,20 +46,17 @@ pub struct Pieces<'a> {
 
 impl Pieces<'_> {
     /// Formats a scene as an MJCF file for MuJoCo. Its struts and play must equal those in [`Pieces::compute`].
-    #[must_use]
     pub fn format_mjcf(&self, neutral: &Solution, scene: &Scene) -> String {
         self.writer(neutral, scene).write_mjcf()
     }
 
     /// Formats the robot of a scene as URDF, with the condition of [`Pieces::format_mjcf`]. The file refers to meshes
     /// ([`Pieces::make_meshes`]) in `folder`: a path or a URL that ends with a slash.
-    #[must_use]
     pub fn format_urdf(&self, neutral: &Solution, scene: &Scene, folder: &str) -> String {
         self.writer(neutral, scene).write_urdf(folder)
     }
 
     /// Formats the robot of a scene as SDF, with `scene` and `folder` as in [`Pieces::format_urdf`].
-    #[must_use]
     pub fn format_sdf(&self, neutral: &Solution, scene: &Scene, folder: &str) -> String {
         self.writer(neutral, scene).write_sdf(folder)
     }

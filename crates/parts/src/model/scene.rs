@@ -40,7 +40,6 @@ pub struct Scene {
 
 impl Scene {
     /// Creates the scene of the standing robot according to its robot.toml.
-    #[must_use]
     pub fn for_assembly(assembly: &Assembly) -> Self {
         let (drive, ground) = (assembly.robot().drive(), assembly.robot().ground());
         let stance = ground.stance;
@@ -109,7 +108,6 @@ const SETTLE_DURATION_S: f64 = 0.3;
 impl Trajectory {
     /// Creates the trajectory of `cycle_count` cycles of a gait at its own pace, after a slow approach from neutral,
     /// with the angles of the firmware's tables. The last `measured_cycle_count` cycles are measured.
-    #[must_use]
     pub fn for_gait(
         robot: &Robot,
         gait: &CheckedGait,

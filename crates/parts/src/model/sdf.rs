@@ -29,7 +29,7 @@ impl Writer<'_> {
         for cut_joint in self.list_cut_joints() {
             let [first, second] = cut_joint.bodies.map(Node::identifier);
             let name = cut_joint.identifier();
-            let position = format_metres([cut_joint.point.x, cut_joint.point.y, 0.0]);
+            let position = format_metres([cut_joint.x, 0.0, 0.0]);
             // A ball joint is enough: all axes are vertical, and a hinge would constrain their direction twice.
             self.xml.write(format_args!(
                 r#"<joint name="{name}" type="ball">

@@ -6,6 +6,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use lizard_kinematics::Vector;
 use lizard_robot::servo::SERVO_NAMES;
 
 use crate::layers::body::Mount;
@@ -134,9 +135,10 @@ impl Writer<'_> {
     /// Writes the two frames of a cut joint, one on each body.
     fn write_coinciding_frames(&mut self, cut_joint: &CutJoint) {
         let [first, second] = cut_joint.bodies;
-        let point = self.placement(first).map(cut_joint.point);
+        let point_on_first = Vector::new(cut_joint.x, 0.0);
+        let point = self.placement(first).map(point_on_first);
         let point_on_second = self.placement(second).unmap(point);
-        let halves = [(first, cut_joint.point), (second, point_on_second)];
+        let halves = [(first, point_on_first), (second, point_on_second)];
         for (number, (node, position)) in (1..).zip(halves) {
             let frame = format!("closing_{}_{number}", cut_joint.identifier());
             let parent = node.identifier();

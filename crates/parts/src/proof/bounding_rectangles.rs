@@ -62,7 +62,7 @@ fn extend_rectangles<const N: usize>(
             regions.extend(region.halves(index));
             continue;
         }
-        let placement = assembly.placement_for_cranks(mount, &bounds);
+        let placement = assembly.placement_for_cranks(mount, bounds);
         let bodies = assembly.bodies().iter().zip(rectangles.iter_mut());
         for (body, rectangle) in bodies.filter(|(body, _)| body.mount == mount) {
             for (point, radius) in list_points(body) {

@@ -11,7 +11,6 @@ use lizard_robot::Robot;
 
 use super::interval::Interval;
 use super::interval_dual::IntervalDual;
-use crate::bodies::cranks::Cranks;
 
 /// Relaxation of the margins' limits, as a sine.
 const SINE_RELAXATION: f64 = 0.005;
@@ -71,21 +70,15 @@ impl<const N: usize> Region<N> {
     }
 }
 
-/// Computes the cranks of some servos at these angles, deg. The cranks of other servos get a placeholder direction.
-fn cranks_at<'a, const N: usize, T: Real>(
-    robot: &'a Robot,
-    servos: &[usize; N],
-    angles: [T; N],
-) -> Cranks<'a, T> {
+/// Computes the crank directions, in servo order, of some servos at these angles, deg. The cranks of other servos get a
+/// placeholder direction.
+fn cranks_at<const N: usize, T: Real>(servos: &[usize; N], angles: [T; N]) -> [Vector<T>; 4] {
     let (sines, cosines) = T::sin_cos_all(angles);
     let mut directions = [Vector::new(T::constant(1.0), T::constant(0.0)); 4];
     for (i, servo) in servos.iter().enumerate() {
         directions[*servo] = Vector::new(cosines[i], sines[i]);
     }
-    Cranks {
-        lizard: robot.lizard(),
-        directions,
-    }
+    directions
 }
 
 /// A bound of a servo's angle.
@@ -169,16 +162,16 @@ impl<'a> RelaxedGuard<'a> {
         region_bound(&whole_region)
     }
 
-    /// Computes the cranks of some servos within a region and at its middle; `None` if the conditions that depend only
-    /// on these servos exclude every pose of the region.
+    /// Computes the crank directions of some servos, within a region and at its middle. `None` if the conditions that
+    /// depend only on these servos exclude every pose of the region.
     pub fn bound_cranks<const N: usize>(
         &self,
         servos: &[usize; N],
         region: &Region<N>,
-    ) -> Option<(Cranks<'a, IntervalDual<N>>, Cranks<'a, f64>)> {
+    ) -> Option<([Vector<IntervalDual<N>>; 4], [Vector; 4])> {
         let angles = std::array::from_fn(|i| IntervalDual::angle(i, region.bounds(i)));
-        let cranks = cranks_at(self.robot, servos, angles);
-        let middle_cranks = cranks_at(self.robot, servos, region.middle);
+        let cranks = cranks_at(servos, angles);
+        let middle_cranks = cranks_at(servos, region.middle);
         let is_violated = |(check, bounds, middle): (Check, IntervalDual<N>, f64)| {
             let value = bounds.tighten(middle, &region.half_widths).value;
             let [limit_at_low, limit_at_high] =
@@ -189,32 +182,29 @@ impl<'a> RelaxedGuard<'a> {
         let has_all =
             |servos_needed: [usize; 2]| servos_needed.iter().all(|servo| servos.contains(servo));
         // A leg's margin depends only on the crank's direction, not on the angle.
-        let (leg, zero) = (&self.robot.lizard().leg, IntervalDual::constant(0.0));
+        let (lizard, zero) = (self.robot.lizard(), IntervalDual::constant(0.0));
         let violates_leg = servos.iter().any(|&servo| {
             let end = End::from_servo(servo);
-            let bounds = leg.pose_at(end, zero, cranks.directions[servo]).margin;
-            let middle = leg
-                .pose_at(end, 0.0, middle_cranks.directions[servo])
-                .margin;
+            let bounds = lizard.leg.pose_at(end, zero, cranks[servo]).margin;
+            let middle = lizard.leg.pose_at(end, 0.0, middle_cranks[servo]).margin;
             is_violated((Check::LEG[servo], bounds, middle))
         });
         let violates_end = |end: End| {
-            let values = middle_cranks
-                .five_bar(end)
-                .conditions(end)
-                .map(|(_, value)| value);
-            let mut conditions = cranks.five_bar(end).conditions(end).into_iter().zip(values);
-            has_all(end.servos())
-                && conditions.any(|((check, bounds), value)| is_violated((check, bounds, value)))
+            let middle_pose = lizard.end_pose_unchecked(end, middle_cranks);
+            let values = middle_pose.conditions(end).map(|(_, value)| value);
+            let pose = lizard.end_pose_unchecked(end, cranks);
+            let mut conditions = pose.conditions(end).into_iter().zip(values);
+            conditions.any(|((check, bounds), value)| is_violated((check, bounds, value)))
         };
         let violates_side = |side: Side| {
             let check = Check::STROKE[usize::from(side == Side::Right)];
-            has_all(side.servos())
-                && is_violated((check, cranks.slider(side).s, middle_cranks.slider(side).s))
+            let bounds = lizard.side_pose_unchecked(side, cranks).s;
+            let middle = lizard.side_pose_unchecked(side, middle_cranks).s;
+            is_violated((check, bounds, middle))
         };
-        let is_refused = violates_leg
-            || End::ALL.into_iter().any(violates_end)
-            || Side::ALL.into_iter().any(violates_side);
+        let mut ends = End::ALL.into_iter().filter(|end| has_all(end.servos()));
+        let mut sides = Side::ALL.into_iter().filter(|side| has_all(side.servos()));
+        let is_refused = violates_leg || ends.any(violates_end) || sides.any(violates_side);
         (!is_refused).then_some((cranks, middle_cranks))
     }
 

@@ -129,11 +129,6 @@ impl NearestPair {
 }
 
 impl Proof {
-    /// The nearest two bodies that are not designed to touch; `None` if no such pair was checked.
-    pub fn nearest_separate_pair(&self) -> Option<&NearestPair> {
-        self.separate_pairs.first()
-    }
-
     /// Decides whether the parts fit.
     ///
     /// # Errors

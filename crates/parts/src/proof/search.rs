@@ -186,8 +186,8 @@ impl<const N: usize> Search<'_, N> {
         let (bounds, middle) = self.guard.bound_cranks(&self.servos, &region)?;
         // Placements of both mounts at the region's middle, and bounds for the whole region.
         let [(a, bounds_a), (b, bounds_b)] = self.task.mounts.map(|mount| {
-            let placement = self.assembly.placement_for_cranks(mount, &middle);
-            let bounds = self.assembly.placement_for_cranks(mount, &bounds);
+            let placement = self.assembly.placement_for_cranks(mount, middle);
+            let bounds = self.assembly.placement_for_cranks(mount, bounds);
             (placement, tighten(&bounds, &placement, &region))
         });
         let placement = b.relative_to(&a);

@@ -105,6 +105,10 @@ fn a_robot_that_does_not_fit_is_refused_with_its_reason() {
             "[parts]\nthickness = 3.0",
             ["alarm and battery strap", "parts.battery"],
         ),
+        (
+            "[parts]\nfit = 0.0",
+            ["alarm and battery strap", "parts.fit"],
+        ),
     ] {
         let fit = build_slotted_assembly("paper", toml).check_fit();
         let message = fit.expect_err(toml).to_string();

@@ -77,7 +77,7 @@ pub fn read_bodies<'a>(document: &'a Document) -> Bodies<'a> {
     ) {
         for body in parent.children().filter(|node| node.has_tag_name("body")) {
             let quat = read_numbers(body, "quat");
-            assert_eq!(quat[1..3], [0.0; 2], "the body is upright");
+            assert_eq!(quat[1..3], [0.0; 2], "the body is tilted");
             let placement = Placement {
                 position: parent_placement.to_world(&read_numbers(body, "pos")),
                 rotation: parent_placement.rotation + 2.0 * quat[3].atan2(quat[0]),

@@ -55,7 +55,7 @@ type ParsedBody = (Placement, f64, Vec<f64>, Vec<f64>);
 
 /// Places a frame at a pose on another frame. The pose has six numbers: x, y, z, roll, pitch, yaw.
 fn place_on(frame: Placement, pose: &[f64]) -> Placement {
-    assert_eq!(pose[3..5], [0.0; 2], "the frame is upright");
+    assert_eq!(pose[3..5], [0.0; 2], "the frame is tilted");
     Placement {
         position: frame.to_world(&pose[..3]),
         rotation: frame.rotation + pose[5],
@@ -83,7 +83,7 @@ fn read_urdf(document: &Document) -> BTreeMap<String, ParsedBody> {
             poses_to_root.push([read_numbers(origin, "xyz"), read_numbers(origin, "rpy")].concat());
             link = read_link(joint, "parent");
         }
-        assert_eq!(link, "base_link", "base_link is the only root");
+        assert_eq!(link, "base_link", "there is another root than base_link");
         let poses_from_root = poses_to_root.iter().rev();
         poses_from_root.fold(WORLD, |frame, pose| place_on(frame, pose))
     };

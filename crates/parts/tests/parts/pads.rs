@@ -23,8 +23,8 @@ fn the_notches_of_all_four_printed_pads_point_to_the_head_when_mounted() {
     };
     assert_eq!(pad.count(), 4);
     let (layers, bridged_count) = pad.build_printed_layers();
-    let message = "the hole for the key is bridged, as in a plain pad";
-    assert_eq!(bridged_count, 1, "{message}");
+    // The hole for the key is bridged, as in a plain pad.
+    assert_eq!(bridged_count, 1, "bridged holes");
     let notch = find_notch(&layers).expect("the printed pad has a notch");
     // A foot never turns, so the second pose must give the same result.
     let poses = [[0.0; 4], [9.0, -8.0, 7.0, -6.0]].map(|turns| {

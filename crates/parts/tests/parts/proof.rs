@@ -112,7 +112,7 @@ fn rigid_struts_are_at_least_as_far_from_other_parts_as_slotted_struts() {
         let is_strut = |body: &Body| matches!(body.mount, Mount::Strut(_));
         let proof = assembly.prove_chosen(|a, b| is_strut(a) || is_strut(b), |_, _| ());
         assert_eq!(proof.check(), Ok(()), "{kind}");
-        let nearest_pair = proof.nearest_separate_pair();
+        let nearest_pair = proof.separate_pairs.first();
         nearest_pair.expect("some pair is near").lower_bound
     });
     let is_as_far = rigid_gap >= slotted_gap;

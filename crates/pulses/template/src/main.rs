@@ -1,5 +1,5 @@
-//! Four servos on pins 9, 10, 11 and 3 of an Arduino UNO swing to and fro once in two seconds, each a quarter of a
-//! cycle after the previous one. The LED blinks with them.
+//! Four servos on pins 9, 10, 11 and 3 of an Arduino UNO swing to and fro once in two seconds, each a quarter of this
+//! period after the previous one. The LED blinks with them.
 
 #![no_std]
 #![no_main]
@@ -11,10 +11,7 @@ use servo_pulses::{CYCLES_PER_US, Pin};
 const PINS: [Pin; 4] = [pin(9), pin(10), pin(11), pin(3)];
 
 const fn pin(number: u8) -> Pin {
-    match Pin::arduino(number) {
-        Some(pin) => pin,
-        None => panic!("a UNO has no such pin"),
-    }
+    Pin::arduino(number).expect("a UNO has pins 0 to 19")
 }
 
 mod servos {

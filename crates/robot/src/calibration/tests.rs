@@ -59,6 +59,7 @@ fn an_error_in_a_file_is_reported_with_its_line_and_key() {
         trim = -3.25 | trim = 1.234 | {trim} is 1.234; it must have at most two decimals
         trim = -3.25 | trim = 1e9 | {trim} is 1e9; it must be between -360 and 360 deg
         trim = -3.25 | trim = nan | {trim} is nan; it must be a number
+        scale = 10.0 | scale = 400.0 | a.toml:12: servo.A1.scale is 400; it must be between -360 and 360 us per deg
         [48.59, 228.59] | [1] | a.toml:10: servo.A1.limit is an array of 1; it must be an array of two numbers
         [48.59, 228.59] | [1, 2.001] | a.toml:10: servo.A1.limit is 2.001; it must have at most two decimals
         dir = "-" | dir = "left" | a.toml:11: servo.A1.dir is "left"; it must be "+" or "-"

@@ -96,11 +96,6 @@ impl CheckedGait {
             .flatten()
     }
 
-    /// The neutral servo angles, deg, chassis frame, servo order.
-    pub fn neutral(&self) -> [f64; 4] {
-        self.gait.neutral
-    }
-
     /// The phase (0 to 1) at a time in seconds after a start at phase 0, at full speed.
     pub fn phase_at(&self, seconds: f64) -> f64 {
         self.gait.phase_at(seconds)

@@ -86,12 +86,12 @@ impl Effort {
         Self { servos }
     }
 
-    /// Computes the highest utilisation of any servo at `pace`, which is relative to the gait's nominal pace. `supply`
-    /// is the supply voltage relative to the motors' voltage in [`Effort::simulate`].
+    /// Computes the highest utilisation of any servo at `pace`, which is relative to the gait's nominal pace.
+    /// `supply_ratio` is the supply voltage relative to the motors' voltage in [`Effort::simulate`].
     #[must_use]
-    pub fn utilisation(&self, pace: f64, supply: f64) -> f64 {
+    pub fn utilisation(&self, pace: f64, supply_ratio: f64) -> f64 {
         let servo_utilisation = |(motor, samples): &(Motor, Vec<Sample>)| {
-            let motor = motor.with_supply_ratio(supply);
+            let motor = motor.with_supply_ratio(supply_ratio);
             let utilisations = samples.iter().map(|sample| {
                 let torque = sample.load_torque + sample.rotor_torque * pace * pace;
                 motor.utilisation(torque, sample.speed * pace).abs()
@@ -105,16 +105,16 @@ impl Effort {
     }
 
     /// Finds the highest pace, up to 1, at which no servo exceeds its torque-speed line; 0 if a servo exceeds its line
-    /// at every pace. `supply` is as in [`Effort::utilisation`].
+    /// at every pace. `supply_ratio` is as in [`Effort::utilisation`].
     #[must_use]
-    pub fn find_max_pace(&self, supply: f64) -> f64 {
-        if self.utilisation(1.0, supply) <= 1.0 {
+    pub fn find_max_pace(&self, supply_ratio: f64) -> f64 {
+        if self.utilisation(1.0, supply_ratio) <= 1.0 {
             return 1.0;
         }
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..BISECTION_STEPS {
             let middle = f64::midpoint(low, high);
-            match self.utilisation(middle, supply) <= 1.0 {
+            match self.utilisation(middle, supply_ratio) <= 1.0 {
                 true => low = middle,
                 false => high = middle,
             }

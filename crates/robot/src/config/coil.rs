@@ -17,15 +17,6 @@ pub struct Coil {
 }
 
 impl Coil {
-    /// Returns a spring of the size in the paper's robot, with this wire diameter, mm.
-    pub const fn with_papers_size(wire_diameter: f64) -> Self {
-        Self {
-            wire_diameter,
-            outer_diameter: 5.55,
-            free_length: 25.4,
-        }
-    }
-
     /// Mean diameter of the coil, mm.
     pub fn mean_diameter(&self) -> f64 {
         self.outer_diameter - self.wire_diameter

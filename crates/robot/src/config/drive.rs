@@ -7,16 +7,12 @@ use crate::config::parts::Parts;
 use crate::config::strut;
 use crate::file::{ReadResult, Table, suggest};
 
-/// The keys of all kinds of drive.
+/// Every key that some kind of drive has.
 const KEYS: [&str; 4] = ["kind", "play", "force", "rate"];
 /// The kinds of drive, each with its keys in addition to `kind` and `play`.
-const KINDS: [(&str, &[&str]); 2] = [
-    (DriveKind::NAMES[0], &[]),
-    (DriveKind::NAMES[1], &["force", "rate"]),
-];
+const KINDS: [(&str, &[&str]); 2] = [("rigid", &[]), ("strut", &["force", "rate"])];
 
-/// Reads `[leg.drive]`. The legs are rigid if this table is missing. The servos' neutral angles are in deg, chassis
-/// frame.
+/// Reads `[leg.drive]`; without this table, the struts are rigid. The servos' neutral angles are in deg, chassis frame.
 pub(crate) fn read(
     leg_table: &Table,
     legs: &[LegPlan; 4],
@@ -24,7 +20,7 @@ pub(crate) fn read(
     parts: &Parts,
 ) -> ReadResult<Drive> {
     let table = leg_table.optional_unchecked_table("drive")?;
-    let kind_name = table.text_or("kind", KINDS[0].0)?;
+    let kind_name = table.text_or("kind", "rigid")?;
     if kind_name == "spring" {
         let message = "is \"spring\", which is no longer supported; write \"strut\" with the force and rate of its spring, or \"rigid\"";
         return Err(table.error("kind", message));
@@ -34,16 +30,16 @@ pub(crate) fn read(
         let suggestion = suggest(kind_name, &KINDS.map(|(name, _)| name));
         return Err(table.error("kind", format!("is \"{kind_name}\"; {suggestion}")));
     };
-    let mut all_keys = KINDS.into_iter().flat_map(|(_, keys)| keys);
-    let is_foreign = |key: &&&str| !own_keys.contains(key) && table.has_key(key);
-    if let Some(foreign_key) = all_keys.find(is_foreign) {
+    let mut keys_of_kinds = KINDS.into_iter().flat_map(|(_, keys)| keys);
+    let is_misplaced = |key: &&&str| !own_keys.contains(key) && table.has_key(key);
+    if let Some(misplaced_key) = keys_of_kinds.find(is_misplaced) {
         let message = format!("is not allowed with kind = \"{kind_name}\"");
-        return Err(table.error(foreign_key, message));
+        return Err(table.error(misplaced_key, message));
     }
     let kind = match kind_name {
         "strut" => {
-            let coil_strut = strut::strut_with_coil(legs, neutral_angles, parts, &parts.spring);
-            let (force, rate) = (coil_strut.preload, coil_strut.spring_rate);
+            let default_strut = strut::own_strut(legs, neutral_angles, parts);
+            let (force, rate) = (default_strut.preload, default_strut.spring_rate);
             let read_or_derive = |name, derived: f64, (min, max): (f64, f64), unit| {
                 if table.has_key(name) || (min..=max).contains(&derived) {
                     return table.number_or(name, derived, (min, max), unit);
@@ -56,7 +52,7 @@ pub(crate) fn read(
             DriveKind::Strut(Strut {
                 preload: read_or_derive("force", force, (0.01, 100.0), "N")?,
                 spring_rate: read_or_derive("rate", rate, (0.0, 100.0), "N/mm")?,
-                ..coil_strut
+                ..default_strut
             })
         }
         _ => DriveKind::Rigid,

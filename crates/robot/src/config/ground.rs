@@ -20,21 +20,17 @@ pub(crate) fn read(root: &Table, feet: Feet, drive: Drive) -> ReadResult<GroundC
     })
 }
 
-/// Reads the mass and the centre of mass; an omitted key has its default value. Rejects a centre of mass with which a
-/// foot would leave the floor in the neutral pose.
+/// Reads `[body]`; every key is optional. Rejects a centre of mass with which a foot would leave the floor in the
+/// neutral pose.
 fn read_body(root: &Table, feet: &Feet) -> ReadResult<Body> {
-    if !root.has_key("body") {
-        return Ok(Body::DEFAULT);
-    }
-    let table = root.table("body", &["mass", "centre"])?;
+    let Body {
+        mass,
+        centre_of_mass,
+    } = Body::DEFAULT;
+    let table = root.optional_table("body", &["mass", "centre"])?;
     let body = Body {
-        mass: table.number_or("mass", Body::DEFAULT.mass, (10.0, 10_000.0), "g")?,
-        centre_of_mass: table.numbers_or(
-            "centre",
-            Body::DEFAULT.centre_of_mass,
-            (-500.0, 500.0),
-            "mm",
-        )?,
+        mass: table.number_or("mass", mass, (10.0, 10_000.0), "g")?,
+        centre_of_mass: table.numbers_or("centre", centre_of_mass, (-500.0, 500.0), "mm")?,
     };
     let loads = Stance::LEVEL.relative_loads(&body, feet.positions([0.0; 4]));
     match loads.iter().position(|load| *load <= 0.0) {

@@ -60,16 +60,15 @@ impl Hips {
                 + chassis_offset(right_servo, foot);
             end.mirror(hip)
         });
-        let resolve_distance = |value: Option<f64>, computed_mm: f64, key: &str, (min, max)| {
-            let problem = match value {
-                Some(value)
-                    if parts.foot.is_none()
-                        || (value - computed_mm).abs() < LENGTH_TOLERANCE_MM =>
+        let resolve_distance = |stated_mm: Option<f64>, computed_mm: f64, key: &str, (min, max)| {
+            let problem = match stated_mm {
+                Some(mm)
+                    if parts.foot.is_none() || (mm - computed_mm).abs() < LENGTH_TOLERANCE_MM =>
                 {
-                    return Ok(value);
+                    return Ok(mm);
                 }
-                Some(value) => format!(
-                    "is {value} mm, but parts.pivot and parts.foot put it at {computed_mm:.2} mm; leave out this key or parts.foot"
+                Some(mm) => format!(
+                    "is {mm} mm, but parts.pivot and parts.foot put it at {computed_mm:.2} mm; leave out this key or parts.foot"
                 ),
                 None if (min..=max).contains(&computed_mm) => return Ok(computed_mm),
                 None => format!(

@@ -31,7 +31,7 @@ pub use motor::ServoType;
 pub use parts::{Horn, Pad, Parts, Screw, ServoBody};
 pub use plate::Plate;
 pub use servo::{Servo, SpeedLimits};
-pub(crate) use strut::{mounted_spring_length, strut_with_coil};
+pub(crate) use strut::{mounted_spring_length, own_strut};
 pub use supply::{FUSE_RATING_A, MIN_SWITCH_RATING_A, Rail, Supplies, healthy_rail_pin_mv};
 
 use lizard_contact::{GroundContact, JointFriction};

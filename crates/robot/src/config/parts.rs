@@ -60,10 +60,6 @@ pub struct Parts {
 
 /// Range of both components of `pivot` and `foot`, mm.
 const OFFSET_RANGE: (f64, f64) = (-500.0, 500.0);
-/// Range of the distance of `anchor`, mm.
-const ANCHOR_DISTANCE_RANGE: (f64, f64) = (1.0, 500.0);
-/// Range of the angle of `anchor`, deg.
-const ANCHOR_ANGLE_RANGE: (f64, f64) = (-180.0, 180.0);
 /// Range of a part's lengths, mm.
 const LENGTH_RANGE: (f64, f64) = (0.1, 200.0);
 
@@ -189,7 +185,11 @@ impl Default for Parts {
             screw: Screw::DEFAULT,
             pad: Pad::DEFAULT,
             strip: 0.0,
-            spring: Coil::with_papers_size(0.6),
+            spring: Coil {
+                wire_diameter: 0.6,
+                outer_diameter: 5.55,
+                free_length: 25.4,
+            },
             battery: [31.0, 56.0, 16.0],
             tail: 85.0,
             head: 42.0,
@@ -264,12 +264,7 @@ impl Parts {
             kerf: read_mm("kerf", defaults.kerf, 0.0, 2.0)?,
             pivot,
             foot,
-            anchor: table.polar_or(
-                "anchor",
-                defaults.anchor,
-                ANCHOR_DISTANCE_RANGE,
-                ANCHOR_ANGLE_RANGE,
-            )?,
+            anchor: table.polar_or("anchor", defaults.anchor, (1.0, 500.0), (-180.0, 180.0))?,
             height: read_mm("height", defaults.height, 5.0, 500.0)?,
             servo: ServoBody::read(&table)?,
             horn: Horn::read(&table)?,

@@ -107,19 +107,35 @@ impl Supplies {
     }
 
     /// Rejects a divider that passes on more of `servo_volts`, the servos' supply, than the rail's pin can measure.
+    /// Also rejects a threshold so high that this supply would always be below `slow`.
     pub(crate) fn check_rail(&self, servo_volts: f64) -> ReadResult<()> {
-        let ratio = self.rail.map_or(f64::INFINITY, |rail| rail.divider_ratio);
+        let Some(rail) = &self.rail else {
+            return Ok(());
+        };
+        let ratio = rail.divider_ratio;
         // The subtraction keeps a rounding error from rejecting a ratio that is just sufficient.
         let min_ratio = servo_volts / MAX_PIN_VOLTS - 1e-9;
-        if ratio >= min_ratio {
+        if ratio < min_ratio {
+            // Rounded up, so that the ratio in the message is sufficient.
+            let min_ratio = (100.0 * min_ratio).ceil() / 100.0;
+            let message = format!(
+                "is {ratio}; for servo.volts = {servo_volts} it must be at least {min_ratio}, because the pin measures at most {MAX_PIN_VOLTS} V"
+            );
+            return Err(Error::new("supply.rail.ratio", message));
+        }
+        let [slow, stop, _] = rail.thresholds;
+        let (key, volts, bound) = match rail.has_derived_slow_threshold {
+            // The derived threshold needs a gap on both sides.
+            true => ("stop", stop, servo_volts - 2.0 * MIN_THRESHOLD_GAP),
+            false => ("slow", slow, servo_volts),
+        };
+        if volts < bound {
             return Ok(());
         }
-        // Rounded up, so that the ratio in the message is sufficient.
-        let min_ratio = (100.0 * min_ratio).ceil() / 100.0;
         let message = format!(
-            "is {ratio}; for servo.volts = {servo_volts} it must be at least {min_ratio}, because the pin measures at most {MAX_PIN_VOLTS} V"
+            "is {volts}; for servo.volts = {servo_volts} it must be less than {bound:.2}, or the robot would never walk at full pace"
         );
-        Err(Error::new("supply.rail.ratio", message))
+        Err(Error::new(format!("supply.rail.{key}"), message))
     }
 
     /// Converts the supplies to the core's form, in mV.
@@ -145,9 +161,9 @@ pub fn healthy_rail_pin_mv(supplies: &CoreSupplies) -> Option<f64> {
     /// Supply of the board, and the lowest rail voltage that is assumed.
     const BOARD_MV: f64 = 5_000.0;
     let ratio = f64::from(supplies.rail_reference_mv) / f64::from(supplies.reference_mv);
-    let mv = f64::from(supplies.rail.slow_mv) + HEADROOM_MV;
+    let rail_mv = f64::from(supplies.rail.slow_mv) + HEADROOM_MV;
     (supplies.rail_reference_mv != 0)
-        .then(|| (mv.max(BOARD_MV) / ratio).min(BOARD_MV - 1.0).floor())
+        .then(|| (rail_mv.max(BOARD_MV) / ratio).min(BOARD_MV - 1.0).floor())
 }
 
 /// Reads `[supply.rail]`; `None` if the table is missing.
@@ -235,7 +251,7 @@ mod tests {
 
     #[test]
     fn a_rails_reference_is_the_chips_reference_times_the_divider_ratio() {
-        let tables = "[supply]\nreference = 1.08\nslow = 4.5\n[supply.rail]\npin = \"A3\"\nratio = 2.5\nslow = 6.6\nstop = 6.2\nrest = 6.0\n";
+        let tables = "[servo]\nvolts = 7.4\n[supply]\nreference = 1.08\nslow = 4.5\n[supply.rail]\npin = \"A3\"\nratio = 2.5\nslow = 6.6\nstop = 6.2\nrest = 6.0\n";
         let robot = paper_with_tables(tables).expect("the rail is valid");
         let supplies = robot.firmware().supplies();
         let board_mv = (supplies.reference_mv, supplies.board.slow_mv);

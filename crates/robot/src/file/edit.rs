@@ -120,7 +120,7 @@ fn with_value(
     // A subtable such as [servo.A1] has its lines elsewhere.
     let direct_values = entries.values().filter(|value| !value.get_ref().is_table());
     let Some(last_end) = direct_values.map(|value| value.span().end).max() else {
-        let new_text = with_table(text, table, &line);
+        let new_text = append(text, &format!("[{table}]\n{line}\n"));
         let is_toml = DeTable::parse(&new_text).is_ok();
         return is_toml.then_some(new_text).ok_or_else(key_error);
     };
@@ -155,12 +155,10 @@ pub fn without_key(text: &str, key: &str) -> Result<String, KeyError> {
 
 /// Adds the table of a gait: in place of an existing gait with this name, otherwise at the end of the text.
 pub fn with_gait(text: &str, name: &str, table: &str) -> String {
-    let (mut result, is_replaced) = replace_gait(text, name, table);
-    if !is_replaced {
-        result.push('\n');
-        result += table;
+    match replace_gait(text, name, table) {
+        (new_text, true) => new_text,
+        (text, false) => append(&text, table),
     }
-    result
 }
 
 /// Removes the tables of a gait. If the gait is missing, the text stays unchanged.
@@ -170,27 +168,25 @@ pub fn without_gait(text: &str, name: &str) -> String {
 
 /// Replaces the tables of a gait with `table`. Returns the new text, and true if the gait existed.
 fn replace_gait(text: &str, name: &str, table: &str) -> (String, bool) {
-    let (header, subtable_start) = (format!("[gait.{name}]"), format!("[gait.{name}."));
-    let mut lines = Vec::new();
-    let mut is_in_gait = false;
-    let mut is_replaced = false;
-    for line in text.lines() {
+    let key = to_key(name);
+    let (header, subtable_start) = (format!("[gait.{key}]"), format!("[gait.{key}."));
+    let (mut new_text, mut is_in_gait, mut is_replaced) = (String::new(), false, false);
+    for line in text.split_inclusive('\n') {
         let trimmed_line = line.trim_start();
         if trimmed_line.starts_with('[') {
             is_in_gait =
                 trimmed_line.starts_with(&header) || trimmed_line.starts_with(&subtable_start);
             if is_in_gait && !is_replaced {
                 is_replaced = true;
-                lines.extend(table.lines());
+                new_text += table;
             }
         }
         // A comment after the last key may belong to the next table.
         if !is_in_gait || trimmed_line.starts_with('#') {
-            lines.push(line);
+            new_text += line;
         }
     }
-    let text = lines.iter().map(|line| format!("{line}\n")).collect();
-    (text, is_replaced)
+    (new_text, is_replaced)
 }
 
 /// A routine as written in the file, valid or not.
@@ -238,19 +234,23 @@ pub fn with_steps(text: &str, name: &str, steps: &[String]) -> String {
         new_text.replace_range(span, &steps);
         return new_text;
     }
-    let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '-';
-    let key = if name.is_empty() || !name.chars().all(is_bare) {
-        format!("{name:?}")
-    } else {
-        name.to_string()
-    };
-    with_table(text, &format!("routine.{key}"), &format!("steps = {steps}"))
+    let key = to_key(name);
+    append(text, &format!("[routine.{key}]\nsteps = {steps}\n"))
 }
 
-/// Adds a table with one line at the end of a text.
-fn with_table(text: &str, table: &str, line: &str) -> String {
+/// Formats a name as part of a key in TOML, with quotation marks if it needs them.
+pub fn to_key(name: &str) -> String {
+    let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '-';
+    match name.is_empty() || !name.chars().all(is_bare) {
+        true => format!("{name:?}"),
+        false => name.to_string(),
+    }
+}
+
+/// Adds a table at the end of a text, after an empty line.
+fn append(text: &str, table: &str) -> String {
     let line_break = if text.ends_with('\n') { "" } else { "\n" };
-    format!("{text}{line_break}\n[{table}]\n{line}\n")
+    format!("{text}{line_break}\n{table}")
 }
 
 /// Finds the byte range of a key's value in a text; `None` if the key is missing. Fails if the text is not TOML.
@@ -374,6 +374,8 @@ mod tests {
         let rest = "# next table\n[gait.look-up]\nlike = \"walk\"\n";
         assert_eq!(without_gait(GAITS, "look"), rest);
         assert_eq!(without_gait(rest, "look"), rest);
+        let [windows_gaits, windows_rest] = [GAITS, rest].map(|text| text.replace('\n', "\r\n"));
+        assert_eq!(without_gait(&windows_gaits, "look"), windows_rest);
         let replaced = with_gait(GAITS, "look", "[gait.look]\nperiod = 5.0\n");
         assert_eq!(replaced, format!("[gait.look]\nperiod = 5.0\n{rest}"));
     }

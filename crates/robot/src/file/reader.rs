@@ -209,10 +209,9 @@ impl<'a> Table<'a> {
     pub fn number_or(&self, name: &str, default: f64, range: Range, unit: &str) -> ReadResult<f64> {
         #[cfg(test)]
         self.record_number_use(name, range, unit, Some(default));
-        if self.has_key(name) {
-            self.number(name, range, unit)
-        } else {
-            Ok(default)
+        match self.has_key(name) {
+            true => self.number(name, range, unit),
+            false => Ok(default),
         }
     }
 
@@ -238,10 +237,9 @@ impl<'a> Table<'a> {
 
     /// Reads a string; returns `default` if the key is missing.
     pub fn text_or(&self, name: &str, default: &'a str) -> ReadResult<&'a str> {
-        if self.has_key(name) {
-            self.text(name)
-        } else {
-            Ok(default)
+        match self.has_key(name) {
+            true => self.text(name),
+            false => Ok(default),
         }
     }
 
@@ -269,10 +267,9 @@ impl<'a> Table<'a> {
         range: Range,
         unit: &str,
     ) -> ReadResult<[f64; N]> {
-        if self.has_key(name) {
-            self.numbers(name, range, unit)
-        } else {
-            Ok(default)
+        match self.has_key(name) {
+            true => self.numbers(name, range, unit),
+            false => Ok(default),
         }
     }
 

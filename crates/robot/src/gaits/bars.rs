@@ -2,6 +2,7 @@
 //! gaits in this form, and `lizard tune` varies them.
 
 use crate::config::servo::LEG_NAMES;
+use crate::file::edit::to_key;
 use crate::gaits::gait::Gait;
 use crate::gaits::waveform::Waveform;
 
@@ -111,7 +112,7 @@ impl Bars {
             true => String::new(),
             false => format!("gain = {}\n", format_legs(self.gain)),
         };
-        let name = &self.name;
+        let name = to_key(&self.name);
         format!("[gait.{name}]\nperiod = {period:?}\n{waveform}{gain}")
     }
 }

@@ -35,8 +35,6 @@ const GAIT_KEYS: [&str; 12] = [
 const PERIOD_RANGE: (f64, f64) = (0.2, 60.0);
 /// The values of the key `waveform`.
 const WAVEFORM_NAMES: [&str; 3] = ["still", "wave", "held"];
-/// The keys that name another gait, from which the gait is derived.
-const REFERENCE_KEYS: [&str; 3] = ["reverse", "mirror", "like"];
 
 /// Reads the gaits in the order of the file and resolves their references.
 pub(crate) fn read_gaits(root: &Table, config: &RobotConfig) -> ReadResult<Vec<Gait>> {
@@ -193,13 +191,12 @@ impl GaitReader<'_> {
 
 /// Returns the only key that defines a gait; the keys `head` and `tail` of a path count as one.
 fn definition_key(table: &Table) -> ReadResult<&'static str> {
-    let has_path = table.has_key("head") || table.has_key("tail");
-    let mut definitions: Vec<&'static str> = REFERENCE_KEYS
-        .into_iter()
-        .filter(|key| table.has_key(key))
-        .collect();
-    definitions.extend(table.has_key("waveform").then_some("waveform"));
-    definitions.extend(has_path.then_some("head or tail"));
+    let is_present = |key: &&str| match *key {
+        "head or tail" => table.has_key("head") || table.has_key("tail"),
+        key => table.has_key(key),
+    };
+    let definitions = ["waveform", "head or tail", "reverse", "mirror", "like"].into_iter();
+    let definitions: Vec<&'static str> = definitions.filter(is_present).collect();
     let [definition] = definitions[..] else {
         let message = "needs exactly one of waveform, a path (head, tail), reverse, mirror, like";
         return Err(Error::new(table.key.clone(), message));

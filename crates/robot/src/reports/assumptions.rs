@@ -203,11 +203,15 @@ const ASSUMPTIONS: [Assumption; 21] = assumptions! {
     });
 };
 
+/// Finds the assumption with this description.
+fn find_assumption(description: &str) -> Option<&'static Assumption> {
+    let mut assumptions = ASSUMPTIONS.iter();
+    assumptions.find(|assumption| assumption.description == description)
+}
+
 /// The plausible range of the assumption with this description; `None` if there is no such assumption.
 pub fn plausible_range(description: &str) -> Option<[f64; 2]> {
-    let has_description = |assumption: &&Assumption| assumption.description == description;
-    let assumption = ASSUMPTIONS.iter().find(has_description);
-    assumption.map(|assumption| assumption.range)
+    find_assumption(description).map(|assumption| assumption.range)
 }
 
 /// The effect of an assumption on each gait.
@@ -418,9 +422,7 @@ mod tests {
             ("hips ahead of the middle", 82.5, [75.0, 90.0]),
             ("front left foot too long", 1.5, [0.5, 2.5]),
         ] {
-            let has_description = |assumption: &&Assumption| assumption.description == description;
-            let assumption = ASSUMPTIONS.iter().find(has_description);
-            let assumption = assumption.expect(description);
+            let assumption = find_assumption(description).expect(description);
             assert_eq!(assumption.range_for(value), range, "{description}");
         }
     }

@@ -1,4 +1,4 @@
-//! The gaits' sensitivity to friction, mounting, feet and play, for a robot or a floor that differs from robot.toml.
+//! The change of the gaits' predictions with the pads' friction, the legs' mounting, the feet and the play.
 
 use std::fmt;
 
@@ -104,7 +104,7 @@ impl fmt::Display for Sensitivity {
                 }
                 "feet, N/mm" => writeln!(
                     f,
-                    "Front left foot {EXCESS_LENGTH_MM} mm too long, other feet:"
+                    "Front left foot {EXCESS_LENGTH_MM} mm too long, feet of another stiffness:"
                 )?,
                 _ => {}
             }

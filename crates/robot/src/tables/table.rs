@@ -15,6 +15,9 @@ use crate::units::{FRAMES_PER_SECOND, ONE_Q14, PHASES_PER_CYCLE, STEPS_PER_DEGRE
 /// Largest difference between two waveforms that share one table, deg: about a third of an angle step.
 const SHARED_WAVE_TOLERANCE_DEG: f64 = 0.002;
 
+/// The samples of a waveform over a cycle.
+type Samples = [f64; SAMPLES_PER_WAVE];
+
 /// The tables of waveforms and gaits that the firmware reads.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Tables {
@@ -33,13 +36,12 @@ impl Tables {
     /// Fails at the first gait that sweeps a servo by half a turn or more, or that needs more than [`MAX_WAVES`]
     /// waveforms.
     pub fn new(gaits: &[Gait]) -> ReadResult<Self> {
-        let mut bank = WaveformBank::default();
-        let mut stored_strides = Vec::new();
+        let (mut waves, mut stored_strides) = (Vec::new(), Vec::new());
         for gait in gaits {
             for ((stride, forward_sign), name) in
                 gait.strides.iter().zip(FORWARD_TURN_SIGN).zip(SERVO_NAMES)
             {
-                let Some(stored_stride) = bank.find_or_add(stride, forward_sign) else {
+                let Some(stored_stride) = store_stride(&mut waves, stride, forward_sign) else {
                     let consequence =
                         format!("servo {name} would have to turn farther than it can");
                     let problem = "its sweep is half a turn or more";
@@ -47,29 +49,27 @@ impl Tables {
                 };
                 stored_strides.push(stored_stride);
             }
-            if bank.samples.len() > MAX_WAVES {
+            if waves.len() > MAX_WAVES {
                 let message = format!(
                     "needs more than the {MAX_WAVES} waveforms that the firmware supports; gaits that differ only in amplitude, start, gain, period or direction share a waveform"
                 );
                 return Err(Error::new(format!("gait.{}", gait.name), message));
             }
         }
-        let peak_amplitudes = bank.find_peak_amplitudes(&stored_strides);
-        if bank.samples.is_empty() {
+        let peak_amplitudes = find_peak_amplitudes(waves.len(), &stored_strides);
+        if waves.is_empty() {
             // A robot that only stands still needs a single table, of zeros.
-            bank.samples.push([0.0; SAMPLES_PER_WAVE]);
+            waves.push([0.0; SAMPLES_PER_WAVE]);
         }
-        let waves = bank
-            .samples
-            .iter()
-            .zip(peak_amplitudes.iter().chain([&1.0]))
-            .map(|(samples, peak)| {
-                samples.map(|value| (value * peak * STEPS_PER_DEGREE).round() as i16)
-            });
+        let scaled_waves = waves.iter().zip(peak_amplitudes.iter().chain([&1.0]));
+        let table_waves = scaled_waves.map(|(samples, peak)| {
+            samples.map(|value| (value * peak * STEPS_PER_DEGREE).round() as i16)
+        });
         let build_channel = |stride: &StoredStride| {
-            let gain = stride.amplitude / peak_amplitudes.get(stride.wave).copied().unwrap_or(1.0);
+            let peak = peak_amplitudes.get(stride.wave_index).unwrap_or(&1.0);
+            let gain = stride.amplitude / peak;
             Channel {
-                wave: stride.wave as u16,
+                wave: stride.wave_index as u16,
                 // A shift of one full cycle wraps to 0.
                 offset: (stride.lead.rem_euclid(1.0) * PHASES_PER_CYCLE).round() as u32 as u16,
                 gain: (gain * ONE_Q14).round() as i16,
@@ -87,7 +87,7 @@ impl Tables {
             names.extend(to_command(&gait.name).bytes());
         }
         Ok(Self {
-            waves: waves.collect(),
+            waves: table_waves.collect(),
             gaits: table_gaits,
             names,
         })
@@ -113,73 +113,65 @@ fn compute_increment(gait: &Gait) -> i32 {
     }
 }
 
-/// A stride in the firmware's form: a waveform of the bank times an amplitude, with a lead.
+/// A stride in the firmware's form: a waveform times an amplitude, with a lead.
 struct StoredStride {
-    /// Index of the waveform in the bank.
-    wave: usize,
+    /// Index of the waveform.
+    wave_index: usize,
     /// Lead of the stride over the stored waveform, cycles.
     lead: f64,
     /// Amplitude, deg, positive counter-clockwise.
     amplitude: f64,
 }
 
-/// The waveforms found so far, each scaled to a peak of 1.
-#[derive(Default)]
-struct WaveformBank {
-    /// The samples of each waveform.
-    samples: Vec<[f64; SAMPLES_PER_WAVE]>,
+/// Finds the waveform of a stride among `waves`, each scaled to a peak of 1, or adds it. `forward_sign` is the
+/// direction in which the servo moves its foot forward: 1 for counter-clockwise, -1 for clockwise. `None` if the stride
+/// sweeps half a turn or more.
+fn store_stride(
+    waves: &mut Vec<Samples>,
+    stride: &Stride,
+    forward_sign: f64,
+) -> Option<StoredStride> {
+    let (waveform, shift, sign) = canonicalize(&stride.waveform);
+    let samples = sample_waveform(&waveform);
+    let peak = find_peak(&samples);
+    let amplitude = stride.amplitude * peak * sign * forward_sign;
+    if amplitude == 0.0 || waveform == Waveform::Still {
+        return Some(StoredStride {
+            wave_index: 0,
+            lead: 0.0,
+            amplitude: 0.0,
+        });
+    }
+    if amplitude.abs() >= 180.0 {
+        return None;
+    }
+    let offset = -stride.start - shift;
+    let samples = samples.map(|value| value / peak);
+    let tolerance = SHARED_WAVE_TOLERANCE_DEG / amplitude.abs();
+    let shared_wave = waves.iter().enumerate().find_map(|(index, existing)| {
+        find_rotation(existing, &samples, tolerance).map(|rotation| (index, rotation))
+    });
+    let (wave_index, rotation) = shared_wave.unwrap_or_else(|| {
+        waves.push(samples);
+        (waves.len() - 1, 0)
+    });
+    Some(StoredStride {
+        wave_index,
+        lead: offset + rotation as f64 / SAMPLES_PER_WAVE as f64,
+        amplitude,
+    })
 }
 
-impl WaveformBank {
-    /// Finds the waveform of a stride, or adds it. `forward_sign` is the direction in which the servo moves its foot
-    /// forward: 1 for counter-clockwise, -1 for clockwise. `None` if the stride sweeps half a turn or more.
-    fn find_or_add(&mut self, stride: &Stride, forward_sign: f64) -> Option<StoredStride> {
-        let (waveform, shift, sign) = canonicalize(&stride.waveform);
-        let samples = sample_waveform(&waveform);
-        let peak = find_peak(&samples);
-        let amplitude = stride.amplitude * peak * sign * forward_sign;
-        if amplitude == 0.0 || waveform == Waveform::Still {
-            return Some(StoredStride {
-                wave: 0,
-                lead: 0.0,
-                amplitude: 0.0,
-            });
+/// Finds the largest amplitude with which each waveform is used, deg. A waveform is stored with this amplitude, so that
+/// no gain exceeds 1.
+fn find_peak_amplitudes(wave_count: usize, stored_strides: &[StoredStride]) -> Vec<f64> {
+    let mut peak_amplitudes = vec![0.0f64; wave_count];
+    for stride in stored_strides {
+        if let Some(peak) = peak_amplitudes.get_mut(stride.wave_index) {
+            *peak = peak.max(stride.amplitude.abs());
         }
-        if amplitude.abs() >= 180.0 {
-            return None;
-        }
-        let offset = -stride.start - shift;
-        let samples = samples.map(|value| value / peak);
-        let tolerance = SHARED_WAVE_TOLERANCE_DEG / amplitude.abs();
-        let shared_wave = self
-            .samples
-            .iter()
-            .enumerate()
-            .find_map(|(wave, existing)| {
-                find_rotation(existing, &samples, tolerance).map(|rotation| (wave, rotation))
-            });
-        let (wave, rotation) = shared_wave.unwrap_or_else(|| {
-            self.samples.push(samples);
-            (self.samples.len() - 1, 0)
-        });
-        Some(StoredStride {
-            wave,
-            lead: offset + rotation as f64 / SAMPLES_PER_WAVE as f64,
-            amplitude,
-        })
     }
-
-    /// Finds the largest amplitude with which each waveform is used, deg. A waveform is stored with this amplitude, so
-    /// that no gain exceeds 1.
-    fn find_peak_amplitudes(&self, stored_strides: &[StoredStride]) -> Vec<f64> {
-        let find_peak_amplitude = |wave| {
-            stored_strides
-                .iter()
-                .filter(|stride| stride.wave == wave)
-                .fold(0.0f64, |max, stride| max.max(stride.amplitude.abs()))
-        };
-        (0..self.samples.len()).map(find_peak_amplitude).collect()
-    }
+    peak_amplitudes
 }
 
 /// Samples a waveform so that the straight lines between the samples have zero mean error.
@@ -188,8 +180,8 @@ impl WaveformBank {
 /// stride too short (the paper's walk by 1 %). Each sample is therefore moved outward by the mean distance between line
 /// and curve, which is a twelfth of the second difference. No sample is moved beyond the waveform's peak, because a
 /// servo's travel may end at the peak.
-fn sample_waveform(waveform: &Waveform) -> [f64; SAMPLES_PER_WAVE] {
-    let curve: [f64; SAMPLES_PER_WAVE] =
+fn sample_waveform(waveform: &Waveform) -> Samples {
+    let curve: Samples =
         std::array::from_fn(|i| waveform.value_at(i as f64 / SAMPLES_PER_WAVE as f64));
     let peak = find_peak(&curve);
     std::array::from_fn(|i| {
@@ -203,17 +195,13 @@ fn sample_waveform(waveform: &Waveform) -> [f64; SAMPLES_PER_WAVE] {
 }
 
 /// Finds the largest magnitude among the samples.
-fn find_peak(samples: &[f64; SAMPLES_PER_WAVE]) -> f64 {
+fn find_peak(samples: &Samples) -> f64 {
     let larger_magnitude = |peak: f64, value: &f64| peak.max(value.abs());
     samples.iter().fold(0.0, larger_magnitude)
 }
 
 /// Finds the number of samples by which to rotate `existing` so that it equals `samples` within `tolerance`.
-fn find_rotation(
-    existing: &[f64; SAMPLES_PER_WAVE],
-    samples: &[f64; SAMPLES_PER_WAVE],
-    tolerance: f64,
-) -> Option<usize> {
+fn find_rotation(existing: &Samples, samples: &Samples, tolerance: f64) -> Option<usize> {
     (0..SAMPLES_PER_WAVE).find(|rotation| {
         (0..SAMPLES_PER_WAVE)
             .all(|i| (samples[i] - existing[(i + rotation) % SAMPLES_PER_WAVE]).abs() <= tolerance)

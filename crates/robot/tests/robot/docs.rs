@@ -91,15 +91,15 @@ fn format_strut_cells(name: &str, value_of: fn(SimulatedCycle) -> f64) -> String
 #[ignore = "make docs-check: it takes most of a minute"]
 fn the_page_on_the_twin_shows_the_effect_of_springs() {
     let ground = paper().ground();
-    let pad_friction = ground.mean_pad_friction();
-    let leg = ground.feet.reach;
+    let pad_friction = ground.mean_friction_force();
+    let reach_mm = ground.feet.reach;
     let text = format!(
-        "The parts weigh {} g. With a friction of {} that gives {pad_friction:.2} N for each pad, and {:.1} N mm at a leg of {leg} mm. The servos are ideal.\n\n\
+        "The parts weigh {} g. With a friction of {} that gives {pad_friction:.2} N for each pad, and {:.1} N mm at a leg of {reach_mm} mm. The servos are ideal.\n\n\
          | pull in a slotted strut, N | 0.5 | 1 | 2 | 3 | 5 | rigid |\n|---|---|---|---|---|---|---|\n\
          | lag in `walk`, deg |{}\n| `walk`, mm in a cycle |{}\n| `trot`, mm in a cycle |{}\n| `left`, deg in a cycle |{}\n",
         ground.body.mass,
         ground.friction_coefficient,
-        pad_friction * leg,
+        pad_friction * reach_mm,
         format_strut_cells("walk", |cycle| cycle.max_lag),
         format_strut_cells("walk", |cycle| cycle.travel.forward),
         format_strut_cells("trot", |cycle| cycle.travel.forward),

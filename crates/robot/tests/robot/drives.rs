@@ -136,9 +136,8 @@ fn the_drive_is_read_from_its_table() {
         .expect("the drive has a strut");
     assert_eq!(strut, paper().strut_with_spring(4.0, 0.4));
     // Without the keys `force` and `rate`, both follow from the coil spring as it is mounted between its screws.
-    let coil_drive = read_drive("kind = \"strut\"");
-    let coil_strut = paper().strut_with_coil(&paper().parts().spring);
-    assert_eq!(coil_drive.strut(), Some(&coil_strut));
+    let default_drive = read_drive("kind = \"strut\"");
+    assert_eq!(default_drive.strut(), Some(&paper().own_strut()));
     assert!((paper().mounted_spring_length() - 28.5f64.hypot(10.0) - 3.0).abs() < 1e-9);
 }
 
@@ -236,7 +235,7 @@ fn mass_and_friction_are_read_from_the_file() {
     let heavy_ground = read_ground("mass = 435.0 ", "mass = 310\ncentre = [5.0, -2.0] ");
     assert_eq!(heavy_ground.body.mass, 310.0);
     assert_eq!(heavy_ground.body.centre_of_mass, [5.0, -2.0]);
-    assert!((heavy_ground.mean_pad_friction() - 0.7 * 0.31 * 9.80665 / 4.0).abs() < 1e-12);
+    assert!((heavy_ground.mean_friction_force() - 0.7 * 0.31 * 9.80665 / 4.0).abs() < 1e-12);
     let smooth_ground = read_ground("[ground]", "[ground]\nfriction = 0.5");
-    assert!((smooth_ground.mean_pad_friction() - 0.5 * 0.435 * 9.80665 / 4.0).abs() < 1e-12);
+    assert!((smooth_ground.mean_friction_force() - 0.5 * 0.435 * 9.80665 / 4.0).abs() < 1e-12);
 }

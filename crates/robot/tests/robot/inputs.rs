@@ -9,7 +9,7 @@ use super::{gait, paper, paper_text, paper_with_tables, read_cases, record_field
 const INPUTS: &str = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";
 
 /// Returns the error message for these tables, whose line number is counted from the tables' first line.
-fn parse_error(tables: &str) -> String {
+fn error_with_tables(tables: &str) -> String {
     let error = paper_with_tables(tables).map(|_| ()).expect_err(tables);
     let lines_before = paper_text().trim_end().lines().count() + 1;
     let line = error.line.expect("the error has a line");
@@ -81,7 +81,7 @@ fn every_free_pin_can_be_an_input_and_used_pins_are_rejected() {
         ("a1", unusable),
     ] {
         for name in ["button", "nose"] {
-            let actual = parse_error(&format!("[input.{name}]\npin = \"{pin}\"\n{rail}"));
+            let actual = error_with_tables(&format!("[input.{name}]\npin = \"{pin}\"\n{rail}"));
             assert_eq!(actual, format!("2: input.{name}.pin is \"{pin}\"{message}"));
         }
     }
@@ -90,7 +90,7 @@ fn every_free_pin_can_be_an_input_and_used_pins_are_rejected() {
         let robot = paper_with_tables(&tables).expect(pin);
         assert!(robot.inputs().nose.is_some() && robot.inputs().button.is_none());
     }
-    let message = parse_error("[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A1\"");
+    let message = error_with_tables("[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A1\"");
     let expected = "4: input.nose.pin is \"A1\", which input.button already uses";
     assert_eq!(message, expected);
 }
@@ -103,7 +103,7 @@ fn an_error_in_an_input_is_reported_with_its_line_and_step() {
         [input.nose]\n => 1: input.nose.pin is missing; it must be a string
     "#;
     for (tables, message) in read_cases(mistakes) {
-        assert_eq!(parse_error(&tables), message);
+        assert_eq!(error_with_tables(&tables), message);
     }
     let no_length = "needs a length: 1 to 999 cycles, for example \"walk 3\", or a time, for example \"walk 2 s\"";
     let gaits = "stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look";
@@ -123,9 +123,9 @@ fn an_error_in_an_input_is_reported_with_its_line_and_step() {
     for (step, message) in read_cases(&steps) {
         let tables = format!("{INPUTS}[routine.one]\nsteps = [\"walk 1\", \"{step}\"]");
         let expected = format!("6: routine.one.steps: step 2, \"{step}\", {message}");
-        assert_eq!(parse_error(&tables), expected);
+        assert_eq!(error_with_tables(&tables), expected);
     }
-    let actual = parse_error("[routine.one]\nsteps = [\"wait nose\"]");
+    let actual = error_with_tables("[routine.one]\nsteps = [\"wait nose\"]");
     let message = "names the input \"nose\", which has no pin; set one in [input.nose], for example pin = \"A1\"";
     let expected = format!("2: routine.one.steps: step 1, \"wait nose\", {message}");
     assert_eq!(actual, expected);

@@ -7,7 +7,7 @@ use lizard_robot::RoutineRow;
 use super::{gait, paper, paper_text, paper_with_tables, read_cases, record_fields};
 
 /// Returns the error message for a routine `patrol` with these lines.
-fn parse_error(lines: &str) -> String {
+fn error_with_lines(lines: &str) -> String {
     let result = paper_with_tables(&format!("[routine.patrol]\n{lines}"));
     result.map(|_| ()).expect_err(lines).to_string()
 }
@@ -125,7 +125,7 @@ fn an_error_is_reported_with_its_line_and_step() {
         for (number, earlier_steps) in [(1, ""), (2, "\"walk 1\", ")] {
             let lines = format!("steps = [{earlier_steps}\"{step}\"]\n{round}");
             let expected = format!("{location} step {number}, \"{step}\", {problem}");
-            assert_eq!(parse_error(&lines), expected);
+            assert_eq!(error_with_lines(&lines), expected);
         }
     }
     let mistakes = r#"
@@ -140,13 +140,13 @@ fn an_error_is_reported_with_its_line_and_step() {
         steps = ["walk 1"]\nspeed = 5 => speed is not a known key; allowed: steps, repeat, repeat_from
     "#;
     for (lines, message) in read_cases(mistakes) {
-        let actual = parse_error(&lines);
+        let actual = error_with_lines(&lines);
         let expected_end = format!(" routine.patrol.{message}");
         assert!(actual.ends_with(&expected_end), "{actual}");
         assert!(actual.starts_with("robot.toml:"), "{actual}");
     }
     let many_steps = "\"walk 1\", ".repeat(100);
-    let actual = parse_error(&format!("steps = [{many_steps}]"));
+    let actual = error_with_lines(&format!("steps = [{many_steps}]"));
     let expected = "has 100 steps; it must have between 1 and 99";
     assert!(actual.ends_with(expected), "{actual}");
 }

@@ -169,6 +169,16 @@ fn a_wrong_baud_rate_changes_the_bytes_that_are_read() {
 }
 
 #[test]
+fn a_new_baud_rate_does_not_change_the_byte_that_is_on_the_line() {
+    let mut uno = uno_after_ms(1, program("GPIOR0 = get();"));
+    uno.send(b"0");
+    uno.run_cycles(700);
+    uno.set_baud(57_600.0);
+    uno.run_ms(1);
+    assert_eq!(mark_values(&uno), b"0");
+}
+
+#[test]
 fn a_low_stop_bit_is_a_framing_error_of_its_byte_only() {
     // FE0 is valid until UDR0 is read, so the program reads UCSR0A first (data sheet 20.7.4).
     let body = "unsigned char status; while (!((status = UCSR0A) & 0x80)) {}

@@ -1,14 +1,12 @@
 //! Tests of uploads to a simulated board and boot loader.
 
 use std::path::Path;
-use std::time::Duration;
 
 use lizard_core::numbers::mark::ADDRESS;
 use lizard_robot::Robot;
 use pollster::block_on;
 
 use super::*;
-use crate::board::BoardError;
 use crate::contents::find_robot;
 use crate::target::Model;
 use board_double::BoardDouble;
@@ -20,18 +18,14 @@ mod robot_alone;
 /// The firmware's code, in Intel HEX.
 pub(crate) const CODE: &str = include_str!("../../../../firmware/code.hex");
 
-/// Creates an image of five pages, of which the last is partly filled.
+/// Creates an image of five pages, of which the last is partly filled. Each byte differs from its neighbours.
 fn test_image() -> Image {
-    Image::new(pattern_bytes(600, 3)).expect("the image fits")
+    let bytes = (0..600).map(|index| (index * 3 + 1) as u8);
+    Image::new(bytes.collect()).expect("the image fits")
 }
 
 /// The page addresses of [`test_image`].
 const PAGE_ADDRESSES: [usize; 5] = [0, 0x80, 0x100, 0x180, 0x200];
-
-/// Creates bytes that differ from their neighbours.
-fn pattern_bytes(count: usize, factor: usize) -> Vec<u8> {
-    (0..count).map(|index| (index * factor + 1) as u8).collect()
-}
 
 /// Creates a board whose flash holds [`test_image`].
 fn board_with_image() -> BoardDouble {
@@ -90,7 +84,7 @@ impl UploadRun {
     fn assert_written(&self) -> PageCounts {
         let counts = *self.result.as_ref().expect("the image is written");
         let (flash, blank) = (&self.board.flash, BoardDouble::blank().flash);
-        assert_eq!(flash[..600], pattern_bytes(600, 3));
+        assert_eq!(flash[..600], *test_image().bytes());
         let (loader, expected) = (&flash[0x7e00..], &blank[0x7e00..]);
         assert_eq!(loader, expected, "the boot loader is unchanged");
         assert!(self.board.has_started_program, "the program is started");
@@ -210,28 +204,9 @@ fn a_board_that_never_answers_is_reset_four_times_and_stays_unchanged() {
 
 #[test]
 fn a_board_that_sends_without_end_is_not_mistaken_for_a_boot_loader() {
-    /// A board that sends `x` without end.
-    struct EndlessSender;
-    impl Board for EndlessSender {
-        async fn reset(&mut self, _baud: u32) -> Result<(), BoardError> {
-            Ok(())
-        }
-        async fn write(&mut self, _bytes: &[u8]) -> Result<(), BoardError> {
-            Ok(())
-        }
-        async fn read(&mut self, bytes: &mut [u8], _time: Duration) -> Result<usize, BoardError> {
-            bytes.fill(b'x');
-            Ok(bytes.len())
-        }
-        async fn discard(&mut self, _time: Duration) -> Result<(), BoardError> {
-            Ok(())
-        }
-    }
-    let mut loader = Loader::new(EndlessSender);
-    let (image, target) = (test_image(), Target::default());
-    let result = block_on(upload(&mut loader, &image, target, &mut |_| {}));
-    assert!(matches!(result, Err(UploadError::NoLoader)));
-    let result = block_on(identify(&mut loader));
+    let run = run_over_old_program(|board| board.sends_endlessly = true);
+    assert!(matches!(run.result, Err(UploadError::NoLoader)));
+    let result = block_on(identify(&mut Loader::new(run.board)));
     assert!(matches!(result, Err(UploadError::NoLoader)));
 }
 
@@ -286,11 +261,12 @@ fn a_board_with_another_chip_is_rejected_with_the_name_of_the_chip() {
 fn an_upload_recovers_from_the_loss_of_any_byte_to_the_board() {
     let byte_count = run_over_old_program(|_| {}).board.received_count;
     assert!(byte_count > 2000, "{byte_count} bytes");
+    let image = test_image();
     for lost_byte in 0..byte_count {
         let run = run_over_old_program(|board| board.lost_byte_to_board = Some(lost_byte));
         run.assert_recovered(lost_byte);
         let flash = &run.board.flash;
-        assert!(flash[..600] == pattern_bytes(600, 3), "byte {lost_byte}");
+        assert!(flash[..600] == *image.bytes(), "byte {lost_byte}");
         assert_eq!(
             run.reported_contents.len(),
             1,

@@ -46,16 +46,12 @@ const CAMERAS: [Camera; 16] = [
     on_tripod("640 x 360", |studio| studio.size = [640, 360]),
     on_tripod("1920 x 1080", |studio| studio.size = [1920, 1080]),
     Camera {
-        name: "12 frames per second",
-        change: |_| {},
         frame_rate: 12.0,
-        shake: 0.0,
+        ..on_tripod("12 frames per second", |_| {})
     },
     Camera {
-        name: "60 frames per second",
-        change: |_| {},
         frame_rate: 60.0,
-        shake: 0.0,
+        ..on_tripod("60 frames per second", |_| {})
     },
     on_tripod("straight down", |studio| studio.camera_tilt = 2.0),
     on_tripod("tilt 40 deg", |studio| studio.camera_tilt = 40.0),
@@ -79,16 +75,16 @@ const CAMERAS: [Camera; 16] = [
         studio.discs = vec![[0.0, 150.0, 40.0, 255.0]];
     }),
     Camera {
-        name: "hand-held",
-        change: |_| {},
         frame_rate: 12.0,
         shake: 3.0,
+        ..on_tripod("hand-held", |_| {})
     },
     Camera {
-        name: "hand-held, rolling shutter",
-        change: |studio| studio.readout_s = 0.02,
         frame_rate: 12.0,
         shake: 3.0,
+        ..on_tripod("hand-held, rolling shutter", |studio| {
+            studio.readout_s = 0.02;
+        })
     },
 ];
 

@@ -105,12 +105,12 @@ fn over_90_percent_of_estimates_lie_within_two_standard_errors_at_60_to_240_fram
         }
         for (i, max_error) in [0.005, 8.0, 0.2, 0.002].into_iter().enumerate() {
             let [hit_fraction, mean_error] = hit_fraction_and_mean_error(&estimates[i]);
-            let text = format!(
+            let summary = format!(
                 "{frame_rate} frames per second, estimate {i}: within two errors {hit_fraction:.2}, \
                  mean error {mean_error:.4}"
             );
-            println!("{text}");
-            assert!(hit_fraction > 0.9 && mean_error < max_error, "{text}");
+            println!("{summary}");
+            assert!(hit_fraction > 0.9 && mean_error < max_error, "{summary}");
         }
         assert!(estimates[3].len() > 30, "{}", estimates[3].len());
     }

@@ -84,7 +84,7 @@ fn a_video_without_a_measurable_slide_is_rejected_with_the_reason() {
 }
 
 #[test]
-fn a_robot_that_is_put_straight_in_the_first_second_has_not_slid() {
+fn a_robot_that_is_moved_by_hand_in_the_first_second_has_not_slid() {
     let pose_at = |seconds: f64| [if seconds < 0.25 { 90.0 } else { 55.0 }, 5.0, 0.0];
     let mut rng = Rng::with_seed(4);
     let video = record_robot(&small_studio(), 1.5, 10.0, pose_at, &mut rng);
@@ -113,7 +113,6 @@ fn in_at_least_14_of_16_videos_the_true_friction_lies_within_two_standard_errors
             ..EVENLY_LIFTED_BOARD
         };
         let mut studio = small_studio();
-        let mut random_between = |low: f64, high: f64| low + (high - low) * rng.f64();
         (studio.camera_tilt, studio.distortion) =
             (random_between(0.0, 18.0), random_between(-0.006, 0.006));
         studio.readout_s = 0.015;
@@ -130,7 +129,7 @@ fn in_at_least_14_of_16_videos_the_true_friction_lies_within_two_standard_errors
     }
     let [static_hits, sliding_hits] = hits;
     println!(
-        "{video_count} videos; within two errors: static {static_hits}, sliding {sliding_hits}"
+        "{video_count} videos; within two standard errors: static {static_hits}, sliding {sliding_hits}"
     );
     assert!(static_hits >= video_count - 2 && sliding_hits >= video_count - 2);
 }

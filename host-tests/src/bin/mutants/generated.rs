@@ -1,8 +1,6 @@
 //! Generates mutants: one for every operator, number and call in the firmware's code. After a shuffle, the first
 //! mutants are a random sample.
 
-use fastrand::Rng;
-
 use super::list::Mutant;
 
 /// The folder whose files only read and produce console text. Any other file can move a servo or change a saved value.
@@ -124,12 +122,6 @@ fn find_numbers(code: &str) -> Vec<(usize, &str)> {
     let numbers = words.filter(|word| word.bytes().all(|byte| byte.is_ascii_digit()));
     let byte_offset = |word: &str| word.as_ptr() as usize - code.as_ptr() as usize;
     numbers.map(|word| (byte_offset(word), word)).collect()
-}
-
-/// Shuffles mutants. The same seed always gives the same order.
-pub fn shuffle(mut mutants: Vec<Mutant>, seed: u64) -> Vec<Mutant> {
-    Rng::with_seed(seed).shuffle(&mut mutants);
-    mutants
 }
 
 /// Returns the 95 % Wilson confidence interval for the rate `caught / tried`.

@@ -5,9 +5,9 @@
 pub struct Mutant {
     /// The file's path, relative to the root of the tree.
     pub file: String,
-    /// The description of the mutation.
+    /// The description of the mutation; in the list, its `wrong` line.
     pub description: String,
-    /// A part of the names of the tests that run before all others; `None` if all tests run together.
+    /// The tests whose names contain this text run first; `None` if all tests run together.
     pub test_filter: Option<String>,
     /// The package whose own tests must catch the mutant, if the code also runs on the host; `None` if the code runs
     /// only in the firmware.
@@ -24,7 +24,7 @@ pub struct Mutant {
 
 impl Mutant {
     /// Returns a mutant that changes nothing in a file of the core. `text` is the file's text.
-    pub fn without_change(file: &str, text: String) -> Self {
+    pub fn without_change_in_core(file: &str, text: String) -> Self {
         Self {
             file: file.into(),
             description: "no change".into(),
@@ -49,11 +49,11 @@ impl Mutant {
     }
 }
 
-/// Reads the entries of `mutants.txt`.
+/// Parses the entries of `mutants.txt`.
 ///
 /// # Errors
-/// Fails if a line has an unknown key, or if an entry has no file, no description or no old text.
-pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
+/// Fails if a line has an unknown key, or if an entry has no file, no `wrong` line or no old text.
+pub fn parse(list: &str) -> Result<Vec<Mutant>, String> {
     let mut mutants = Vec::new();
     let mut open_entry: Option<Mutant> = None;
     for (index, line) in list.lines().chain([""]).enumerate() {
@@ -67,7 +67,7 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
                 if texts.into_iter().any(String::is_empty) {
                     let line = mutant.line;
                     return Err(format!(
-                        "line {line}: an entry needs a file, a description and an old text"
+                        "line {line}: an entry needs a file, a `wrong` line and an old text"
                     ));
                 }
                 mutants.push(mutant);
@@ -112,7 +112,7 @@ mod tests {
     fn an_entry_replaces_its_old_text_only_if_it_occurs_exactly_once() {
         let list =
             "# a list\n\nfile a.rs\nwrong it is two\ntest one\n-let a = 1;\n-\n+let a = 2;\n";
-        let mutants = read(list).expect("the list is valid");
+        let mutants = parse(list).expect("the list is valid");
         let [mutant] = &mutants[..] else {
             panic!("{mutants:?}");
         };
@@ -136,7 +136,7 @@ mod tests {
             ("file a.rs\n-x\n+y\n", "line 1"),
             ("\nfile a\nwhat b\n", "line 3"),
         ] {
-            let error = read(list).expect_err("the list is invalid");
+            let error = parse(list).expect_err("the list is invalid");
             assert!(error.starts_with(line), "{error}");
         }
     }

@@ -49,8 +49,8 @@ fn run(arguments: &[String]) -> Result<(), String> {
     let folder = Path::new(folder);
     let to_message = |error: std::io::Error| format!("{}: {error}", folder.display());
     std::fs::create_dir_all(folder).map_err(to_message)?;
-    for (number, (text, _)) in robots.iter().enumerate() {
-        std::fs::write(folder.join(format!("{number}.toml")), text).map_err(to_message)?;
+    for (number, (toml, _)) in robots.iter().enumerate() {
+        std::fs::write(folder.join(format!("{number}.toml")), toml).map_err(to_message)?;
     }
     Ok(())
 }

@@ -13,7 +13,7 @@ use lizard_core::numbers::robot::Robot;
 use lizard_core::virtual_board::Eeprom;
 use lizard_rules::{Event, Limits, Rule, Time};
 
-use super::{FRAME, Verdict, World, report_violation};
+use super::{FRAME, Verdict, World, violation};
 use crate::fingerprint::coarse_fingerprint;
 
 /// Tolerance for rounding a pulse that changes within a frame, cycles.
@@ -76,7 +76,7 @@ impl World {
             && !self.observer.was_supply_low(0, 70 * FRAME)
             && Time::from(self.running_robot.motion().frame_count()) * FRAME > SUPPLY_SETTLING_TIME
         {
-            return report_violation(Rule::NoNeedlessRefusal, answer);
+            return violation(Rule::NoNeedlessRefusal, answer);
         }
         if is_accepted && effect == Effect::Motion {
             let is_stack_intact = self.running_robot.board.is_stack_intact;
@@ -128,7 +128,7 @@ impl World {
             let (limits, _) = limits.expect("the direction follows the limits");
             let answer = future_robot.send_line(&format!("limit {servo} {limits}"));
             if answer.starts_with("err ") {
-                return report_violation(Rule::LoadedLimitsValid, answer);
+                return violation(Rule::LoadedLimitsValid, answer);
             }
         }
         Ok(())
@@ -151,7 +151,7 @@ impl World {
         if changed_robot.board.started_pulses() != unchanged_robot.board.started_pulses()
             || coarse_fingerprint(&changed_robot.main) != coarse_fingerprint(&unchanged_robot.main)
         {
-            return report_violation(Rule::ContactsOnlyInRoutine, format!("{activity:?}"));
+            return violation(Rule::ContactsOnlyInRoutine, format!("{activity:?}"));
         }
         Ok(())
     }
@@ -176,7 +176,7 @@ impl World {
             && future_control.fault() == control.fault()
         {
             let observation = format!("{answer}, and then {}", future_robot.send_line("status"));
-            return report_violation(Rule::MotionBegins, observation);
+            return violation(Rule::MotionBegins, observation);
         }
         Ok(())
     }
@@ -197,7 +197,7 @@ impl World {
             || activity != Activity::Gait(GaitId::STAND)
         {
             let status = future_robot.send_line("status");
-            return report_violation(Rule::StandWorks, format!("{answer}, and then {status}"));
+            return violation(Rule::StandWorks, format!("{answer}, and then {status}"));
         }
         Ok(())
     }
@@ -207,7 +207,7 @@ impl World {
         future_robot.run_without_reader(MOTION_FRAMES);
         if future_robot.main.control().activity() != Activity::Stop {
             let observation = format!("{answer}, and then {}", future_robot.send_line("status"));
-            return report_violation(Rule::CountedMotionEnds, observation);
+            return violation(Rule::CountedMotionEnds, observation);
         }
         Ok(())
     }
@@ -230,7 +230,7 @@ impl World {
         let is_pose_sent = has_main_run && widths.iter().any(|width| *width > 0);
         let find_hazard = || Clearance::measure(&robot, pose).first_hazard(&robot);
         if is_pose_sent && find_hazard().is_some() {
-            return report_violation(Rule::PosesGuarded, format!("{pose:?}"));
+            return violation(Rule::PosesGuarded, format!("{pose:?}"));
         }
         self.observer.take_verdict()
     }

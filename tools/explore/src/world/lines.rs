@@ -5,7 +5,7 @@ use lizard_core::step::StepResult;
 use lizard_core::virtual_board::{RunningRobot, is_answer};
 use lizard_rules::{Event, Rule, Time};
 
-use super::{MAX_LINES_TO_FIND_RATE, UNREADABLE_BYTES, Verdict, World, report_violation};
+use super::{MAX_LINES_TO_FIND_RATE, UNREADABLE_BYTES, Verdict, World, violation};
 use crate::fingerprint;
 
 /// Returns a fingerprint of main without the fields that record the arrival of a line.
@@ -23,7 +23,7 @@ impl World {
         self.observe(Event::ByteReceived);
         let is_command = bytes == line.as_bytes() && parse(bytes, &self.robot()).is_ok();
         self.observe(Event::LineReceived { is_command });
-        self.unanswered_line = Some(line);
+        self.unchecked_line = Some(line);
         for _ in 0..10_000 {
             if self.running_robot.board.unread_count() == 0 {
                 break;
@@ -37,7 +37,7 @@ impl World {
         if self.running_robot.board.unread_count() == 0 {
             self.check_next_answer(line, &robot_before)?;
         }
-        if self.unanswered_line.is_some() {
+        if self.unchecked_line.is_some() {
             let effect = effect(line, &self.robot());
             self.observer.observe_command(self.now, effect, None);
         }
@@ -51,7 +51,7 @@ impl World {
         self.observe(Event::ByteReceived);
         let robot_after = self.clone_and_settle();
         if robot_fingerprint(&robot_after) != robot_fingerprint(&robot_before) {
-            return report_violation(Rule::OtherRateIgnored, robot_after.board.transmitter.text);
+            return violation(Rule::OtherRateIgnored, robot_after.board.transmitter.text);
         }
         Ok(())
     }
@@ -61,7 +61,7 @@ impl World {
         let mut queried_robot = self.running_robot.clone();
         queried_robot.board.transmitter.is_held = false;
         for _ in 0..MAX_LINES_TO_FIND_RATE {
-            if queried_robot.is_stopped_by_watchdog() {
+            if queried_robot.board.are_pulses_ended() {
                 return Ok(());
             }
             let line: &[u8] = match queried_robot.board.rate == self.sender_rate {
@@ -77,7 +77,7 @@ impl World {
             }
         }
         let observation = format!("at {} baud", self.sender_rate.baud());
-        report_violation(Rule::RateFound, observation)
+        violation(Rule::RateFound, observation)
     }
 
     /// Returns a clone of the robot, run until it has printed all its output.
@@ -99,14 +99,14 @@ impl World {
             && (robot_fingerprint(&robot_after) != robot_fingerprint(robot_before)
                 || robot_after.board.memory.bytes() != robot_before.board.memory.bytes())
         {
-            return report_violation(Rule::RefusalChangesNothing, text.clone());
+            return violation(Rule::RefusalChangesNothing, text.clone());
         }
         if answer.starts_with("ok gait=") {
             // The answer to `status` is checked when it is printed.
             return Ok(());
         }
         self.checked_answer_count += 1;
-        self.unanswered_line = None;
+        self.unchecked_line = None;
         self.check_answer(line, answer)?;
         self.check_promises()
     }
@@ -123,7 +123,7 @@ impl World {
             if is_answer(line) {
                 if self.checked_answer_count > 0 && !line.starts_with("ok gait=") {
                     self.checked_answer_count -= 1;
-                } else if let Some(sent_line) = self.unanswered_line.take() {
+                } else if let Some(sent_line) = self.unchecked_line.take() {
                     self.check_answer(sent_line, line)?;
                 }
             }

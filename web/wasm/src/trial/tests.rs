@@ -5,7 +5,7 @@ use lizard_twin::ServoModel;
 use super::*;
 use crate::paper::{PAPER_TOML, load_paper_robot, load_paper_robot_and_twin};
 
-fn get_bars(robot: &Robot, name: &str) -> Bars {
+fn read_bars(robot: &Robot, name: &str) -> Bars {
     let gait = robot.gait(name).expect("the robot has this gait");
     gait.bars().expect("the gait has bars")
 }
@@ -27,7 +27,7 @@ fn a_gait_rebuilt_from_its_bars_has_the_same_prediction() {
     let (robot, twin) = load_paper_robot_and_twin();
     for name in ["walk", "trot", "crawl", "left", "arc-left", "arc-right"] {
         let gait = robot.gait(name).expect("the robot has this gait");
-        let trial = try_bars(&get_bars(&robot, name), &twin).expect("the gait is valid");
+        let trial = try_bars(&read_bars(&robot, name), &twin).expect("the gait is valid");
         let prediction = GaitPrediction::predict(&twin, gait);
         assert_eq!(trial.prediction, prediction, "{name}");
         let peak_speed = gait.audit().peak_speed.speed;
@@ -49,7 +49,7 @@ fn a_reversed_gait_walks_the_same_distance_backward() {
         forward.expect("the distance is determined")
     };
     let predicted_mm = forward_mm(GaitPrediction::predict(&twin, back));
-    let trial = try_bars(&get_bars(&robot, "back"), &twin).expect("the gait is valid");
+    let trial = try_bars(&read_bars(&robot, "back"), &twin).expect("the gait is valid");
     let trial_mm = forward_mm(trial.prediction);
     assert!(
         predicted_mm < -5.0 && (trial_mm - predicted_mm).abs() < 0.1,
@@ -57,7 +57,7 @@ fn a_reversed_gait_walks_the_same_distance_backward() {
     );
     assert!((trial.max_servo_speed - back.audit().peak_speed.speed).abs() < 2.0);
     for name in ["walk", "crawl", "arc-left"] {
-        let bars = get_bars(&robot, name);
+        let bars = read_bars(&robot, name);
         let [own_mm, reversed_mm] = [bars.clone(), bars.reversed()].map(|bars| {
             let trial = try_bars(&bars, &twin).expect("the gait is valid");
             forward_mm(trial.prediction)
@@ -81,7 +81,7 @@ fn a_refusal_offers_the_nearest_valid_values() {
     let (robot, twin) = load_paper_robot_and_twin();
     let too_large_gait = Bars {
         amplitude: 60.0,
-        ..get_bars(&robot, "walk")
+        ..read_bars(&robot, "walk")
     };
     let refused_trial = try_bars(&too_large_gait, &twin).expect_err("the gait is too large");
     let refusal = refused_trial.refusal;
@@ -110,7 +110,7 @@ fn slow_servos_are_offered_a_long_period() {
     let slow_toml = stand.replace("gait_slew = 310.0", "gait_slew = 10.0");
     let slow_robot = Robot::parse(&slow_toml).expect("the standing robot is valid");
     let twin = Twin::new(&slow_robot, ServoModel::Ideal);
-    let walk = get_bars(&load_paper_robot(), "walk");
+    let walk = read_bars(&load_paper_robot(), "walk");
     let refused_trial = try_bars(&walk, &twin).expect_err("the gait is too fast");
     let mut alternatives = refused_trial.alternatives.iter();
     let offer = alternatives.find(|alternative| alternative.parameter == "period");
@@ -123,11 +123,11 @@ fn a_gait_replaces_the_gait_of_the_same_name_or_else_is_added() {
     let robot = load_paper_robot();
     let walk = Bars {
         amplitude: 15.0,
-        ..get_bars(&robot, "walk")
+        ..read_bars(&robot, "walk")
     };
     let text = put_into(&walk, PAPER_TOML);
     let changed_robot = Robot::parse(&text).expect("the changed robot is valid");
-    assert_eq!(get_bars(&changed_robot, "walk"), walk);
+    assert_eq!(read_bars(&changed_robot, "walk"), walk);
     let gait_names = |robot: &Robot| -> Vec<_> {
         let names = robot.gaits().iter().map(|gait| gait.name().to_string());
         names.collect()
@@ -136,22 +136,27 @@ fn a_gait_replaces_the_gait_of_the_same_name_or_else_is_added() {
     let mine = Bars {
         name: "mine".to_string(),
         amplitude: 18.5,
-        ..get_bars(&robot, "arc-left")
+        ..read_bars(&robot, "arc-left")
     };
     let extended_robot = Robot::parse(&put_into(&mine, &text));
     let extended_robot = extended_robot.expect("the extended robot is valid");
     let gait_count = extended_robot.gaits().len();
     assert_eq!(gait_count, robot.gaits().len() + 1);
-    assert_eq!(get_bars(&extended_robot, "mine"), mine);
+    assert_eq!(read_bars(&extended_robot, "mine"), mine);
 }
 
 #[test]
-fn an_invalid_name_is_refused_without_alternatives() {
+fn an_invalid_name_is_refused_with_its_rule_and_without_alternatives() {
     let (robot, twin) = load_paper_robot_and_twin();
-    let misnamed_gait = Bars {
-        name: "Wa lk".to_string(),
-        ..get_bars(&robot, "walk")
-    };
-    let refused_trial = try_bars(&misnamed_gait, &twin).expect_err("the name is invalid");
-    assert_eq!(refused_trial.alternatives, []);
+    for name in ["Wa lk", "läuft", ""] {
+        let misnamed_gait = Bars {
+            name: name.to_string(),
+            ..read_bars(&robot, "walk")
+        };
+        let refused_trial = try_bars(&misnamed_gait, &twin).expect_err("the name is invalid");
+        let expected_start = format!("gait.{name}: is not a gait name: ");
+        let reason = refused_trial.refusal.reason;
+        assert!(reason.starts_with(&expected_start), "{reason}");
+        assert_eq!(refused_trial.alternatives, []);
+    }
 }

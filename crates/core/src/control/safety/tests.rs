@@ -9,7 +9,7 @@ fn sample_supplies() -> Supplies {
 
 /// Returns a monitor after power-on whose `boot` is cancelled.
 fn safety_without_boot() -> Safety {
-    let mut safety = Safety::default();
+    let mut safety = Safety::new();
     safety.record_byte();
     safety
 }
@@ -55,8 +55,12 @@ fn a_healthy_board_causes_neither_a_reaction_nor_a_notice() {
 #[test]
 fn before_the_supply_has_been_measured_a_robot_may_move_but_not_write() {
     let mut safety = safety_without_boot();
+    let unmeasured_board = Health {
+        supply: Reading::default(),
+        ..HEALTHY_BOARD
+    };
     for _ in 0..20 {
-        check_still_frame(&mut safety, &Health::default());
+        check_still_frame(&mut safety, &unmeasured_board);
         assert!(!safety.allows_writing());
         let response = safety.response(Event::Save, State::Posing);
         let claim = "the write waits for the measurement";
@@ -74,7 +78,7 @@ fn before_the_supply_has_been_measured_a_robot_may_move_but_not_write() {
 
 #[test]
 fn boot_is_requested_once_three_seconds_after_power_on() {
-    let mut safety = Safety::default();
+    let mut safety = Safety::new();
     for frame in 1..=1000 {
         let reaction = check_still_frame(&mut safety, &HEALTHY_BOARD);
         let expected_reaction = match frame {
@@ -88,7 +92,7 @@ fn boot_is_requested_once_three_seconds_after_power_on() {
 #[test]
 fn a_byte_a_fault_or_a_low_supply_cancels_boot() {
     let boots_despite = |disturb: fn(&mut Safety)| {
-        let mut safety = Safety::default();
+        let mut safety = Safety::new();
         let mut has_booted = false;
         for frame in 1..=400 {
             has_booted |= check_still_frame(&mut safety, &HEALTHY_BOARD) == Reaction::Boot;
@@ -152,7 +156,7 @@ fn silence_without_deadman_or_without_a_gait_is_not_a_fault() {
 
 #[test]
 fn a_gait_started_by_boot_ends_only_after_the_deadman_time() {
-    let mut safety = Safety::default();
+    let mut safety = Safety::new();
     let mut state = State::Posing;
     let mut boot_frame = 0;
     for frame in 1..400 {

@@ -124,8 +124,7 @@ fn fifty_high_readings_raise_the_level_only_as_far_as_the_lowest_of_them() {
             let volts = if frame == outlier_frame { 4.5 } else { 5.0 };
             supply.add_reading(compute_reading(volts, 0.0), &SUPPLIES);
         }
-        let level = supply.level();
-        assert_eq!(level, Slow, "4.5 V in frame {outlier_frame}");
+        assert_eq!(supply.level(), Slow, "4.5 V in frame {outlier_frame}");
     }
 }
 

@@ -9,7 +9,7 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 
 use super::*;
-use crate::guard::bounds::{self, MAX_DIRECTION_ERROR, Q15_STEP};
+use crate::guard::bounds::{self, MAX_DIRECTION_ERROR, MarginErrors, Q15_UNIT};
 use crate::numbers::limits::Limits;
 use crate::numbers::units::Sweep;
 use crate::sample::{Measurements, Sample, steps_per_mm, to_f64};
@@ -24,7 +24,7 @@ fn robots_with_poses() -> impl Strategy<Value = (Sample, [Pose; 8])> {
 
 /// Upper bounds of the guard's errors at a pose.
 struct Bounds {
-    ends: [bounds::EndErrors; 2],
+    ends: [MarginErrors; 2],
     /// The errors of the slider lengths, mm.
     sliders: [f64; 2],
 }
@@ -37,7 +37,7 @@ impl Bounds {
             let angles = end.pick(robot.degrees(pose));
             let angles = angles.map(|angle| end.sign() * angle);
             let lengths = &robot.content.ends[end as usize];
-            bounds::EndErrors::at_angles(&lizard.end(end), lengths, angles)
+            MarginErrors::at_angles(&lizard.end(end), lengths, angles)
         });
         let sliders = kinematics::Side::ALL.map(|side| {
             bounds::slider_error(&lizard.side(side), &robot.content.sliders[side as usize])
@@ -45,7 +45,7 @@ impl Bounds {
         Self { ends, sliders }
     }
 
-    fn max_end_error(&self, error: impl Fn(&bounds::EndErrors) -> f64) -> f64 {
+    fn max_end_error(&self, error: impl Fn(&MarginErrors) -> f64) -> f64 {
         error(&self.ends[0]).max(error(&self.ends[1]))
     }
 }
@@ -61,7 +61,7 @@ fn decide_safety(robot: &Sample, pose: &Pose) -> Option<bool> {
             .then_some(false);
     };
     let exact_poses = [&solution.head, &solution.tail];
-    let may_be_crossed = |(exact_pose, bound): (&&kinematics::FiveBarPose, &bounds::EndErrors)| {
+    let may_be_crossed = |(exact_pose, bound): (&&kinematics::FiveBarPose, &MarginErrors)| {
         exact_pose.gap.x.abs() <= bound.gap_x
     };
     if exact_poses.iter().zip(&bounds.ends).any(may_be_crossed) {
@@ -72,13 +72,13 @@ fn decide_safety(robot: &Sample, pose: &Pose) -> Option<bool> {
     let [left, right] = scales.map(steps_per_mm);
     let step = 1.0 / left.min(right);
     let limits = robot.measurements.limits;
-    let type2_error = bounds.max_end_error(|end| end.type2) + Q15_STEP;
-    let type1_error = bounds.max_end_error(bounds::EndErrors::type1) + Q15_STEP;
+    let type2_error = bounds.max_end_error(|end| end.type2) + Q15_UNIT;
+    let type1_error = bounds.max_end_error(MarginErrors::type1) + Q15_UNIT;
     let stroke_error = bounds.sliders[0].max(bounds.sliders[1]) + step;
     let shifted_limits = |sign: f64| kinematics::Limits {
         type2: limits.type2 + sign * type2_error,
         type1: limits.type1 + sign * type1_error,
-        leg: limits.leg + sign * (MAX_DIRECTION_ERROR + Q15_STEP),
+        leg: limits.leg + sign * (MAX_DIRECTION_ERROR + Q15_UNIT),
         stroke_min: limits.stroke_min + sign * stroke_error,
         stroke_max: limits.stroke_max - sign * stroke_error,
     };
@@ -106,7 +106,7 @@ fn check_errors(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
         let five_bar_pose = [&solution.head, &solution.tail][end];
         let bound = &bounds.ends[end];
         let is_leg = index >= 6;
-        let is_unknown = !is_leg && !bound.are_margins_known;
+        let is_unknown = !is_leg && !bound.do_bounds_hold;
         let may_be_crossed = index < 2 && five_bar_pose.gap.x.abs() <= bound.gap_x;
         if is_unknown || may_be_crossed {
             continue;
@@ -175,7 +175,7 @@ fn the_bounds_decide_nearly_every_pose_and_are_narrow_at_neutral() {
         decided_count += poses.iter().filter(is_decided).count();
         let standing_bounds = Bounds::compute(&robot, &Pose::NEUTRAL);
         let type2 = standing_bounds.max_end_error(|end| end.type2);
-        let type1 = standing_bounds.max_end_error(bounds::EndErrors::type1);
+        let type1 = standing_bounds.max_end_error(MarginErrors::type1);
         assert!(type2 < 0.01, "type-2 {type2}, type-1 {type1}");
         assert!(type1 < 0.02, "type-2 {type2}, type-1 {type1}");
         let sliders = standing_bounds.sliders;

@@ -4,7 +4,7 @@ use lizard_kinematics as kinematics;
 use proptest::prelude::*;
 
 use super::*;
-use crate::guard::bounds;
+use crate::guard::bounds::{self, MarginErrors};
 use crate::numbers::units::Angle;
 use crate::sample::{SampleFiveBar, to_degrees, to_f64};
 
@@ -44,7 +44,7 @@ proptest! {
         let sample = SampleFiveBar::new(&five_bar).expect("the lengths fit the integers");
         let actual = compute_margins(&sample, angles);
         let angles = angles.map(to_degrees);
-        let bound = bounds::EndErrors::at_angles(&five_bar, &sample.lengths, angles);
+        let bound = MarginErrors::at_angles(&five_bar, &sample.lengths, angles);
         let Ok(pose) = five_bar.forward(angles[0], angles[1]) else {
             // Couplers that just fail to meet may meet once their lengths are rounded to whole steps.
             prop_assert!(to_f64(actual.type2).abs() <= bound.type2, "{actual:?}");
@@ -53,13 +53,13 @@ proptest! {
         let actual_type2 = to_f64(actual.type2).abs();
         let error = actual_type2 - pose.type2;
         // Where the tables have no correct value, a small margin may also be too large.
-        let may_be_overstated = !bound.are_margins_known && actual_type2 <= bounds::MAX_OVERSTATED_MARGIN;
+        let may_be_overstated = !bound.do_bounds_hold && actual_type2 <= bounds::MAX_OVERSTATED_MARGIN;
         prop_assert!(error <= bound.type2 || may_be_overstated, "type-2 error {error}: {bound:?}");
         if actual == EndMargins::default() {
             // Margins of zero are reported as "below 0.1", so the true type-2 margin must be below 0.1.
             prop_assert!(pose.type2 < 0.1, "no margins at a type-2 margin of {}", pose.type2);
         }
-        if !bound.are_margins_known {
+        if !bound.do_bounds_hold {
             // The tables may have no value here, so the margin may be too small, or all margins may be zero.
             return Ok(());
         }
@@ -112,7 +112,7 @@ fn the_largest_known_errors_are_within_their_bounds() {
         let angles = angles.map(Angle);
         let actual = compute_margins(&sample, angles);
         let [left, right] = angles.map(to_degrees);
-        let bound = bounds::EndErrors::at_angles(&five_bar, &sample.lengths, [left, right]);
+        let bound = MarginErrors::at_angles(&five_bar, &sample.lengths, [left, right]);
         let pose = five_bar.forward(left, right).expect("the loop closes");
         let error = (to_f64(actual.type2).abs() - pose.type2).abs();
         // The five-bar must still have the error for which it was chosen.

@@ -27,8 +27,7 @@ impl Ram {
     /// Returns the RAM after the first call of `begin` since power-on.
     fn after_power_on() -> Self {
         let ram = Self::with_bytes(std::vec![0; CELL_COUNT]);
-        let restart = begin(&ram, Some(Cause::Power));
-        assert_eq!(restart, Restart::NONE);
+        assert_eq!(begin(&ram, Some(Cause::Power)), Restart::NONE);
         ram
     }
 

@@ -20,6 +20,15 @@ const FRAMES_TO_WAKE: u32 = 20;
 const TRANSITION_FRAMES: u32 = 150;
 
 impl Motion {
+    /// Creates the motion of a robot at power-on: its servos wake, then the robot stands.
+    pub(crate) fn new(robot: Robot<'static>) -> Self {
+        let mut motion = Self::unstarted(robot);
+        motion.speed_percent = FULL_SPEED_PERCENT;
+        motion.start_standing();
+        motion.calibrate_all(&robot.calibration());
+        motion
+    }
+
     /// Creates the motion of [`Sample::asymmetric`], awake and in `stand` at full pace.
     fn standing() -> Self {
         Self::awake(Sample::asymmetric())
@@ -112,12 +121,14 @@ fn make_resting_motion() -> Motion {
 }
 
 #[test]
-fn a_held_pose_counts_as_pose_if_it_was_commanded_and_as_stop_otherwise() {
+fn a_pose_is_held_and_counts_as_pose_if_it_was_commanded_and_as_stop_otherwise() {
     let mut stopped_motion = Motion::in_gait("sway", 90);
     stopped_motion.stop();
     let mut posed_motion = Motion::standing();
     posed_motion.go_to_sweeps(SWEEPS);
     posed_motion.run(TRANSITION_FRAMES);
+    assert_eq!(posed_motion.pose(), &Pose(SWEEPS.map(Sweep)));
+    assert_eq!(posed_motion.state, State::Holding { is_commanded: true });
     for (mut motion, activity) in [
         (stopped_motion, Activity::Stop),
         (posed_motion, Activity::Pose),
@@ -149,15 +160,6 @@ fn from_a_held_pose_the_next_frame_begins_the_move_to_a_gait_or_a_pose() {
 }
 
 // Moving.
-
-#[test]
-fn a_move_that_arrives_at_a_pose_holds_it() {
-    let mut motion = Motion::standing();
-    motion.go_to_sweeps(SWEEPS);
-    motion.run(TRANSITION_FRAMES);
-    assert_eq!(motion.pose(), &Pose(SWEEPS.map(Sweep)));
-    assert_eq!(motion.state, State::Holding { is_commanded: true });
-}
 
 #[test]
 fn after_the_move_to_it_even_the_stopped_gait_starts_at_phase_0_and_accelerates() {

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::guard::bounds::{self, MIN_KNOWN_MARGIN};
+use crate::guard::bounds::{self, MIN_BOUNDED_MARGIN};
 use crate::numbers::curve::ENTRY_COUNT;
 use crate::numbers::link_lengths::MIN_COUPLER_STEPS;
 use crate::sample::SampleCouplers;
@@ -61,18 +61,18 @@ proptest! {
         // A loop that just fails to close may close when its lengths are rounded.
         let [rise, skew] = compute_exact_shape(left, right, tips_sq).unwrap_or([0.0, f64::NAN]);
         let Some(shape) = shape else {
-            prop_assert!(compute_type2(left, right, tips_sq, rise) < MIN_KNOWN_MARGIN, "no shape for a rise of {rise}");
+            prop_assert!(compute_type2(left, right, tips_sq, rise) < MIN_BOUNDED_MARGIN, "no shape for a rise of {rise}");
             return Ok(());
         };
         let errors = [
             f64::from(shape.rise) / 1024.0 - rise,
             f64::from(shape.skew) / 1024.0 - skew,
         ];
-        if compute_type2(left, right, tips_sq, rise) < MIN_KNOWN_MARGIN {
+        if compute_type2(left, right, tips_sq, rise) < MIN_BOUNDED_MARGIN {
             // A rise above the largest entry of a table is cut off, and below the peak the table holds the largest
             // rise. No such value may result in a margin above the threshold.
             let min_rise = f64::from(shape.rise) / 1024.0 - bound.rise;
-            prop_assert!(compute_type2(left, right, tips_sq, min_rise) < MIN_KNOWN_MARGIN, "rise {errors:?}, {bound:?}");
+            prop_assert!(compute_type2(left, right, tips_sq, min_rise) < MIN_BOUNDED_MARGIN, "rise {errors:?}, {bound:?}");
             return Ok(());
         }
         prop_assert!(errors[0].abs() <= bound.rise, "rise {errors:?}, {bound:?}");

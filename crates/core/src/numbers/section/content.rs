@@ -24,14 +24,15 @@ use crate::numbers::supplies::Supplies;
 use crate::numbers::units::{Angle, Scale};
 
 /// The hash function whose result identifies a robot.
-static ROBOT_HASH: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+static ROBOT_HASH_FUNCTION: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// The data of a robot from which a section is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Content {
-    /// The robot's name, at most [`MAX_NAME_BYTES`] characters.
+    /// The robot's name, at most [`MAX_NAME_BYTES`] bytes.
     pub name: String,
-    /// The hash of the servo pins, pulses and neutral angles, with which saved settings are stored.
+    /// The hash of the servo pins, pulses and neutral angles. Settings are saved with it, and are valid only for servos
+    /// with the same hash.
     pub servo_hash: u32,
     /// The Arduino numbers of the servo pins, A1 to A4; 14 to 19 are A0 to A5.
     pub pins: [u8; 4],
@@ -43,7 +44,7 @@ pub struct Content {
     pub neutral_angles: [Angle; 4],
     /// The calibration of the servos.
     pub calibration: [Calibration; 4],
-    /// The range of each servo's sweeps that the gaits need.
+    /// The range of sweeps that the gaits need from each servo.
     pub needed_travel: [SweepRange; 4],
     /// The smallest allowed margins.
     pub limits: Limits,
@@ -55,7 +56,8 @@ pub struct Content {
     pub ends: [FiveBarLengths; 2],
     /// The left and the right slider.
     pub sliders: [Slider; 2],
-    /// The gaits, `stand` first, then the routines. The first step of a routine is given as an index into `steps`.
+    /// The gaits, `stand` first, then the routines. A routine's `channels[0].offset` is the index of its first step in
+    /// `steps`.
     pub gaits: Vec<Gait>,
     /// The steps of the routines.
     pub steps: Vec<Step>,
@@ -100,7 +102,7 @@ impl Map {
 }
 
 impl FiveBarLengths {
-    /// Computes the factors of the lengths.
+    /// Adds the reciprocals and shifts with which the guard replaces divisions.
     pub fn link_lengths(&self) -> LinkLengths {
         let [left, right] = self.cranks;
         LinkLengths::new([self.base, left, right], self.couplers, self.scale)
@@ -126,20 +128,21 @@ impl Content {
     pub fn section_length(&self) -> usize {
         let mut curves = Vec::new();
         self.append_curves(&mut curves);
-        let rows: usize = self.maps.iter().map(|map| map.rows.len()).sum();
+        let row_count: usize = self.maps.iter().map(|map| map.rows.len()).sum();
         usize::from(AFTER_NUMBERS_OFFSET)
             + curves.len()
             + size_of_val(self.gaits.as_slice())
             + size_of_val(self.steps.as_slice())
             + size_of_val(self.waves.as_slice())
             + self.names.len()
-            + rows * size_of::<[i8; 2]>()
+            + row_count * size_of::<[i8; 2]>()
     }
 
     /// Makes the bytes of the section, whose length may exceed [`super::REGION_BYTES`].
     ///
     /// # Panics
-    /// Panics if a map has more than 255 rows, or if the section has more than 65 535 bytes.
+    /// Panics if the name has more than [`MAX_NAME_BYTES`] bytes, if a map has more than 255 rows, or if the section
+    /// has more than 65 535 bytes.
     pub fn section_bytes(&self) -> Vec<u8> {
         let [head, tail] = &self.ends;
         let mut bytes_after_numbers = Vec::new();
@@ -199,7 +202,7 @@ impl Content {
             }),
         };
 
-        let mut digest = ROBOT_HASH.digest();
+        let mut digest = ROBOT_HASH_FUNCTION.digest();
         // The hash does not include the maps, because they save time but change no decision.
         let mut without_maps = numbers;
         without_maps.parts[SectionPart::Rows as usize] = PartRange {

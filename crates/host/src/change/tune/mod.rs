@@ -79,13 +79,26 @@ impl Spreadable for Args {
 ///
 /// # Errors
 /// Fails if robot.toml, the rate or the name is invalid, if the gait does not exist or cannot be tuned, if the search
-/// finds no gait within the limits, or if the output cannot be written.
+/// finds no gait within the limits, or if the output cannot be written. Also fails, after the output, if robot.toml
+/// has no room for the new gait.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
+    // The output may be appended to the file, so the text is read before.
+    let robot_toml = args.spread.robot.text()?;
     let Some(comparison) = tune(&robot, &args)? else {
         return Ok(());
     };
-    json::print_json_or_text(args.json, &comparison, || report::format(&comparison))
+    json::print_json_or_text(args.json, &comparison, || report::format(&comparison))?;
+    check_room(&robot_toml, &comparison.fragment)
+}
+
+/// Refuses the table of a new gait with which robot.toml would be invalid, for example too large for the board.
+fn check_room(robot_toml: &str, gait_table: &str) -> Result<(), Failure> {
+    let new_robot = Robot::parse(&format!("{robot_toml}\n{gait_table}"));
+    new_robot.map(|_| ()).map_err(|error| {
+        let message = format!("with the new gait, robot.toml would be invalid: {error}");
+        Failure::Operation(message)
+    })
 }
 
 /// Searches for a gait and compares it with the given one; `None` if this process computed only a part of the search.
@@ -103,7 +116,7 @@ fn tune(robot: &Robot, args: &Args) -> Result<Option<Comparison>, Failure> {
     .map_err(|error| {
         Failure::Input(match error {
             TuningError::Goal(_) => error.to_string(),
-            TuningError::Rate { .. } => format!("--rate {error}"),
+            TuningError::ServoSpeed { .. } => format!("--rate {error}"),
         })
     })?;
     let best = search_all(&tuning, args)?;
@@ -166,9 +179,9 @@ fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure
     };
     let best = tuning.build_best(pieces);
     best.map(Some).ok_or_else(|| {
-        let rate = tuning.rate();
+        let servo_speed = tuning.max_servo_speed();
         Failure::Operation(format!(
-            "found no gait within robot.toml's limits at {rate:.0} deg/s; try more --rounds"
+            "found no gait within robot.toml's limits at {servo_speed:.0} deg/s; try more --rounds"
         ))
     })
 }
@@ -253,6 +266,33 @@ mod tests {
             let message = run_tune(arguments).expect_err(arguments);
             assert!(message.contains(reason), "{arguments}: {message}");
         }
+    }
+
+    #[test]
+    fn a_gait_for_which_the_board_has_no_room_is_refused() {
+        let format_gait = |name: &str, duty: usize| {
+            format!(
+                "[gait.{name}]\nperiod = 2.0\nwaveform = \"wave\"\nduty = 0.{duty}\namplitude = 10.0\n\
+                 start = {{ LF = 0.25, RF = 0.75, RH = 0.5, LH = 0.0 }}\n"
+            )
+        };
+        let new_gait = format_gait("tuned", 72);
+        assert!(check_room(PAPER_TOML, &new_gait).is_ok());
+        // Each of these gaits has its own waveform.
+        let mut full_toml = PAPER_TOML.to_owned();
+        for duty in 51..72 {
+            let next_toml = format!("{full_toml}\n{}", format_gait(&format!("g{duty}"), duty));
+            if Robot::parse(&next_toml).is_err() {
+                break;
+            }
+            full_toml = next_toml;
+        }
+        let failure = check_room(&full_toml, &new_gait).expect_err("the board is full");
+        let message = failure.to_string();
+        assert!(
+            message.contains("the board's limit of 4096 bytes"),
+            "{message}"
+        );
     }
 
     #[test]

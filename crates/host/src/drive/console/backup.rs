@@ -4,7 +4,9 @@ use std::error::Error;
 use std::io::{self, Read, Write};
 use std::path::PathBuf;
 
-use lizard_calibrate::{SendError, read_settings, replace_settings, send_command, send_settings};
+use lizard_calibrate::{
+    ReplaceError, read_settings, replace_settings, send_command, send_settings,
+};
 use lizard_robot::Calibration;
 use pollster::block_on;
 
@@ -87,13 +89,13 @@ pub fn send_calibration<P: Read + Write>(
     calibration: &Calibration,
     link: &mut Link<P>,
 ) -> Result<(), Box<dyn Error>> {
-    let old_settings = block_on(read_settings(link)).map_err(SendError::Refused)?;
+    let old_settings = block_on(read_settings(link)).map_err(ReplaceError::Refused)?;
     block_on(replace_settings(link, &old_settings, calibration))?;
     match block_on(send_command(link, "save")) {
         Ok(_) => Ok(()),
         Err(error) if error.is_refusal() => {
-            block_on(send_settings(link, &old_settings)).map_err(SendError::Mixed)?;
-            Err(SendError::Refused(error).into())
+            block_on(send_settings(link, &old_settings)).map_err(ReplaceError::Mixed)?;
+            Err(ReplaceError::Refused(error).into())
         }
         Err(error) => {
             let advice = "the robot may have saved the calibration: restore it once more";

@@ -130,7 +130,7 @@ impl BoardFinder {
                 usb_ports::retain_chip(&mut ports, self.chip.get());
                 let port = usb_ports::choose(&ports, self.command)
                     .map_err(|error| Failure::Operation(error.to_string()))?;
-                self.chip.get_or_init(|| port.chip());
+                self.chip.get_or_init(|| port.chip);
                 // The product name comes from the board and may contain control characters.
                 (port.name.clone(), escape_controls(&port.to_string()))
             }

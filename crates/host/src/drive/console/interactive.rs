@@ -288,7 +288,9 @@ impl Dialogue {
                 let banner = banner.unwrap_or_default();
                 screen.print(&format!("{} is connected again: {banner}", board.name))?;
                 let is_recorded = self.recorder.is_some();
-                self.session = Session::new(self.clock.now(), true, is_recorded).with_deadman();
+                for message in self.session.restart(self.clock.now(), is_recorded) {
+                    screen.print(&message)?;
+                }
                 Ok(Some(board))
             }
             Err(LinkError::Gone) => Ok(None),

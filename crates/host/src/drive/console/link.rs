@@ -168,6 +168,12 @@ impl<P: Read + Write> Link<P> {
         Ok(())
     }
 
+    /// Returns the port, for tests.
+    #[cfg(test)]
+    pub fn port(&mut self) -> &mut P {
+        &mut self.port
+    }
+
     fn read_line_before(&mut self, deadline: &mut Deadline) -> Result<Option<String>, LinkError> {
         loop {
             if let Some(line) = self.lines.pop_front() {

@@ -74,13 +74,12 @@ impl Prompt {
         PromptEvent::Edited
     }
 
-    /// Handles pasted text; each line end acts like Enter.
+    /// Handles pasted text; each line end acts like Enter. Most terminals paste CR for a line end, some LF or both.
     pub fn paste(&mut self, text: &str) -> Vec<PromptEvent> {
         let mut events = Vec::new();
-        for character in text.chars() {
+        for character in text.replace("\r\n", "\n").chars() {
             match character {
-                '\r' => {}
-                '\n' => events.push(self.enter()),
+                '\r' | '\n' => events.push(self.enter()),
                 character if character.is_control() => {}
                 character => {
                     self.input
@@ -228,11 +227,13 @@ mod tests {
 
     #[test]
     fn pasted_lines_are_sent_one_by_one() {
-        let mut prompt = Prompt::default();
-        let events = prompt.paste("walk\r\nspeed 50\nst");
-        let lines = ["walk", "speed 50"].map(|line| PromptEvent::Line(line.to_owned()));
-        assert_eq!(events, lines);
-        assert_eq!(prompt.text(), "st");
+        for line_end in ["\r", "\n", "\r\n"] {
+            let mut prompt = Prompt::default();
+            let events = prompt.paste(&["walk", "speed 50", "st"].join(line_end));
+            let lines = ["walk", "speed 50"].map(|line| PromptEvent::Line(line.to_owned()));
+            assert_eq!(events, lines, "{line_end:?}");
+            assert_eq!(prompt.text(), "st");
+        }
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! The file of a recorded session: one JSON object per line, with its time in ms.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use lizard_robot::parse_pose_report;
@@ -61,8 +61,8 @@ pub enum Event {
 /// A recorder that writes a session to a file.
 #[derive(Debug)]
 pub struct Recorder<W: Write> {
-    /// The file's name for messages.
-    name: String,
+    /// The file's path for messages.
+    path: PathBuf,
     out: W,
     start: Instant,
 }
@@ -73,14 +73,14 @@ pub struct Recorder<W: Write> {
 /// Fails if the file already exists, or cannot be created.
 pub fn create(path: &Path) -> Result<Recorder<BufWriter<File>>, Failure> {
     let file = files::create_new(path, "choose another file for the session")?;
-    let name = path.display().to_string();
-    Ok(Recorder::new(name, BufWriter::new(file), Instant::now()))
+    let out = BufWriter::new(file);
+    Ok(Recorder::new(path.to_owned(), out, Instant::now()))
 }
 
 impl<W: Write> Recorder<W> {
-    /// Creates a recorder for a session that begins at `start`; `name` is the file's name for messages.
-    pub fn new(name: String, out: W, start: Instant) -> Self {
-        Self { name, out, start }
+    /// Creates a recorder for a session that begins at `start`; `path` is the file's path for messages.
+    pub fn new(path: PathBuf, out: W, start: Instant) -> Self {
+        Self { path, out, start }
     }
 
     /// Writes an event. Flushes it to the file at once unless it is a pose.
@@ -91,7 +91,7 @@ impl<W: Write> Recorder<W> {
         let ms = now.saturating_duration_since(self.start).as_millis() as u64;
         let is_pose = matches!(event, Event::Pose { .. });
         json::write_line(&mut self.out, &TimedEvent { ms, event })
-            .map_err(|error| self.write_failure(&error))?;
+            .map_err(|error| files::write_failure(&self.path, &error))?;
         if is_pose { Ok(()) } else { self.flush() }
     }
 
@@ -100,11 +100,8 @@ impl<W: Write> Recorder<W> {
     /// # Errors
     /// Fails as [`Recorder::write`] does.
     pub fn flush(&mut self) -> Result<(), Failure> {
-        self.out.flush().map_err(|error| self.write_failure(&error))
-    }
-
-    fn write_failure(&self, error: &io::Error) -> Failure {
-        files::write_failure(Path::new(&self.name), error)
+        let flushed = self.out.flush();
+        flushed.map_err(|error| files::write_failure(&self.path, &error))
     }
 }
 
@@ -147,7 +144,7 @@ mod tests {
     fn each_event_is_one_line_of_json_with_its_time() {
         let start = Instant::now();
         let mut out = Vec::new();
-        let mut recorder = Recorder::new("a".to_owned(), &mut out, start);
+        let mut recorder = Recorder::new("a".into(), &mut out, start);
         let events = [
             Event::Begin {
                 format: FORMAT.to_owned(),
@@ -197,7 +194,7 @@ mod tests {
     #[test]
     fn a_write_error_names_the_file() {
         let small_buffer: &mut [u8] = &mut [0; 10];
-        let mut recorder = Recorder::new("a.jsonl".to_owned(), small_buffer, Instant::now());
+        let mut recorder = Recorder::new("a.jsonl".into(), small_buffer, Instant::now());
         let event = Event::Sent("walk".to_owned());
         let message = recorder
             .write(Instant::now(), event)

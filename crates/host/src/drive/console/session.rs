@@ -42,33 +42,6 @@ enum Request {
     Deadman(DeadmanLine),
 }
 
-impl Request {
-    fn timeout(&self) -> Duration {
-        match self {
-            Self::Status => STATUS_TIMEOUT,
-            _ => ANSWER_TIMEOUT,
-        }
-    }
-
-    /// True if an answer can belong to the request: after `ok`, it must begin with the request's word.
-    fn is_answered_by(&self, answer: &str) -> bool {
-        let line = match self {
-            Self::Line(line) => line.to_ascii_lowercase(),
-            Self::Status => "status".to_owned(),
-            Self::Watch => "watch".to_owned(),
-            Self::Deadman(DeadmanLine::Read) => "cal".to_owned(),
-            Self::Deadman(_) => "deadman".to_owned(),
-        };
-        let word = match line.split_whitespace().next() {
-            Some("status") => "gait=",
-            Some("?") => "help",
-            word => word.unwrap_or_default(),
-        };
-        let rest = answer.strip_prefix("ok ");
-        rest.is_none_or(|rest| rest.starts_with(word))
-    }
-}
-
 /// An unanswered `stop`.
 #[derive(Debug)]
 struct UnansweredStop {
@@ -85,8 +58,8 @@ struct UnansweredStop {
 /// The state of a dialogue with the robot.
 #[derive(Debug)]
 pub struct Session {
-    /// The unanswered request and the time when it was sent.
-    pending_request: Option<(Request, Instant)>,
+    /// The unanswered request, its line, and the end of the wait for its answer.
+    pending_request: Option<(Request, String, Instant)>,
     /// The `stop` that is repeated until the robot answers.
     unanswered_stop: Option<UnansweredStop>,
     /// True from a missing answer until the next answer, so that the user is informed only once.
@@ -151,13 +124,11 @@ impl Session {
             self.watches_poses = false;
         }
         // The line may start a gait, so `deadman` stays set until the next status.
-        let is_restore =
-            |request: &Request| matches!(request, Request::Deadman(DeadmanLine::Restore));
-        self.queue.retain(|request| !is_restore(request));
-        let (before, after) = match &mut self.deadman {
-            Some(deadman) => deadman.plan_lines(line),
-            None => (&[][..], &[][..]),
-        };
+        self.queue
+            .retain(|request| !matches!(request, Request::Deadman(DeadmanLine::Restore)));
+        let deadman = self.deadman.as_mut();
+        let planned_lines = deadman.map(|deadman| deadman.plan_lines(line));
+        let (before, after) = planned_lines.unwrap_or_default();
         let to_request = |line: &DeadmanLine| Request::Deadman(*line);
         self.queue.extend(before.iter().map(to_request));
         self.queue.push_back(Request::Line(line.to_owned()));
@@ -182,9 +153,12 @@ impl Session {
         matches!(&self.deadman, Some(deadman) if deadman.is_overridden)
     }
 
-    /// Stops the robot. Queued lines are dropped, because they could start it again.
+    /// Stops the robot. Queued lines are dropped, because they could start it again. Lines about `deadman` stay, because
+    /// an earlier line may have restored the robot's own setting for a dropped line.
     pub fn stop(&mut self, now: Instant) {
-        self.queue.clear();
+        self.queue.retain(|request| {
+            matches!(request, Request::Deadman(line) if *line != DeadmanLine::RestoreForOneLine)
+        });
         self.user_line_count += 1;
         self.events.push(Event::Sent("stop".to_owned()));
         self.unanswered_stop.get_or_insert(UnansweredStop {
@@ -193,6 +167,25 @@ impl Session {
             sent_count: 0,
             is_reported: false,
         });
+    }
+
+    /// Begins again with a board that was connected again. An unanswered `stop` is repeated. The user's other waiting
+    /// lines are dropped; returns a message about each of them.
+    pub fn restart(&mut self, now: Instant, watches_poses: bool) -> Vec<String> {
+        let pending_request = self.pending_request.take().map(|(request, ..)| request);
+        let requests = pending_request.into_iter().chain(self.queue.drain(..));
+        let to_message = |request| match request {
+            Request::Line(line) => Some(format!("(not sent or not answered: `{line}`)")),
+            _ => None,
+        };
+        let messages = requests.filter_map(to_message).collect();
+        *self = Self {
+            unanswered_stop: self.unanswered_stop.take(),
+            events: self.take_events(),
+            ..Self::new(now, self.polls_status, watches_poses)
+        }
+        .with_deadman();
+        messages
     }
 
     /// Takes the line to send now; `None` if no line is due, or if an answer must come first.
@@ -233,7 +226,11 @@ impl Session {
             Request::Watch => "watch 1".to_owned(),
             Request::Deadman(line) => self.deadman.as_mut()?.apply_line(*line)?,
         };
-        self.pending_request = Some((request, now));
+        let timeout = match request {
+            Request::Status => STATUS_TIMEOUT,
+            _ => ANSWER_TIMEOUT,
+        };
+        self.pending_request = Some((request, line.clone(), now + timeout));
         Some(line)
     }
 
@@ -265,8 +262,7 @@ impl Session {
         let is_resting = status.gait == "rest" && status.fault.is_none();
         deadman.is_under_way = status.is_walking() || deadman.is_under_way && is_resting;
         if deadman.is_overridden && !deadman.is_under_way && self.queue.is_empty() {
-            let restore = Request::Deadman(DeadmanLine::Restore);
-            self.queue.push_back(restore);
+            self.queue.push_back(Request::Deadman(DeadmanLine::Restore));
         }
     }
 
@@ -278,10 +274,9 @@ impl Session {
         }
         let is_stop_refused = self.unanswered_stop.is_some() && is_stop_refusal(line);
         if (line == "ok stop" || is_stop_refused) && !self.is_stop_pending() {
-            let is_visible = self.handle_stop_answer(line);
-            return visible_line.filter(|_| is_visible);
+            return self.receive_stop_answer(line);
         }
-        if let (Some((Request::Deadman(_), _)), Some(deadman)) =
+        if let (Some((Request::Deadman(_), ..)), Some(deadman)) =
             (&self.pending_request, &mut self.deadman)
             && deadman.parse_cal_line(line)
         {
@@ -290,10 +285,6 @@ impl Session {
         if line.starts_with('#') {
             self.events.push(Event::from_note(line));
             if line.starts_with(BANNER_START) {
-                // The board was reset and will not answer the request.
-                if let Some((Request::Line(sent_line), _)) = self.pending_request.take() {
-                    self.record_failure(sent_line, "no answer");
-                }
                 self.is_watch_due = self.watches_poses;
                 self.deadman = self.deadman.take().map(|_| Deadman::default());
                 // The queued lines about `deadman` belong to the time before the reset.
@@ -302,33 +293,39 @@ impl Session {
                         self.queue(&queued_line);
                     }
                 }
+                // The board was reset and will not answer the request.
+                if let Some((Request::Line(sent_line), ..)) = self.pending_request.take() {
+                    let message = format!("{line} (no answer to `{sent_line}`)");
+                    self.record_failure(sent_line, "no answer");
+                    return Some(message);
+                }
             }
             return visible_line.filter(|_| !(self.watches_poses && line.starts_with("# t=")));
         }
         self.is_silent = false;
         let status = Status::parse(line);
         self.status = status.clone().or(self.status.take());
-        let is_answered = |(request, _): &mut (Request, Instant)| request.is_answered_by(line);
+        let is_answered = |pending: &mut (_, String, _)| can_answer(line, &pending.1);
         match self.pending_request.take_if(is_answered) {
-            Some((Request::Status, _)) if status.is_some() => {
+            Some((Request::Status, ..)) if status.is_some() => {
                 self.events.push(Event::Status(line.to_owned()));
                 self.end_driving();
                 return None;
             }
-            Some((Request::Deadman(deadman_line), _)) if line.starts_with("err ") => {
+            Some((Request::Deadman(deadman_line), ..)) if line.starts_with("err ") => {
                 let message = self.handle_unconfirmed_deadman(deadman_line);
                 return Some(format!("{line} {message}"));
             }
-            Some((Request::Deadman(DeadmanLine::Read), _))
+            Some((Request::Deadman(DeadmanLine::Read), ..))
                 if self.deadman.as_ref().is_some_and(Deadman::is_unknown) =>
             {
                 return Some(self.handle_unconfirmed_deadman(DeadmanLine::Read));
             }
-            Some((Request::Deadman(_) | Request::Watch, _)) => return None,
-            Some((Request::Line(sent_line), _)) if line.starts_with("err ") => {
+            Some((Request::Deadman(_) | Request::Watch, ..)) => return None,
+            Some((Request::Line(sent_line), ..)) if line.starts_with("err ") => {
                 self.record_failure(sent_line, line)
             }
-            Some((Request::Line(sent_line), _)) => {
+            Some((Request::Line(sent_line), ..)) => {
                 if let Some(deadman) = &mut self.deadman {
                     deadman.record_accepted_line(&sent_line);
                 }
@@ -342,40 +339,40 @@ impl Session {
     /// True if a `stop` that was sent as a normal line, for example from a script, is unanswered.
     fn is_stop_pending(&self) -> bool {
         let is_stop = |line: &str| line.eq_ignore_ascii_case("stop");
-        matches!(&self.pending_request, Some((Request::Line(line), _)) if is_stop(line))
+        matches!(&self.pending_request, Some((Request::Line(line), ..)) if is_stop(line))
     }
 
-    /// Handles an answer to `stop`; returns false if no `stop` is unanswered.
-    fn handle_stop_answer(&mut self, line: &str) -> bool {
-        let Some(stop) = self.unanswered_stop.take() else {
-            return false;
-        };
+    /// Ends the repetition of `stop` after its answer; returns the line to show, or `None` if no `stop` is unanswered.
+    fn receive_stop_answer(&mut self, line: &str) -> Option<String> {
+        let stop = self.unanswered_stop.take()?;
         if stop.sent_count == 1 {
             self.late_answers_until = stop.request_time;
         }
         // Answers come in order; the answer to the line before `stop` is therefore lost.
-        if let Some((Request::Line(sent_line), _)) = self.pending_request.take() {
-            self.record_failure(sent_line, "no answer");
+        match self.pending_request.take() {
+            Some((Request::Line(sent_line), ..)) => self.record_failure(sent_line, "no answer"),
+            Some((Request::Deadman(line), ..)) if line != DeadmanLine::RestoreForOneLine => {
+                self.queue.push_front(Request::Deadman(line));
+            }
+            _ => {}
         }
         self.events.push(Event::Answer(line.to_owned()));
-        true
+        Some(line.to_owned())
     }
 
     /// Ends an overdue request; returns the message to the user, if any.
     pub fn time_out_request(&mut self, now: Instant) -> Option<String> {
-        let elapsed_since = |start: Instant| now.saturating_duration_since(start);
         if let Some(stop) = &mut self.unanswered_stop
             && !stop.is_reported
-            && elapsed_since(stop.request_time) >= SILENCE_TIMEOUT
+            && now >= stop.request_time + SILENCE_TIMEOUT
         {
             stop.is_reported = true;
             let message =
                 "(no answer: the robot may still move; stop is repeated until it answers)";
             return Some(message.to_owned());
         }
-        let is_overdue =
-            |(request, start): &mut (Request, Instant)| elapsed_since(*start) >= request.timeout();
-        let (request, _) = self.pending_request.take_if(is_overdue)?;
+        let is_overdue = |(.., deadline): &mut (_, _, Instant)| now >= *deadline;
+        let (request, ..) = self.pending_request.take_if(is_overdue)?;
         Some(match request {
             Request::Line(line) => {
                 let message = format!("(no answer to `{line}`)");
@@ -423,6 +420,18 @@ impl Session {
     pub fn take_events(&mut self) -> Vec<Event> {
         std::mem::take(&mut self.events)
     }
+}
+
+/// True if `answer` can belong to `line`: after `ok`, it must begin with the first word of the line.
+fn can_answer(answer: &str, line: &str) -> bool {
+    let line = line.to_ascii_lowercase();
+    let word = match line.split_whitespace().next() {
+        Some("status") => "gait=",
+        Some("?") => "help",
+        word => word.unwrap_or_default(),
+    };
+    let rest = answer.strip_prefix("ok ");
+    rest.is_none_or(|rest| rest.starts_with(word))
 }
 
 /// True if a line refuses `stop` because there are no pulses to stop: the robot rests, or the flash has no robot.

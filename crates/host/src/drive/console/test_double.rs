@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
 
+use lizard_core::memory::restart::Cause;
 use lizard_core::virtual_board::RunningRobot;
 use lizard_robot::{Calibration, Robot};
 use pollster::block_on;
@@ -33,7 +34,12 @@ pub fn connect_paper_robot() -> Link<BoardDouble> {
 /// Connects as [`connect_paper_robot`] does, to a board that is unplugged when it gets the line `unplug_line`.
 pub fn connect_paper_robot_unplugged_at(unplug_line: &'static str) -> Link<BoardDouble> {
     let robot = Robot::parse(PAPER_TOML).expect("the robot.toml is valid");
-    let mut link = Link::new(BoardDouble::power_on(&robot, unplug_line));
+    let mut link = Link::new(BoardDouble {
+        running_robot: RunningRobot::power_on(*robot.firmware()),
+        output: VecDeque::new(),
+        sent_text: String::new(),
+        unplug_line,
+    });
     link.wait_for_robot().expect("the robot sends a banner");
     link
 }
@@ -44,13 +50,10 @@ pub fn read_calibration(link: &mut Link<BoardDouble>) -> Calibration {
 }
 
 impl BoardDouble {
-    fn power_on(robot: &Robot, unplug_line: &'static str) -> Self {
-        Self {
-            running_robot: RunningRobot::power_on(*robot.firmware()),
-            output: VecDeque::new(),
-            sent_text: String::new(),
-            unplug_line,
-        }
+    /// Resets the board as a weak supply does.
+    pub fn reset(&mut self) {
+        self.running_robot.reset(Cause::BrownOut);
+        self.collect_output();
     }
 
     /// Moves the robot's pending output into `output`.

@@ -12,10 +12,8 @@ pub(in crate::drive) const ARDUINO_VENDOR_IDS: [u16; 2] = [0x2341, 0x2a03];
 pub struct UsbPort {
     /// The port's name, such as /dev/ttyACM0 or COM3.
     pub name: String,
-    /// The USB chip's vendor ID.
-    pub vendor_id: u16,
-    /// The USB chip's product ID.
-    pub product_id: u16,
+    /// The USB chip's vendor ID and product ID.
+    pub chip: [u16; 2],
     /// The product name that the chip reports.
     pub product_name: Option<String>,
 }
@@ -62,26 +60,21 @@ fn to_usb_port(port: SerialPortInfo) -> Option<UsbPort> {
     }
     Some(UsbPort {
         name: port.port_name,
-        vendor_id: usb.vid,
-        product_id: usb.pid,
+        chip: [usb.vid, usb.pid],
         product_name: usb.product,
     })
 }
 
 /// Removes the ports with another chip than `chip`, unless this is `None`.
 pub(super) fn retain_chip(ports: &mut Vec<UsbPort>, chip: Option<&[u16; 2]>) {
-    ports.retain(|port| chip.is_none_or(|chip| port.chip() == *chip));
+    ports.retain(|port| chip.is_none_or(|chip| port.chip == *chip));
 }
 
 impl UsbPort {
-    /// The USB chip's vendor ID and product ID.
-    pub fn chip(&self) -> [u16; 2] {
-        [self.vendor_id, self.product_id]
-    }
-
     /// True if the chip has one of Arduino's vendor IDs.
     pub fn has_arduino_vendor_id(&self) -> bool {
-        ARDUINO_VENDOR_IDS.contains(&self.vendor_id)
+        let [vendor_id, _] = self.chip;
+        ARDUINO_VENDOR_IDS.contains(&vendor_id)
     }
 }
 
@@ -91,7 +84,7 @@ impl UsbPort {
 /// Fails if there is no such port, or more than one.
 pub fn choose(ports: &[UsbPort], command: &'static str) -> Result<UsbPort, ChoiceError> {
     let mut candidates = ports.to_vec();
-    candidates.retain(|port| UNO_VENDOR_IDS.contains(&port.vendor_id));
+    candidates.retain(|UsbPort { chip: [id, _], .. }| UNO_VENDOR_IDS.contains(id));
     if candidates.is_empty() {
         candidates = ports.to_vec();
     }
@@ -127,8 +120,7 @@ mod tests {
     fn port(name: &str, vendor_id: u16) -> UsbPort {
         UsbPort {
             name: format!("/dev/{name}"),
-            vendor_id,
-            product_id: 0x43,
+            chip: [vendor_id, 0x43],
             product_name: (vendor_id == 0x2341).then(|| "Arduino_Uno".to_owned()),
         }
     }
@@ -160,7 +152,7 @@ mod tests {
         let mut ports = vec![adapter.clone()];
         retain_chip(&mut ports, None);
         assert_eq!(ports, [adapter]);
-        retain_chip(&mut ports, Some(&uno.chip()));
+        retain_chip(&mut ports, Some(&uno.chip));
         assert!(ports.is_empty(), "{ports:?}");
     }
 

@@ -233,8 +233,7 @@ mod tests {
     fn port(name: &str, vendor_id: u16) -> UsbPort {
         UsbPort {
             name: name.to_owned(),
-            vendor_id,
-            product_id: 0x43,
+            chip: [vendor_id, 0x43],
             product_name: None,
         }
     }

@@ -57,7 +57,7 @@ impl TopView<'_> {
     }
 
     /// Adds the leg parts beside and below the plate to `group`.
-    pub(super) fn draw_lower_leg_parts(&self, mut group: Group) -> Group {
+    pub(super) fn draw_leg_parts_below_plate(&self, mut group: Group) -> Group {
         for (leg, colour) in self.legs().into_iter().zip(SERVO_COLOURS) {
             let [crank_joint, follower_joint] = leg.joints;
             group = group
@@ -89,7 +89,7 @@ impl TopView<'_> {
     }
 
     /// Adds the leg parts above the plate, and the servos' links, which drive the struts, to `group`.
-    pub(super) fn draw_upper_leg_parts(&self, mut group: Group) -> Group {
+    pub(super) fn draw_leg_parts_above_plate(&self, mut group: Group) -> Group {
         let legs = self.legs().into_iter();
         for ((leg, shaft), colour) in legs.zip(self.shafts()).zip(SERVO_COLOURS) {
             let [link_anchor, crank_anchor] = leg.strut_anchors;

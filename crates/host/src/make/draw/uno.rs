@@ -7,7 +7,7 @@ use crate::shared::shapes::{
     text, text_middle, text_start,
 };
 
-/// Distance between neighbouring pins, a tenth of an inch, in pixels.
+/// Distance on the page between neighbouring pins, which are a tenth of an inch apart, pixels.
 const PIN_PITCH: f64 = 14.0;
 
 /// Width and height of the board, in tenths of an inch.
@@ -19,13 +19,13 @@ const UPPER_ROW_Y: f64 = 20.0;
 const LOWER_ROW_Y: f64 = 1.0;
 
 /// Distance of IOREF from the left edge, tenths of an inch; the other power pins are counted from IOREF.
-const POWER_HEADER_X: f64 = 12.0;
-/// The names printed beside the pins of the power header.
+const IOREF_X: f64 = 12.0;
+/// The names printed beside the power pins, from IOREF on.
 const POWER_PINS: [&str; 7] = ["IOREF", "RESET", "3.3V", "5V", "GND", "GND", "VIN"];
 /// Distance of SCL from the left edge, tenths of an inch; SDA, AREF and GND are counted from SCL.
-const REFERENCE_HEADER_X: f64 = 7.4;
+const SCL_X: f64 = 7.4;
 /// The names printed beside the pins to the left of D13, including the analogue reference.
-const REFERENCE_PINS: [&str; 4] = ["SCL", "SDA", "AREF", "GND"];
+const PINS_LEFT_OF_D13: [&str; 4] = ["SCL", "SDA", "AREF", "GND"];
 
 /// Distance of D13 from the left edge, tenths of an inch; D12 to D8 are counted from D13.
 const D13_X: f64 = 11.4;
@@ -64,7 +64,7 @@ impl Uno {
 
     /// Returns the position of the 5V pin.
     pub fn five_volt_point(&self) -> (f64, f64) {
-        self.to_page_point(POWER_HEADER_X + 3.0, LOWER_ROW_Y)
+        self.to_page_point(IOREF_X + 3.0, LOWER_ROW_Y)
     }
 
     /// Draws the board and emphasizes the pins in `used_pins`.
@@ -79,8 +79,8 @@ impl Uno {
             let hole = draw_hole(point, is_used).set("id", format!("pin-{name}"));
             group = group.add(hole).add(self.draw_label(point, &name, is_used));
         }
-        for (index, name) in REFERENCE_PINS.into_iter().enumerate() {
-            let point = self.to_page_point(REFERENCE_HEADER_X + index as f64, UPPER_ROW_Y);
+        for (index, name) in PINS_LEFT_OF_D13.into_iter().enumerate() {
+            let point = self.to_page_point(SCL_X + index as f64, UPPER_ROW_Y);
             let is_used = point == self.ground_point();
             let mut hole = draw_hole(point, is_used);
             if is_used {
@@ -89,7 +89,7 @@ impl Uno {
             group = group.add(hole).add(self.draw_label(point, name, is_used));
         }
         for (index, name) in POWER_PINS.into_iter().enumerate() {
-            let point = self.to_page_point(POWER_HEADER_X + index as f64, LOWER_ROW_Y);
+            let point = self.to_page_point(IOREF_X + index as f64, LOWER_ROW_Y);
             group = group
                 .add(draw_hole(point, false))
                 .add(self.draw_label(point, name, false));

@@ -175,7 +175,7 @@ fn format_proof(proof: &Proof, prints_all: bool) -> String {
         text,
         "{pair_count} pairs of shapes, {region_count} regions of poses"
     );
-    if let (Ok(()), Some(nearest)) = (proof.check(), proof.nearest_separate_pair()) {
+    if let (Ok(()), Some(nearest)) = (proof.check(), proof.separate_pairs.first()) {
         _ = writeln!(
             text,
             "no two parts come nearer than {:.2} mm at any pose that the guard accepts",

@@ -84,7 +84,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 }
 
 /// Draws every chart that does not depend on a pose. Returns each chart's name and SVG text.
-pub fn draw_charts(robot: &Robot) -> Vec<(&'static str, String)> {
+fn draw_charts(robot: &Robot) -> Vec<(&'static str, String)> {
     let points = design::compute_points(GRID_STEP, RING_COUNT);
     vec![
         ("workspace", workspace::draw_workspace(robot)),

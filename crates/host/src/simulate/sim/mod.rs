@@ -82,7 +82,8 @@ pub struct Args {
     #[arg(long, value_name = "LINK", num_args = 0..=1,
           conflicts_with_all = ["gait", "script", "duration", "all", "json", "svg"])]
     pty: Option<Option<PathBuf>>,
-    /// With --pty: a new board with this boot loader (ELF) and no firmware, to try `lizard flash`
+    /// With --pty: a new board with this boot loader (ELF or HEX) and no firmware, to try
+    /// `lizard flash`
     #[cfg(target_os = "linux")]
     #[arg(long, value_name = "FILE", requires = "pty", conflicts_with = "elf")]
     boot_loader: Option<PathBuf>,

@@ -43,7 +43,8 @@ pub fn list_command_spans(script: &Script, answers: &[Option<String>]) -> Vec<Sp
     let mut starts = vec![(0.0, "stand")];
     for (step, answer) in script.steps.iter().zip(answers) {
         let is_refused = matches!(answer, Some(answer) if answer.starts_with("err"));
-        if !is_refused && changes_motion(&step.command) {
+        let is_within_run = step.ms < script.end_ms;
+        if is_within_run && !is_refused && changes_motion(&step.command) {
             starts.push((step.ms as f64 / 1000.0, step.command.as_str()));
         }
     }
@@ -67,6 +68,15 @@ mod tests {
         let spans = list_command_spans(&script, &answers.map(|answer| Some(answer.to_owned())));
         let expected = [("stand", 0.0, 1.0), ("walk", 1.0, 4.0), ("rest", 4.0, 5.0)];
         let expected = expected.map(|(command, start_s, end_s)| Span::new(command, start_s, end_s));
+        assert_eq!(spans, expected);
+    }
+
+    #[test]
+    fn a_command_after_the_end_of_the_run_has_no_span() {
+        let mut script = Script::parse("1000 walk\n20000 stop").expect("the script is valid");
+        script.end_ms = 5000;
+        let spans = list_command_spans(&script, &[Some("ok walk".to_owned()), None]);
+        let expected = [Span::new("stand", 0.0, 1.0), Span::new("walk", 1.0, 5.0)];
         assert_eq!(spans, expected);
     }
 }

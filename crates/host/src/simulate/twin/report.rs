@@ -69,7 +69,7 @@ fn predict_round(
     let round = RoutineRow::simulate(robot, routine);
     let prediction = match model {
         ServoModel::Motors(_) => round.movement_with_servos,
-        ServoModel::Ideal | ServoModel::Unloaded(_) => round.movement,
+        ServoModel::Ideal | ServoModel::Unloaded { .. } => round.movement,
     };
     Some((round, prediction))
 }

@@ -100,16 +100,16 @@ pub fn run(
                 .with_play(seed)
                 .simulate_cycle(robot, gait, model)
         };
-        let paths: Vec<Travel> = (0..u64::from(variation_count)).map(simulate).collect();
+        let travels: Vec<Travel> = (0..u64::from(variation_count)).map(simulate).collect();
         let component_quantiles = |component: fn(&Travel) -> f64| {
-            compute_quantiles(paths.iter().map(component).collect(), [0.05, 0.5, 0.95])
+            compute_quantiles(travels.iter().map(component).collect(), [0.05, 0.5, 0.95])
         };
         spreads.push(Spread {
             gait: gait.name().to_owned(),
-            variation_count: paths.len(),
-            forward: component_quantiles(|path| path.forward),
-            left: component_quantiles(|path| path.left),
-            turn: component_quantiles(|path| path.turn),
+            variation_count: travels.len(),
+            forward: component_quantiles(|travel| travel.forward),
+            left: component_quantiles(|travel| travel.left),
+            turn: component_quantiles(|travel| travel.turn),
             utilisations: Utilisation::compute_all(robot, gait),
         });
     }

@@ -5,7 +5,7 @@ mod drawing;
 mod robot_files;
 mod wires;
 
-use lizard_host::draw::{draw_cranks, draw_top_view, draw_wiring};
+use lizard_host::draw::{draw_cranks, draw_wiring};
 use lizard_robot::Robot;
 
 use crate::harness::read_file;
@@ -50,16 +50,9 @@ fn every_element_is_on_the_page_and_large_enough_to_read() {
 #[test]
 fn the_drawings_in_docs_are_up_to_date() {
     let robot = Robot::parse(&paper_toml()).expect("the robot file is valid");
-    let neutral = robot
-        .lizard()
-        .solve(&robot.neutral_pose())
-        .expect("the neutral pose has a solution");
-    let view = draw_top_view(&robot, &neutral, true);
     for (name, svg) in [
         ("wiring", draw_wiring(&robot)),
         ("horns", draw_cranks(&robot)),
-        ("lizard", view.clone()),
-        ("charts/top-view", view),
     ] {
         let stored_svg = read_file(&format!("docs/{name}.svg"));
         assert!(stored_svg == svg, "docs/{name}.svg: run `make docs`");

@@ -341,8 +341,12 @@ fn the_pin_that_measures_the_servo_supply_is_marked() {
         "[supply.rail]\npin = \"A3\"\nratio = 2.5\n[limits]",
     );
     let drawing = draw_robot_wiring(&text);
-    let note = "A3 measures the +5 V strip, divided by 2.50.";
-    assert!(drawing.texts().any(|text| text == note));
+    for note in [
+        "A3 measures the +5 V strip, divided by 2.50.",
+        "Its divider: for example 15.0 k\u{3a9} from the strip to A3, 10 k\u{3a9} from A3 to ground.",
+    ] {
+        assert!(drawing.texts().any(|text| text == note), "{note}");
+    }
     assert_eq!(pin_fill(&drawing, "pin-A3"), pin_fill(&drawing, "pin-D9"));
     assert_ne!(pin_fill(&drawing, "pin-A3"), pin_fill(&drawing, "pin-A2"));
 }

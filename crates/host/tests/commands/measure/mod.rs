@@ -48,14 +48,6 @@ fn varied_walk() -> Walk {
     Walk::new(&gait, start, 5, variation(), &mut Rng::with_seed(4))
 }
 
-/// Renders five cycles of `walk` into a new folder.
-fn render_walk(folder: &str, file_name: impl Fn(usize) -> String) -> PathBuf {
-    let walk = varied_walk();
-    render_video(folder, file_name, walk.duration_s(), |time| {
-        walk.pose_at(time)
-    })
-}
-
 /// Renders a moving robot as JPEG files in a new folder; `file_name` returns a name for the frame's index.
 fn render_video(
     folder: &str,
@@ -103,10 +95,16 @@ fn find_stable_words(table: &str) -> Vec<&str> {
 
 #[test]
 fn a_video_of_a_walk_agrees_with_the_prediction_and_is_refused_as_another_gait() {
-    let folder = render_walk("walk video", |i| format!("walk-{}ms.jpg", i * 125));
+    let walk = varied_walk();
+    let file_name = |i: usize| format!("walk-{}ms.jpg", i * 125);
+    let folder = render_video("walk video", file_name, walk.duration_s(), |time| {
+        walk.pose_at(time)
+    });
     let measure_walk = |options: &str| measure(&folder, &format!("--gait walk {options}"));
     let paper = robot_path("paper");
     let object = measure_walk(&format!("--json --robot {paper}")).expect_json();
+    // Every number is finite: serde_json writes NaN and infinity as null.
+    assert!(!object.to_string().contains("null"), "{object}");
     let video = object["videos"][0].clone();
     let object = object["gaits"][0].clone();
     let find_number = |path: &[&str]| {
@@ -138,7 +136,7 @@ fn a_video_of_a_walk_agrees_with_the_prediction_and_is_refused_as_another_gait()
         (("[limits]", "# mine\n[limits]"), mujoco),
         (("mass = 435.0", "mass = 500.0"), &Value::Null),
     ] {
-        let robot = TemporaryRobot::from_paper("changed", &[change]);
+        let robot = TemporaryRobot::from_paper(&[change]);
         let object = measure_walk(&robot.add_option("--json")).expect_json();
         assert_eq!(&object["gaits"][0]["mujoco"], mujoco);
     }
@@ -312,12 +310,7 @@ fn measure_reads_frames_from_ffmpeg_and_times_from_ffprobe() {
 }
 
 #[test]
-fn every_number_in_the_json_of_a_video_is_finite() {
-    // serde_json writes NaN and infinity as null.
-    let folder = render_walk("numbers", |i| format!("{i}.jpg"));
-    let object = measure(&folder, "--fps 8 --gait walk --json").expect_json();
-    let text = object.to_string();
-    assert!(!text.contains("null"), "{text}");
+fn the_help_of_measure_explains_the_errors_that_it_prints() {
     let help = run_line("measure --help", "").expect_success();
     assert_contains(&help, "standard error of the mean");
 }

@@ -199,13 +199,10 @@ fn every_pose_in_the_trace_of_every_gait_is_safe() {
 #[test]
 fn an_angle_beyond_a_servos_travel_is_not_safe() {
     // In one direction, A3 can turn only 20 degrees from neutral: 400 us at 20 us per degree.
-    let robot = TemporaryRobot::from_paper(
-        "short-travel",
-        &[(
-            "pin = \"D11\"\nneutral = 318.590378\nneutral_us = 1500.0\nus_per_degree = 10.0\nmin_us = 600.0\nmax_us = 2400.0",
-            "pin = \"D11\"\nneutral = 318.590378\nneutral_us = 2050.0\nus_per_degree = 20.0\nmin_us = 1000.0\nmax_us = 2450.0",
-        )],
-    );
+    let robot = TemporaryRobot::from_paper(&[(
+        "pin = \"D11\"\nneutral = 318.590378\nneutral_us = 1500.0\nus_per_degree = 10.0\nmin_us = 600.0\nmax_us = 2400.0",
+        "pin = \"D11\"\nneutral = 318.590378\nneutral_us = 2050.0\nus_per_degree = 20.0\nmin_us = 1000.0\nmax_us = 2450.0",
+    )]);
     let run = |line: &str, input: &str| run_line(&robot.add_option(line), input);
     let pose = "pose --theta1 138.59 --theta4 41.41 --theta5 221.41 --theta8";
     let [end_of_travel, beyond_travel] = [20.0, 20.1].map(|turn| {

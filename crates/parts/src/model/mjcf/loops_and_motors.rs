@@ -14,7 +14,7 @@ impl Writer<'_> {
         for cut_joint in self.list_cut_joints() {
             let [first, second] = cut_joint.bodies.map(Node::name);
             let name = cut_joint.name;
-            let anchor = format_metres([cut_joint.point.x, cut_joint.point.y, 0.0]);
+            let anchor = format_metres([cut_joint.x, 0.0, 0.0]);
             self.xml.write(format_args!(
                 r#"<connect name="{name}" body1="{first}" body2="{second}" anchor="{anchor}"/>"#
             ));

@@ -1,7 +1,5 @@
 //! The tree of bodies, each with the joint to its parent, as MJCF.
 
-use lizard_robot::SLOT_LENGTH;
-
 use super::document::format_stiff_limits;
 use crate::layers::body::Mount;
 use crate::model::material::Material;
@@ -63,40 +61,32 @@ impl Writer<'_> {
             Freedom::SlidesAlongX => ("slide", "1 0 0"),
             Freedom::SlidesVertically => ("slide", "0 0 1"),
         };
-        let joint_friction = self.scene.motors.joint_friction;
-        let pin_friction = format_friction(self.scene.pin_friction * MILLI);
+        let [damping, friction] = self.damping_and_friction(node);
+        let (friction, limits) = (format_friction(friction), format_stiff_limits());
+        let range = join_numbers(self.joint_range(node).unwrap_or_default());
         let attributes = match (self.driving_servo(node), node) {
             (Some(servo), _) => {
                 // Back-EMF reduces the motor's torque as its speed rises. Reflected through the gears, the rotor's
                 // inertia is far larger than a leg's, so the rotor smooths the steps of the pulses.
-                let motor = self.scene.motors.per_servo[servo];
-                let damping = round(motor.damping() * MILLI);
+                let motor = &self.scene.motors.per_servo[servo];
                 let armature = round(motor.reflected_inertia() * MILLI);
-                let friction = format_friction(joint_friction.pin_torque * MILLI);
                 format!(r#" damping="{damping}" armature="{armature}"{friction}"#)
             }
             (None, Node::OnMount(Mount::Link(_))) => {
-                let (play, limits) = (round(self.scene.play.to_radians()), format_stiff_limits());
-                // Grease damps a link that moves freely within its play.
-                format!(
-                    r#"{pin_friction} range="{} {play}" {limits} damping="0.00001""#,
-                    -play
-                )
+                format!(r#"{friction} range="{range}" {limits} damping="{damping}""#)
             }
-            (None, Node::OnMount(Mount::Rod(_))) => format_friction(joint_friction.slider_force),
             (None, Node::Pad(_)) => {
-                let (stiffness, damping) = (self.leaf_stiffness(), self.leaf_damping());
+                let stiffness = self.leaf_stiffness();
                 format!(r#" stiffness="{stiffness}" damping="{damping}""#)
             }
             (None, Node::SlotPin(_)) => {
                 let spring = self.spring_values(node);
                 let [rest_position, stiffness] = spring.expect("a slot pin has a spring");
-                let (slot_end, limits) = (round(SLOT_LENGTH * MILLI), format_stiff_limits());
                 format!(
-                    r#" range="0 {slot_end}" {limits} stiffness="{stiffness}" springref="{rest_position}" damping="0.1""#
+                    r#" range="{range}" {limits} stiffness="{stiffness}" springref="{rest_position}" damping="{damping}""#
                 )
             }
-            _ => pin_friction,
+            _ => friction,
         };
         self.xml.write(format_args!(
             r#"<joint name="{name}" type="{kind}" axis="{axis}"{attributes}/>"#

@@ -63,11 +63,6 @@ impl Span {
         }
     }
 
-    /// The middle of the span, degrees.
-    pub fn centre_deg(&self) -> f64 {
-        (self.min + self.max) / 2.0 * 360.0 / f64::from(STEPS_PER_TURN)
-    }
-
     /// Half the width of the span, radians.
     pub fn half_width_rad(&self) -> f64 {
         (self.max - self.min) / 2.0 * TAU / f64::from(STEPS_PER_TURN)
@@ -75,7 +70,8 @@ impl Span {
 
     /// Unit vector at the middle of the span.
     pub fn direction(&self) -> Vector {
-        Vector::from_angle(self.centre_deg())
+        let centre_deg = (self.min + self.max) / 2.0 * 360.0 / f64::from(STEPS_PER_TURN);
+        Vector::from_angle(centre_deg)
     }
 
     /// The lower and the upper half of the span.

@@ -6,8 +6,8 @@
 //! bounds follow:
 //!
 //! * The tip distance is within a range, and so is the type-2 margin, the sine of the angle between the couplers;
-//!   [`bounds::EndErrors::min_type2`] is the margin's smallest value. The tips cannot cross if their distance along the
-//!   base is more than the sum of both movements.
+//!   [`MarginErrors::min_type2`] is the margin's smallest value. The tips cannot cross if their distance along the base
+//!   is more than the sum of both movements.
 //! * The couplers close the loop: `a u2 - b u3 = k`, with their lengths `a` and `b` and their directions `u2` and `u3`.
 //!   The left coupler therefore turns by at most `|dk| / (a sin(theta3 - theta2))`, and the right coupler by at most
 //!   the same with `b` instead of `a`. Each crank turns by at most half the width of its range. The type-1 margin is a
@@ -17,9 +17,9 @@
 //! The guard computes with integers. Its margins are smaller than the true margins by at most their error bounds, and
 //! must still meet the guard's limits.
 
-use lizard_core::guard::bounds::{self, MAX_DIRECTION_ERROR};
+use lizard_core::guard::bounds::{MAX_DIRECTION_ERROR, MarginErrors};
 use lizard_core::numbers::limits::Limits;
-use lizard_core::numbers::section::Content;
+use lizard_core::numbers::section::{Content, FiveBarLengths};
 use lizard_core::numbers::units::Sine;
 use lizard_kinematics::{AssemblyMode, End, FiveBar, Lizard, Vector};
 
@@ -31,8 +31,8 @@ pub(super) struct EndConditions {
     end: End,
     /// The five-bar with its true lengths.
     five_bar: FiveBar,
-    /// The scale and the couplers in the guard's integers.
-    rounded_lengths: bounds::RoundedLengths,
+    /// The lengths in the guard's integers.
+    rounded_lengths: FiveBarLengths,
     /// Smallest type-2 margin that the guard allows, a sine.
     type2_limit: f64,
     /// Smallest type-1 margin that the guard allows, a sine.
@@ -49,7 +49,7 @@ impl EndConditions {
         Self {
             end,
             five_bar: lizard.end(end),
-            rounded_lengths: (&numbers.ends[end as usize]).into(),
+            rounded_lengths: numbers.ends[end as usize],
             type2_limit: to_sine(type2),
             type1_limit: to_sine(type1),
             leg_limit: to_sine(leg),
@@ -103,9 +103,9 @@ impl Condition for EndConditions {
             tip_distance + crank_movement,
         ];
         let errors =
-            bounds::EndErrors::over_range(&self.five_bar, self.rounded_lengths, tip_distance_range);
+            MarginErrors::over_range(&self.five_bar, &self.rounded_lengths, tip_distance_range);
         let is_uncrossed = pose.gap.x - crank_movement > errors.gap_x + ROUNDING_ALLOWANCE;
-        if !(errors.are_margins_known && is_uncrossed) {
+        if !(errors.do_bounds_hold && is_uncrossed) {
             return Verdict::Undetermined;
         }
         let coupler_rotation = |coupler: f64| crank_movement / (coupler * errors.min_type2);
@@ -166,8 +166,8 @@ mod tests {
         let pose = conditions.five_bar.close(AssemblyMode::Ahead, left, right);
         let pose = pose.expect("the neutral pose closes");
         let tip_distance = pose.gap.length();
-        let (five_bar, lengths) = (&conditions.five_bar, conditions.rounded_lengths);
-        let errors = bounds::EndErrors::over_range(five_bar, lengths, [tip_distance; 2]);
+        let (five_bar, lengths) = (&conditions.five_bar, &conditions.rounded_lengths);
+        let errors = MarginErrors::over_range(five_bar, lengths, [tip_distance; 2]);
         let type1 = match pose.type1_left() < pose.type1_right() {
             true => (pose.type1_left(), errors.type1_left),
             false => (pose.type1_right(), errors.type1_right),

@@ -22,6 +22,8 @@ pub struct BoardDouble {
     pub ignored_syncs_per_reset: usize,
     /// True if the loader never answers.
     pub is_mute: bool,
+    /// True if the board sends `x` without end, and nothing else.
+    pub sends_endlessly: bool,
     /// The index of the lost byte among the bytes sent to the board.
     pub lost_byte_to_board: Option<usize>,
     /// The index of the lost byte among the bytes sent by the board.
@@ -189,6 +191,10 @@ impl Board for BoardDouble {
 
     async fn read(&mut self, bytes: &mut [u8], _time: Duration) -> Result<usize, BoardError> {
         self.check_connection()?;
+        if self.sends_endlessly {
+            bytes.fill(b'x');
+            return Ok(bytes.len());
+        }
         let count = bytes.len().min(self.output.len());
         for (byte, sent) in bytes.iter_mut().zip(self.output.drain(..count)) {
             *byte = sent;

@@ -65,8 +65,7 @@ fn angles_are_assigned_in_servo_order_and_the_error_names_the_first_servo_out_of
     else {
         panic!("the line is not parsed as a pose");
     };
-    let centideg = angles.map(Angle::centideg);
-    assert_eq!(centideg, [13_859, 4_142, 31_860, 22_144]);
+    assert_eq!(angles.map(Angle::centideg), [13_859, 4_142, 31_860, 22_144]);
     assert_each_refused("pose 1 361 3 -400", LineError::AngleOutOfRange(Servo::A2));
     assert_each_refused("pose 1 2 3 99999999", LineError::AngleOutOfRange(Servo::A4));
 }

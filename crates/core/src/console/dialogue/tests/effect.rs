@@ -7,31 +7,29 @@ use crate::console::word::Effect;
 const FRAME_COUNT: usize = 40;
 
 /// Runs [`FRAME_COUNT`] frames. Returns the pulse widths of each frame.
-fn run_frames_and_read_widths(dialogue: &mut Dialogue) -> [[u16; 4]; FRAME_COUNT] {
-    [(); FRAME_COUNT].map(|()| run_frame_and_read_widths(dialogue))
+fn run_frames_and_read_widths(robot: &mut RunningRobot) -> [[u16; 4]; FRAME_COUNT] {
+    [(); FRAME_COUNT].map(|()| run_frame_and_read_widths(robot))
 }
 
 /// Determines the effect of a line from the pulses and the calibration of robots that execute it.
 fn observe_effect(line: &str) -> Effect {
-    let mut walking_dialogue = wake_robot(Sample::paper());
+    let mut walking_robot = wake_robot(Sample::paper());
     // These settings make `load` and `factory` change something.
     for setting in ["trim 2 3", "save", "trim 1 5", "sway"] {
-        walking_dialogue.send_and_run(setting, 60);
+        walking_robot.send_and_run(setting, 60);
     }
-    let mut undisturbed_dialogue = walking_dialogue.clone();
-    let mut standing_dialogue = walking_dialogue.clone();
-    standing_dialogue.send_and_run("stop", 60);
-    standing_dialogue.send_line(line);
-    let answer = walking_dialogue.send_line(line);
-    assert!(answer.starts_with("ok "), "{line}");
-    let walking_widths = run_frames_and_read_widths(&mut walking_dialogue);
-    let undisturbed_widths = run_frames_and_read_widths(&mut undisturbed_dialogue);
-    let standing_widths = run_frames_and_read_widths(&mut standing_dialogue);
+    let mut undisturbed_robot = walking_robot.clone();
+    let mut standing_robot = walking_robot.clone();
+    standing_robot.send_and_run("stop", 60);
+    standing_robot.send_line(line);
+    assert!(walking_robot.send_line(line).starts_with("ok "), "{line}");
+    let walking_widths = run_frames_and_read_widths(&mut walking_robot);
+    let undisturbed_widths = run_frames_and_read_widths(&mut undisturbed_robot);
+    let standing_widths = run_frames_and_read_widths(&mut standing_robot);
     let is_constant = |frames: &[[u16; 4]]| frames[1..].iter().all(|frame| *frame == frames[1]);
     if walking_widths[FRAME_COUNT - 1] == [0; 4] {
         Effect::Rest
-    } else if walking_dialogue.motion().calibration() != undisturbed_dialogue.motion().calibration()
-    {
+    } else if walking_robot.motion().calibration() != undisturbed_robot.motion().calibration() {
         Effect::CalibrationChange
     } else if !is_constant(&standing_widths) {
         Effect::Motion

@@ -4,15 +4,12 @@ use std::collections::HashMap;
 
 use super::*;
 use crate::numbers::units::CYCLE;
-use crate::virtual_board::{RunningRobot, compute_reading};
+use crate::virtual_board::compute_reading;
 
 /// The number of frames until the robot stands and may begin to move.
 pub(super) const WAKING_FRAMES: u32 = 21;
 
-/// A running robot that is commanded over its console.
-pub(super) type Dialogue = RunningRobot;
-
-impl Dialogue {
+impl RunningRobot {
     /// Sends a line that must be accepted, and runs frames. Returns the lines printed after the answer.
     #[track_caller]
     pub(crate) fn send_and_run(&mut self, line: &str, frames: u32) -> Vec<String> {
@@ -38,7 +35,7 @@ impl Dialogue {
 
     /// Sets the supply voltage of the board, and runs frames. Returns the printed lines.
     pub(super) fn run_at_supply(&mut self, board_mv: u32, frames: u32) -> Vec<String> {
-        set_supply(self, board_mv);
+        set_board_supply(self, board_mv);
         self.run_frames(frames)
     }
 
@@ -50,44 +47,45 @@ impl Dialogue {
 }
 
 /// Powers on the asymmetric sample robot, reads its banner, and runs it until it is awake.
-pub(super) fn wake_asymmetric_robot() -> Dialogue {
+pub(super) fn wake_asymmetric_robot() -> RunningRobot {
     wake_robot(Sample::asymmetric())
 }
 
 /// Wakes the asymmetric sample robot, and sends lines that must be accepted.
 #[track_caller]
-pub(super) fn wake_and_send(lines: &[&str]) -> Dialogue {
-    let mut dialogue = wake_asymmetric_robot();
-    dialogue.expect_all_accepted(lines);
-    dialogue
+pub(super) fn wake_and_send(lines: &[&str]) -> RunningRobot {
+    let mut robot = wake_asymmetric_robot();
+    robot.expect_all_accepted(lines);
+    robot
 }
 
 /// Wakes the asymmetric sample robot, sends a line that must be accepted, and runs frames.
 #[track_caller]
-pub(super) fn wake_and_run(line: &str, frames: u32) -> Dialogue {
-    let mut dialogue = wake_and_send(&[line]);
-    dialogue.run_frames(frames);
-    dialogue
+pub(super) fn wake_and_run(line: &str, frames: u32) -> RunningRobot {
+    let mut robot = wake_and_send(&[line]);
+    robot.run_frames(frames);
+    robot
 }
 
-/// Starts the asymmetric sample robot on a routine that repeats these steps `rounds` times, or endlessly if that is 0.
-pub(super) fn start_patrol(rounds: u16, steps: &[(u8, &str, u16)]) -> Dialogue {
-    let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", rounds, steps));
-    dialogue.expect_accepted("patrol");
-    dialogue
+/// Starts the asymmetric sample robot on the routine `patrol`, which repeats these steps `rounds` times, or endlessly
+/// if that is 0.
+pub(super) fn start_patrol(rounds: u16, steps: &[(u8, &str, u16)]) -> RunningRobot {
+    let mut robot = wake_robot(Sample::asymmetric().with_routine("patrol", rounds, steps));
+    robot.expect_accepted("patrol");
+    robot
 }
 
 /// Powers on a robot, reads its banner, and runs it until it is awake.
-pub(super) fn wake_robot(robot: Sample) -> Dialogue {
-    let mut dialogue = Dialogue::power_on(*robot);
-    let lines = dialogue.read_lines();
-    let claim = "only the banner and the notice of blank settings are printed";
+pub(super) fn wake_robot(robot: Sample) -> RunningRobot {
+    let mut robot = RunningRobot::power_on(*robot);
+    let lines = robot.read_lines();
+    let claim = "only the banner and the calibration notice are printed";
     assert_eq!(lines.len(), 2, "{claim}: {lines:?}");
-    dialogue.run_frames(WAKING_FRAMES);
-    dialogue
+    robot.run_frames(WAKING_FRAMES);
+    robot
 }
 
-/// Checks that these lines have been printed and no others, given the start of each.
+/// Checks that each line begins with its text in `starts`, and that there are no other lines.
 #[track_caller]
 pub(super) fn assert_line_starts(lines: &[String], starts: &[&str]) {
     assert_eq!(lines.len(), starts.len(), "{lines:?}");
@@ -97,8 +95,8 @@ pub(super) fn assert_line_starts(lines: &[String], starts: &[&str]) {
 }
 
 /// Returns the name of the current gait, or of another activity.
-pub(super) fn activity_name(dialogue: &Dialogue) -> String {
-    let motion = dialogue.motion();
+pub(super) fn activity_name(robot: &RunningRobot) -> String {
+    let motion = robot.motion();
     match motion.activity() {
         Activity::Gait(id) => motion.robot().gait_name(id).map(char::from).collect(),
         activity => format!("{activity:?}"),
@@ -106,15 +104,15 @@ pub(super) fn activity_name(dialogue: &Dialogue) -> String {
 }
 
 /// Runs a frame and returns its pulse widths, CPU cycles.
-pub(super) fn run_frame_and_read_widths(dialogue: &mut Dialogue) -> [u16; 4] {
-    dialogue.run_frame().0.map(|width| width.0)
+pub(super) fn run_frame_and_read_widths(robot: &mut RunningRobot) -> [u16; 4] {
+    robot.run_frame().0.map(|width| width.0)
 }
 
 /// Runs frames. Returns the advance of the phase, 1/2^24 cycle.
-pub(super) fn measure_phase_advance(dialogue: &mut Dialogue, frames: u32) -> u32 {
-    let phase_before = dialogue.motion().phase();
-    dialogue.run_frames(frames);
-    dialogue.motion().phase().wrapping_sub(phase_before) & (CYCLE - 1)
+pub(super) fn measure_phase_advance(robot: &mut RunningRobot, frames: u32) -> u32 {
+    let phase_before = robot.motion().phase();
+    robot.run_frames(frames);
+    robot.motion().phase().wrapping_sub(phase_before) & (CYCLE - 1)
 }
 
 /// Splits a text into `key=value` pairs and checks that each key occurs only once.
@@ -129,11 +127,16 @@ pub(super) fn parse_pairs(text: &str) -> HashMap<String, String> {
     pairs
 }
 
-/// Sets the supply voltage of the board, and sets the voltage of the servo rail to 6 V.
-pub(super) fn set_supply(dialogue: &mut Dialogue, board_mv: u32) {
-    let supplies = dialogue.motion().robot().supplies();
+/// Sets the supply voltage of the board; the servo rail has 6 V.
+pub(super) fn set_board_supply(robot: &mut RunningRobot, board_mv: u32) {
+    let supplies = robot.motion().robot().supplies();
     let reading = compute_reading(&supplies, board_mv, 6_000);
-    dialogue.board.adc.set_true_reading(reading);
+    robot.board.adc.set_true_reading(reading);
+}
+
+/// Returns byte 128 of the EEPROM, the mark of the rest pose's record: 0xa5 while a pose is saved, 0xff otherwise.
+pub(super) fn rest_pose_mark(robot: &RunningRobot) -> u8 {
+    robot.board.memory.bytes()[128]
 }
 
 /// Returns the neutral pose in the format of `status`.

@@ -4,10 +4,10 @@ use super::*;
 
 #[test]
 fn a_line_that_is_too_long_is_refused_and_the_next_line_is_executed() {
-    let mut dialogue = wake_asymmetric_robot();
+    let mut robot = wake_asymmetric_robot();
     let message = "err 6 a line has at most 63 characters";
-    assert_eq!(dialogue.send_line(&"stand".repeat(13)), message);
-    assert_eq!(dialogue.send_line("stand"), "ok stand");
+    assert_eq!(robot.send_line(&"stand".repeat(13)), message);
+    assert_eq!(robot.send_line("stand"), "ok stand");
 }
 
 /// Lines that are refused in every state of the robot.
@@ -63,16 +63,16 @@ proptest! {
         bytes in any_bytes(),
         frames_between_bytes in 0u32..3,
     ) {
-        let (mut burst_dialogue, mut bytewise_dialogue) = (wake_asymmetric_robot(), wake_asymmetric_robot());
+        let (mut burst_robot, mut bytewise_robot) = (wake_asymmetric_robot(), wake_asymmetric_robot());
         let keep_final_lines = |lines: Vec<String>| -> Vec<String> {
             lines.into_iter().filter(|line| is_answer(line)).collect()
         };
-        let burst_lines = keep_final_lines(burst_dialogue.send(&bytes));
+        let burst_lines = keep_final_lines(burst_robot.send(&bytes));
         prop_assert_eq!(burst_lines.len(), count_expected_final_lines(&bytes));
         let mut bytewise_lines = Vec::new();
         for byte in &bytes {
-            bytewise_lines.extend(bytewise_dialogue.send(&[*byte]));
-            bytewise_lines.extend(bytewise_dialogue.run_frames(frames_between_bytes));
+            bytewise_lines.extend(bytewise_robot.send(&[*byte]));
+            bytewise_lines.extend(bytewise_robot.run_frames(frames_between_bytes));
         }
         // Only the answer to `status` depends on time, and no other answer contains `=`.
         let omit_status = |lines: Vec<String>| -> Vec<String> {
@@ -87,17 +87,17 @@ proptest! {
         speed in 10u8..=100,
         line in prop::sample::select(REFUSED_LINES.to_vec()),
     ) {
-        let mut tested_dialogue = wake_and_send(&[&format!("speed {speed}")]);
+        let mut tested_robot = wake_and_send(&[&format!("speed {speed}")]);
         for (gait, frames) in history {
-            tested_dialogue.send_line(gait);
-            tested_dialogue.run_frames(frames);
+            tested_robot.send_line(gait);
+            tested_robot.run_frames(frames);
         }
-        let mut undisturbed_dialogue = tested_dialogue.clone();
-        prop_assert!(tested_dialogue.send_line(line).starts_with("err "));
+        let mut undisturbed_robot = tested_robot.clone();
+        prop_assert!(tested_robot.send_line(line).starts_with("err "));
         for _ in 0..40 {
-            prop_assert_eq!(tested_dialogue.run_frame(), undisturbed_dialogue.run_frame());
-            prop_assert_eq!(tested_dialogue.read_lines(), undisturbed_dialogue.read_lines());
+            prop_assert_eq!(tested_robot.run_frame(), undisturbed_robot.run_frame());
+            prop_assert_eq!(tested_robot.read_lines(), undisturbed_robot.read_lines());
         }
-        prop_assert_eq!(tested_dialogue.send_line("status"), undisturbed_dialogue.send_line("status"));
+        prop_assert_eq!(tested_robot.send_line("status"), undisturbed_robot.send_line("status"));
     }
 }

@@ -42,9 +42,8 @@ proptest! {
                 TestOrder::Pose(sweeps) => {
                     let pose = Pose(sweeps.map(Sweep));
                     let travel_hazard = pose.first_servo_beyond_travel(motion.calibration()).map(Hazard::Travel);
-                    let hazard = Clearance::measure(&motion.robot, &pose).first_hazard(&motion.robot);
-                    let hazard = travel_hazard.or(hazard);
-                    prop_assert_eq!(motion.go_to(&pose).err(), hazard);
+                    let guard_hazard = Clearance::measure(&motion.robot, &pose).first_hazard(&motion.robot);
+                    prop_assert_eq!(motion.go_to(&pose).err(), travel_hazard.or(guard_hazard));
                 }
                 TestOrder::Stop => motion.stop(),
                 TestOrder::Rest => motion.rest(),
@@ -55,8 +54,8 @@ proptest! {
                 let pulses = motion.advance_frame();
                 let clearance = Clearance::measure(&motion.robot, motion.pose());
                 prop_assert_eq!(clearance.first_hazard(&motion.robot), None);
-                for (actual, held_width) in pulses.0.into_iter().zip(motion.pose_pulses().0) {
-                    prop_assert!(actual == PulseWidth(0) || actual == held_width);
+                for (sent_width, pose_width) in pulses.0.into_iter().zip(motion.pose_pulses().0) {
+                    prop_assert!(sent_width == PulseWidth(0) || sent_width == pose_width);
                 }
                 if !was_cycling {
                     let max_turn = pose_before.max_turn_to(motion.pose());

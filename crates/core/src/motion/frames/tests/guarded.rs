@@ -2,8 +2,8 @@
 
 use super::*;
 
-/// Returns the motion of a robot that the guard has just stopped.
-fn run_until_guard_stops() -> Motion {
+/// Returns the motion of a robot that the guard holds.
+fn run_until_held() -> Motion {
     let mut motion = Motion::standing();
     motion.start("stray");
     for _ in 0..200 {
@@ -12,25 +12,25 @@ fn run_until_guard_stops() -> Motion {
             return motion;
         }
     }
-    panic!("the guard has not stopped `stray`");
+    panic!("the guard has not held the robot in `stray`");
 }
 
 #[test]
 fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held() {
     let mut motion = Motion::standing();
     motion.start("stray");
-    let mut last_pose = *motion.pose();
+    let mut last_safe_pose = *motion.pose();
     while motion.hazard().is_none() {
-        last_pose = *motion.pose();
+        last_safe_pose = *motion.pose();
         motion.advance_frame();
     }
     let hazard = motion.hazard();
-    let last_pulses = last_pose.pulses(&motion.calibration);
-    assert_eq!(motion.pose(), &last_pose);
+    let last_safe_pulses = last_safe_pose.pulses(&motion.calibration);
+    assert_eq!(motion.pose(), &last_safe_pose);
     assert_eq!(motion.activity(), Activity::Stop);
     assert_eq!(motion.phase(), 0);
     for _ in 0..100 {
-        assert_eq!(motion.advance_frame(), last_pulses);
+        assert_eq!(motion.advance_frame(), last_safe_pulses);
         assert_eq!(motion.hazard(), hazard);
     }
     // The reported hazard occurs in the gait's poses.
@@ -39,26 +39,27 @@ fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held() {
         let pose = gait.pose(motion.robot.waves(), phase);
         Clearance::measure(&motion.robot, &pose).first_hazard(&motion.robot)
     });
-    let is_same_constraint = |other_hazard: Hazard| match (other_hazard, hazard) {
+    let has_same_cause = |other_hazard: Hazard| match (other_hazard, hazard) {
         (Hazard::Margin { margin: a, .. }, Some(Hazard::Margin { margin: b, .. })) => a == b,
         (Hazard::Stroke { side: a, .. }, Some(Hazard::Stroke { side: b, .. })) => a == b,
         _ => false,
     };
-    assert!(hazards.any(is_same_constraint), "{hazard:?}");
+    assert!(hazards.any(has_same_cause), "{hazard:?}");
 }
 
 #[test]
 fn the_hazard_is_kept_after_stop_and_a_refused_pose_until_it_is_cleared() {
-    let mut stopped_motion = run_until_guard_stops();
+    let mut stopped_motion = run_until_held();
     stopped_motion.stop();
     stopped_motion.run(20);
-    assert!(stopped_motion.hazard().is_some(), "stop clears no hazard");
-    let mut refused_motion = run_until_guard_stops();
+    let is_held = stopped_motion.hazard().is_some();
+    assert!(is_held, "stop must not clear the hazard");
+    let mut refused_motion = run_until_held();
     assert!(refused_motion.go_to(&Pose([Sweep(13_000); 4])).is_err());
     refused_motion.run(20);
     let is_held = refused_motion.hazard().is_some();
-    assert!(is_held, "a refused pose clears no hazard");
-    let mut motion = run_until_guard_stops();
+    assert!(is_held, "a refused pose must not clear the hazard");
+    let mut motion = run_until_held();
     motion.clear_hazard();
     motion.start("sway");
     motion.run(TRANSITION_FRAMES);

@@ -13,6 +13,9 @@ use super::super::link::{BANNER_START, Link, LinkError};
 use step::{Step, list_steps};
 pub use view::StepView;
 
+/// The message after a reset, in which the robot has lost its unsaved settings.
+const RESET_MESSAGE: &str = "The board was reset: leave with q and start again.";
+
 /// A key with a meaning in the guide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Key {
@@ -138,6 +141,9 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             }
             result => result?,
         }
+        if self.robot.take_reset() {
+            self.message = RESET_MESSAGE.to_owned();
+        }
         Ok(false)
     }
 
@@ -148,7 +154,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     pub fn read_messages(&mut self) -> std::result::Result<(), LinkError> {
         while let Some(line) = self.robot.console().read_line(Duration::ZERO)? {
             if line.starts_with(BANNER_START) {
-                self.message = "The board was reset: leave with q and start again.".to_owned();
+                self.message = RESET_MESSAGE.to_owned();
             } else if let Some(note) = line.strip_prefix("# ") {
                 self.message = format!("Message from the robot: {note}.");
             }

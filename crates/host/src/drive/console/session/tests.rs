@@ -1,17 +1,13 @@
 use super::*;
 
+mod driving;
+
 const WALKING_STATUS: &str = "ok gait=walk phase=0 pose=1,2,3,4 margin=0.5 guard=clear fault=none";
 
 /// Starts a session; also returns its start.
 fn start(polls_status: bool, watches_poses: bool) -> (Instant, Session) {
     let now = Instant::now();
     (now, Session::new(now, polls_status, watches_poses))
-}
-
-/// Starts a session of a person who drives; also returns its start.
-fn start_driving(polls_status: bool) -> (Instant, Session) {
-    let (now, session) = start(polls_status, false);
-    (now, session.with_deadman())
 }
 
 /// Checks the line that the session sends at `time`; `None` stands for no line.
@@ -55,22 +51,16 @@ fn a_status_requested_by_the_user_is_shown() {
 }
 
 #[test]
-fn a_reset_cancels_the_request_and_repeats_watch() {
+fn a_reset_fails_the_unanswered_line_and_repeats_watch() {
     let (now, mut session) = start(false, true);
     assert_sends(&mut session, now, Some("watch 1"));
     session.receive("ok watch 1");
     session.queue("walk");
     session.take_next_line(now);
-    session.receive("# lizard 0.2.0");
+    let shown_line = session.receive("# lizard 0.2.0");
+    let expected = "# lizard 0.2.0 (no answer to `walk`)";
+    assert_eq!(shown_line.as_deref(), Some(expected));
     assert_sends(&mut session, now, Some("watch 1")); // poses are requested again
-}
-
-#[test]
-fn a_line_without_an_answer_before_a_reset_has_failed() {
-    let (now, mut session) = start(false, false);
-    session.queue("walk");
-    session.take_next_line(now);
-    session.receive("# lizard 0.2.0");
     let failure = session.check_all_accepted();
     let message = failure.expect_err("walk has no answer").to_string();
     assert!(message.ends_with("`walk`: no answer"), "{message}");
@@ -152,27 +142,19 @@ fn stop_is_repeated_until_answered_and_late_answers_are_ignored() {
 }
 
 #[test]
-fn a_refusal_of_stop_without_pulses_ends_the_repetition() {
-    for refusal in [
-        "err 7 the servos are resting; send stand first",
-        "err 10 no robot in the flash",
+fn only_a_complete_refusal_of_stop_without_pulses_ends_the_repetition() {
+    for (refusal, next_line) in [
+        ("err 7 the servos are resting; send stand first", "stand"),
+        ("err 10 no robot in the flash", "stand"),
+        ("err 7 the servos are resting; senok walk", "stop"),
     ] {
         let (now, mut session) = start(false, false);
         session.stop(now);
         assert_sends(&mut session, now, Some("stop"));
         assert_shows(&mut session, refusal);
         session.queue("stand");
-        assert_sends(&mut session, now + STOP_INTERVAL, Some("stand"));
+        assert_sends(&mut session, now + STOP_INTERVAL, Some(next_line));
     }
-}
-
-#[test]
-fn a_partial_refusal_does_not_answer_stop() {
-    let (now, mut session) = start(false, false);
-    session.stop(now);
-    session.take_next_line(now);
-    session.receive("err 7 the servos are resting; senok walk");
-    assert_sends(&mut session, now + STOP_INTERVAL, Some("stop"));
 }
 
 #[test]
@@ -232,237 +214,6 @@ fn failed_lines_are_counted_once_and_the_first_is_named() {
         .check_all_accepted()
         .expect_err("lines were refused");
     assert_eq!(failure.to_string(), refusal("3 of 4"));
-}
-
-/// Runs the session for `duration_ms` with the robot's answers from `answer_line`; returns the sent lines with their
-/// times in ms.
-fn run_session(
-    session: &mut Session,
-    start: Instant,
-    duration_ms: u64,
-    answer_line: impl Fn(&str) -> String,
-) -> Vec<(u64, String)> {
-    let mut lines = Vec::new();
-    for time_ms in (0..duration_ms).step_by(10) {
-        if let Some(line) = session.take_next_line(start + Duration::from_millis(time_ms)) {
-            for received_line in answer_line(&line).lines() {
-                session.receive(received_line);
-            }
-            lines.push((time_ms, line));
-        }
-    }
-    lines
-}
-
-fn answer_as_robot(line: &str) -> String {
-    match line {
-        "status" => WALKING_STATUS.to_owned(),
-        "cal" => "# boot stand\n# deadman 700\nok cal".to_owned(),
-        line => format!("ok {}", line.trim()),
-    }
-}
-
-fn exclude_status(lines: &[(u64, String)]) -> Vec<&str> {
-    let texts = lines.iter().map(|(_, line)| line.as_str());
-    texts.filter(|line| *line != "status").collect()
-}
-
-#[test]
-fn driving_sets_deadman_and_sends_lines_in_time() {
-    let (now, mut session) = start_driving(true);
-    session.queue("walk");
-    let lines = run_session(&mut session, now, 5000, answer_as_robot);
-    assert_eq!(exclude_status(&lines), ["cal", "deadman 700", "walk"]);
-    let gaps = lines.windows(2).map(|pair| pair[1].0 - pair[0].0);
-    assert!(gaps.max().is_some_and(|gap| gap <= 700 / 3), "{lines:?}");
-}
-
-#[test]
-fn deadman_is_restored_before_cal_and_set_again_afterwards() {
-    let (now, mut session) = start_driving(false);
-    for line in ["walk", "cal"] {
-        session.queue(line);
-    }
-    let lines = run_session(&mut session, now, 500, answer_as_robot);
-    let lines = exclude_status(&lines).join(", ");
-    assert_eq!(
-        lines,
-        "cal, deadman 700, walk, deadman 700, cal, deadman 700"
-    );
-}
-
-#[test]
-fn a_stopped_robot_gets_its_own_deadman_back() {
-    let (now, mut session) = start_driving(true);
-    let answer_with_own_deadman = |line: &str| answer_as_robot(line).replace("700", "2000");
-    session.queue("walk");
-    let lines = run_session(&mut session, now, 1000, answer_with_own_deadman);
-    assert_eq!(exclude_status(&lines), ["cal", "deadman 901", "walk"]);
-    session.queue("save");
-    let now = now + Duration::from_secs(1);
-    let lines = run_session(&mut session, now, 500, answer_with_own_deadman);
-    let expected = ["deadman 2000", "save", "deadman 901"];
-    assert_eq!(exclude_status(&lines), expected);
-    let now = now + Duration::from_secs(1);
-    session.stop(now);
-    let answer_as_stopped_robot =
-        |line: &str| answer_with_own_deadman(line).replace("gait=walk", "gait=stop");
-    let lines = run_session(&mut session, now, 2000, answer_as_stopped_robot);
-    assert_eq!(exclude_status(&lines), ["stop", "deadman 2000"]);
-    assert_eq!(session.restore_deadman(), None);
-}
-
-#[test]
-fn a_robot_is_driven_while_its_routine_rests() {
-    let answer_as_resting_robot =
-        |line: &str| answer_as_robot(line).replace("gait=walk", "gait=rest");
-    for end in ["# done", "ok stop", "ok rest"] {
-        let (start, mut session) = start_driving(true);
-        session.queue("patrol");
-        run_session(&mut session, start, 500, answer_as_resting_robot);
-        assert!(session.is_driven());
-
-        // The answer to the name of another routine is lost, but the status shows that it runs.
-        session.receive(end);
-        let now = start + Duration::from_secs(1);
-        run_session(&mut session, now, 500, answer_as_robot);
-        let now = now + Duration::from_secs(1);
-        run_session(&mut session, now, 500, answer_as_resting_robot);
-        assert!(session.is_driven());
-
-        session.receive(end);
-        let now = now + Duration::from_secs(1);
-        run_session(&mut session, now, 500, answer_as_resting_robot);
-        assert!(!session.is_driven(), "{end}");
-    }
-}
-
-#[test]
-fn deadman_left_by_an_earlier_run_is_restored_as_zero() {
-    let (now, mut session) = start_driving(true);
-    session.queue("arc left");
-    let answer_with_driving_deadman = |line: &str| answer_as_robot(line).replace("700", "901");
-    run_session(&mut session, now, 1000, answer_with_driving_deadman);
-    assert_eq!(session.restore_deadman().as_deref(), Some("deadman 0"));
-}
-
-#[test]
-fn a_script_sets_no_deadman() {
-    let (now, mut session) = start(true, false);
-    session.queue("walk");
-    let lines = run_session(&mut session, now, 1000, answer_as_robot);
-    assert_eq!(exclude_status(&lines), ["walk"]);
-}
-
-#[test]
-fn a_gait_starts_only_after_deadman_is_confirmed() {
-    let (now, mut session) = start_driving(false);
-    session.queue("walk");
-    assert_sends(&mut session, now, Some("cal"));
-    session.receive("# deadman 0");
-    session.receive("ok cal");
-    assert_sends(&mut session, now, Some("deadman 901"));
-    let later = now + ANSWER_TIMEOUT;
-    let message = session.time_out_request(later);
-    let message = message.expect("the user gets a message");
-    assert!(message.contains("not sent"), "{message}");
-    assert_sends(&mut session, later, None); // walk is not sent
-    assert!(session.check_all_accepted().is_err()); // the failure is counted
-    session.queue("walk");
-    assert_sends(&mut session, later, Some("deadman 901"));
-}
-
-#[test]
-fn an_unknown_deadman_is_neither_replaced_nor_restored() {
-    let (now, mut session) = start_driving(false);
-    session.queue("walk");
-    assert_sends(&mut session, now, Some("cal"));
-    session.receive("# boot stand"); // the link has lost the line with the setting
-    let message = session.receive("ok cal").expect("the user gets a message");
-    assert!(message.contains("not sent"), "{message}");
-    assert_sends(&mut session, now, None);
-
-    session.queue("walk");
-    assert_sends(&mut session, now, Some("cal"));
-    assert_eq!(session.restore_deadman(), None); // the user quits before the answer
-}
-
-#[test]
-fn a_setting_during_a_drive_becomes_the_robots_own_and_the_robot_is_still_driven() {
-    let answer_with_zero = |line: &str| answer_as_robot(line).replace("700", "0");
-    for (line, sent_lines, own_ms) in [
-        ("deadman 5000", "deadman 5000, deadman 901", 5000),
-        ("factory", "deadman 0, factory, cal, deadman 901", 0),
-        ("load", "deadman 0, load, cal, deadman 901", 0),
-    ] {
-        let (now, mut session) = start_driving(true);
-        session.queue("walk");
-        run_session(&mut session, now, 500, answer_with_zero);
-        session.queue(line);
-        let now = now + Duration::from_secs(1);
-        let lines = run_session(&mut session, now, 500, answer_with_zero);
-        assert_eq!(exclude_status(&lines).join(", "), sent_lines);
-        let own_line = format!("deadman {own_ms}");
-        assert_eq!(session.restore_deadman(), Some(own_line));
-    }
-}
-
-#[test]
-fn a_gait_after_load_reads_the_loaded_deadman() {
-    let (now, mut session) = start_driving(false);
-    session.queue("walk");
-    run_session(&mut session, now, 500, answer_as_robot);
-    session.restore_deadman();
-    session.queue("load");
-    session.queue("walk");
-    let now = now + Duration::from_secs(1);
-    let lines = run_session(&mut session, now, 500, answer_as_robot);
-    let lines = exclude_status(&lines).join(", ");
-    assert_eq!(lines, "load, cal, deadman 700, walk");
-}
-
-/// Starts a drive, and lets the robot report that its gait has ended; returns the time after that.
-fn end_drive(session: &mut Session, start: Instant) -> Instant {
-    session.queue("walk");
-    run_session(session, start, 300, answer_as_robot);
-    let now = start + Duration::from_secs(1);
-    assert_sends(session, now, Some("status"));
-    session.receive(&WALKING_STATUS.replace("gait=walk", "gait=stop"));
-    now
-}
-
-#[test]
-fn a_gait_at_the_end_of_another_is_driven_too() {
-    let (start, mut session) = start_driving(true);
-    let now = end_drive(&mut session, start);
-    session.queue("back");
-    assert_sends(&mut session, now, Some("back"));
-    session.receive("ok back");
-    assert!(session.is_driven());
-}
-
-#[test]
-fn deadman_is_restored_again_if_the_robot_has_not_confirmed_it() {
-    let (start, mut session) = start_driving(true);
-    let now = end_drive(&mut session, start);
-    assert_sends(&mut session, now, Some("deadman 700"));
-    let now = now + ANSWER_TIMEOUT;
-    assert!(session.time_out_request(now).is_some());
-    assert_sends(&mut session, now, Some("status"));
-    session.receive(&WALKING_STATUS.replace("gait=walk", "gait=stop"));
-    assert_sends(&mut session, now, Some("deadman 700"));
-}
-
-#[test]
-fn a_reset_during_the_preparation_of_a_drive_starts_it_again() {
-    let (now, mut session) = start_driving(false);
-    session.queue("walk");
-    assert_sends(&mut session, now, Some("cal"));
-    session.receive("# lizard 0.2.0");
-    let lines = run_session(&mut session, now, 500, answer_as_robot);
-    let lines = exclude_status(&lines).join(", ");
-    assert_eq!(lines, "cal, deadman 700, walk");
-    assert_eq!(session.restore_deadman().as_deref(), Some("deadman 700"));
 }
 
 #[test]

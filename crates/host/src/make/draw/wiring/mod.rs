@@ -233,6 +233,10 @@ fn list_remarks(robot: &Robot) -> Vec<String> {
         lines.push(format!(
             "{name} measures the +5 V strip, divided by {ratio:.2}."
         ));
+        let upper_kohm = 10.0 * (ratio - 1.0);
+        lines.push(format!(
+            "Its divider: for example {upper_kohm:.1} k\u{3a9} from the strip to {name}, 10 k\u{3a9} from {name} to ground."
+        ));
     }
     lines
 }

@@ -61,7 +61,7 @@ pub struct FoundGait {
 
 /// A search in progress.
 #[derive(Debug, Clone)]
-pub struct FasterSearch {
+pub struct GaitSearch {
     tuning: Tuning,
     /// The searches by kind of gait, in the order of [`GaitKind::ALL`].
     searches: [Search; GaitKind::ALL.len()],
@@ -73,7 +73,7 @@ pub struct FasterSearch {
     trial_count: usize,
 }
 
-impl FasterSearch {
+impl GaitSearch {
     /// Prepares a search with a twin's robot and floor; takes as long as a few trials.
     ///
     /// # Errors
@@ -85,7 +85,9 @@ impl FasterSearch {
         let tuning = Tuning::new(&robot, ground, gait, task.rate, &task.bars.name, task.seed);
         let tuning = tuning.map_err(|error| match error {
             TuningError::Goal(_) => Refusal::for_key("", error.to_string()),
-            TuningError::Rate { .. } => Refusal::for_key("rate", format!("servo speed {error}")),
+            TuningError::ServoSpeed { .. } => {
+                Refusal::for_key("rate", format!("servo speed {error}"))
+            }
         })?;
         Ok(Self {
             searches: GaitKind::ALL.map(|kind| tuning.start_search(kind)),
@@ -101,7 +103,7 @@ impl FasterSearch {
     pub fn extent(&self) -> SearchExtent {
         SearchExtent {
             total: self.trial_count,
-            rate: self.tuning.rate(),
+            rate: self.tuning.max_servo_speed(),
         }
     }
 
@@ -164,7 +166,7 @@ mod tests {
     /// Returns the message with which a search is refused.
     fn begin_refused(task: &SearchTask) -> String {
         let (_, twin) = load_paper_robot_and_twin();
-        let refusal = FasterSearch::begin(&twin, task).expect_err("the search is refused");
+        let refusal = GaitSearch::begin(&twin, task).expect_err("the search is refused");
         refusal.reason
     }
 
@@ -172,7 +174,7 @@ mod tests {
     fn an_unfinished_search_returns_the_best_gait_so_far() {
         let (robot, twin) = load_paper_robot_and_twin();
         let mut search =
-            FasterSearch::begin(&twin, &make_task("walk")).expect("the gait can be made faster");
+            GaitSearch::begin(&twin, &make_task("walk")).expect("the gait can be made faster");
         assert_eq!(search.extent().total, 40);
         assert_eq!(search.compare_best(20), None, "no gait has been tried yet");
         let progress: [Progress; 3] = std::array::from_fn(|_| search.try_next());
