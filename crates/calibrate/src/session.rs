@@ -71,8 +71,8 @@ impl<C: Console> Session<C> {
         self.may_be_outdated || !self.active.is_equivalent_to(&self.saved)
     }
 
-    /// Returns true if a reset of the robot was noticed since the last call. The robot has then lost its unsaved settings,
-    /// and the active settings were read again.
+    /// Returns true if a reset of the robot was noticed since the last call. The robot has then lost its unsaved
+    /// settings, and the active settings were read again.
     pub fn take_reset(&mut self) -> bool {
         std::mem::take(&mut self.was_reset)
     }

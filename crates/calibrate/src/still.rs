@@ -11,8 +11,8 @@ const STATUS_INTERVAL: Duration = Duration::from_millis(50);
 /// Largest number of `status` commands: a wait ends after five seconds plus the time that the answers take.
 const MAX_STATUS_COUNT: u32 = 100;
 
-/// Waits until the robot stands still or the time limit has passed. Returns its pose, degrees, and true if it was reset:
-/// its frame count is then smaller than before. `frame_count` is the count in the latest status.
+/// Waits until the robot stands still or the time limit has passed. Returns its pose, degrees, and true if it was
+/// reset: its frame count is then smaller than before. `frame_count` is the count in the latest status.
 ///
 /// # Errors
 /// Fails if the robot does not answer, or has no pose.

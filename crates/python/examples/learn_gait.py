@@ -1,8 +1,8 @@
 """Learns a gait in about a minute: the amplitude, the duty factor, and the start of each leg's stance.
 
 The cross-entropy method tries gaits in MuJoCo (the environment `Lizard-v0`), keeps the best gaits, and tries similar
-gaits. It begins without any knowledge of walking: all legs start at random times. Usage: learn_gait.py [OUTPUT.toml
-[SEED]]
+gaits. It begins without any knowledge of walking: all legs start at random times.
+Usage: learn_gait.py [OUTPUT.toml [SEED]]
 """
 
 import sys

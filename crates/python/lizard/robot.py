@@ -109,9 +109,10 @@ class Robot:
     def close(self) -> None:
         """Stops the robot, restores its `deadman`, and closes the port."""
         try:
-            # A robot that does not answer is out of range, and stops by itself.
-            with suppress(RobotError, OSError):
-                self.stop()
+            if not self._is_closed:
+                # The robot rests, or it is out of range and stops by itself.
+                with suppress(RobotError, OSError):
+                    self.stop()
         finally:
             self._shut_down()
 

@@ -1,4 +1,4 @@
-"""Fixtures shared by all tests: the default robot's model, a simulated robot, and the program `lizard` installed from the wheel."""
+"""Fixtures shared by all tests: the default robot's model, a simulated robot, and the program `lizard` of the wheel."""
 
 import subprocess
 import sys

@@ -11,7 +11,7 @@ struct instruction {
 	bool is_executing; /* true during an instruction, false during a callback of a simavr timer */
 };
 
-/* Executes instructions until avr->run_cycle_limit cycles have passed, at least one instruction. */
+/* Executes the next instruction, or several, up to avr->run_cycle_limit cycles. */
 void instruction_run(struct instruction *instruction);
 /* The cycle at which the current store takes effect: the last cycle of its instruction. simavr calls
  * a register's callback in the first cycle, so an edge made by `sbi` would be one cycle early

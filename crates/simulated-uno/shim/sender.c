@@ -45,8 +45,8 @@ static avr_cycle_count_t begin_byte(avr_t *avr, avr_cycle_count_t when, void *pa
 	const struct receiver *receiver = &sender->receiver;
 	if (sender->is_busy || !take_next_byte(sender, &sender->current_byte))
 		return 0;
-	/* `when` is `line_free_at` rounded up. The fraction carries over, so the rate is right in the
-	 * long run. */
+	/* If the last byte has only just ended, `when` is `line_free_at` rounded up. The fraction carries
+	 * over, so the rate is right in the long run. */
 	double start = sender->line_free_at > when - 1.0 ? sender->line_free_at : when;
 	double frame_cycles = FRAME_BITS * sender->cycles_per_bit;
 	sender->current_cycles_per_bit = sender->cycles_per_bit;

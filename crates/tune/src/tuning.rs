@@ -111,15 +111,27 @@ impl Tuning {
         &self,
         results_by_kind: impl IntoIterator<Item = Vec<(f64, Vec<f64>)>>,
     ) -> Option<BuiltGait> {
-        let mut candidates: Vec<(GaitKind, (f64, Vec<f64>))> = Vec::new();
-        for (kind, results) in GaitKind::ALL.into_iter().zip(results_by_kind) {
-            candidates.extend(results.into_iter().map(|result| (kind, result)));
+        /// The parameters of a gait of some kind, and their score.
+        struct Candidate {
+            kind: GaitKind,
+            score: f64,
+            parameters: Vec<f64>,
         }
-        candidates.sort_by(|(_, (a, _)), (_, (b, _))| b.total_cmp(a));
+        let mut candidates = Vec::new();
+        for (kind, results) in GaitKind::ALL.into_iter().zip(results_by_kind) {
+            for (score, parameters) in results {
+                candidates.push(Candidate {
+                    kind,
+                    score,
+                    parameters,
+                });
+            }
+        }
+        candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
         let ground = &self.scorer.ground;
         candidates
             .iter()
-            .filter_map(|(kind, (_, parameters))| self.build(*kind, parameters))
+            .filter_map(|candidate| self.build(candidate.kind, &candidate.parameters))
             .find(|built| built.gait().predict(ground).is_determined())
     }
 

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-/// A connection to a board. Times are measured on the board: the clock of a simulated board may be slower or faster than
-/// this machine's.
+/// A connection to a board. Times are measured on the board: the clock of a simulated board may be slower or faster
+/// than this machine's.
 pub trait Board {
     /// Resets the chip, which starts the boot loader, and sets the baud rate.
     ///

@@ -57,7 +57,7 @@ pub(crate) fn between(path: &[PathPoint], [from, to]: [f64; 2]) -> &[PathPoint] 
     &path[begin..end.max(begin)]
 }
 
-/// Interpolates the pose at a time after the first frame; `None` after the last frame.
+/// Interpolates the pose at a time between two frames; `None` until the first frame and after the last frame.
 pub(crate) fn interpolate_at(path: &[PathPoint], seconds: f64) -> Option<BodyPose> {
     let next_index = path.partition_point(|point| point.seconds < seconds);
     let (a, b) = (path.get(next_index.checked_sub(1)?)?, path.get(next_index)?);

@@ -106,4 +106,12 @@ mod tests {
         assert_eq!(find_five_bar_scale(&five_bar_with_base(46.99)).bits, 8);
         assert_eq!(find_five_bar_scale(&five_bar_with_base(47.0)).bits, 7);
     }
+
+    #[test]
+    fn the_smallest_and_the_largest_robot_have_a_scale() {
+        let equal_five_bar = |mm| FiveBar::new([mm; 5]);
+        for (mm, bits) in [(1.0, 13), (MAX_LINK_LENGTH_MM, 3)] {
+            assert_eq!(find_five_bar_scale(&equal_five_bar(mm)).bits, bits);
+        }
+    }
 }

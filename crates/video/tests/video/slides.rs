@@ -129,7 +129,8 @@ fn in_at_least_14_of_16_videos_the_true_friction_lies_within_two_standard_errors
     }
     let [static_hits, sliding_hits] = hits;
     println!(
-        "{video_count} videos; within two standard errors: static {static_hits}, sliding {sliding_hits}"
+        "{video_count} videos; within two standard errors: static {static_hits}, \
+         sliding {sliding_hits}"
     );
     assert!(static_hits >= video_count - 2 && sliding_hits >= video_count - 2);
 }

@@ -233,6 +233,29 @@ fn springs_set_on_the_page_act_as_predicted() {
 }
 
 #[test]
+fn mass_and_friction_matter_only_with_springs() {
+    let predict_with = |kind: LegDrive, mass: f64, friction: f64, force: f64| {
+        let mut page = make_ideal_page();
+        page.set_floor(Floor {
+            kind,
+            force,
+            rate: 0.8 * force,
+            mass,
+            friction,
+            ..own_floor(&page)
+        });
+        predict_walk_mm(&page)
+    };
+    let [rigid, strut] = [LegDrive::Rigid, LegDrive::Strut];
+    let rigid_mm = predict_with(rigid, 280.0, 0.7, 1.0);
+    assert_eq!(rigid_mm, predict_with(rigid, 560.0, 0.2, 1.0));
+    let strut_mm = predict_with(strut, 280.0, 0.7, 0.5);
+    assert!((strut_mm - predict_with(strut, 140.0, 1.4, 0.5)).abs() < 1e-6);
+    assert!((strut_mm - predict_with(strut, 280.0, 1.4, 1.0)).abs() < 1e-6);
+    assert!((strut_mm - predict_with(strut, 280.0, 1.4, 0.5)).abs() > 1.0);
+}
+
+#[test]
 fn friction_that_differs_by_direction_changes_the_prediction() {
     let mut page = make_paper_page();
     let isotropic_prediction = predict_walk(&page);
@@ -270,4 +293,21 @@ fn a_written_floor_is_read_back_and_all_other_values_stay() {
     let rigid_toml = write_floor(&strut_toml, read_floor(PAPER_TOML));
     assert_eq!(read_floor(&rigid_toml), read_floor(PAPER_TOML));
     assert!(!rigid_toml.contains("\nforce ="), "{rigid_toml}");
+}
+
+#[test]
+fn a_foot_that_is_too_long_shortens_the_predicted_walk_on_stiff_feet() {
+    let mut page = make_paper_page();
+    let own_floor = own_floor(&page);
+    let mut predict_with = |leaf: f64, twist: f64| {
+        page.set_floor(Floor {
+            leaf,
+            twist,
+            ..own_floor
+        });
+        predict_walk_mm(&page)
+    };
+    let level_mm = predict_with(2.0, 0.0);
+    assert!(predict_with(3.3, 1.0) < 0.3 * level_mm);
+    assert!(predict_with(own_floor.leaf, 1.0) > 0.9 * level_mm);
 }

@@ -33,6 +33,9 @@ pub(super) enum DeadmanLine {
 pub(super) struct Deadman {
     /// The robot's own setting, ms; `None` until it is read.
     own_ms: Option<u16>,
+    /// The robot's own setting before it was read again, ms. It still applies if the robot reports the value for
+    /// driving: a `stop` has dropped the line that restores the setting, or the link has lost this line.
+    own_ms_before_read: Option<u16>,
     /// True while `deadman` has its value for driving, or is about to get it.
     pub(super) is_overridden: bool,
     /// True from the start of a gait or a routine to its end. A routine may rest in between; the robot then wakes by
@@ -62,7 +65,7 @@ impl Deadman {
                     &[DeadmanLine::Read, DeadmanLine::Set],
                 );
             }
-            "load" | "factory" => self.own_ms = None,
+            "load" | "factory" => (self.own_ms, self.own_ms_before_read) = (None, None),
             _ => {}
         }
         // Only a gait or a routine makes the robot walk; their names are not among the console's words.
@@ -82,7 +85,7 @@ impl Deadman {
     pub(super) fn apply_line(&mut self, deadman_line: DeadmanLine) -> Option<String> {
         match deadman_line {
             DeadmanLine::Read => {
-                self.own_ms = None;
+                self.own_ms_before_read = self.own_ms.take().or(self.own_ms_before_read);
                 return Some("cal".to_owned());
             }
             DeadmanLine::Restore => self.is_overridden = false,
@@ -107,7 +110,10 @@ impl Deadman {
             .strip_prefix("# deadman ")
             .and_then(|ms| ms.parse().ok())
         {
-            self.own_ms = Some(if ms == DRIVING_DEADMAN_MS { 0 } else { ms });
+            self.own_ms = match ms {
+                DRIVING_DEADMAN_MS => self.own_ms_before_read.or(Some(0)),
+                own_ms => Some(own_ms),
+            };
         }
         ["# A", "# boot ", "# deadman "]
             .iter()

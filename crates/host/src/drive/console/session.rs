@@ -153,8 +153,8 @@ impl Session {
         matches!(&self.deadman, Some(deadman) if deadman.is_overridden)
     }
 
-    /// Stops the robot. Queued lines are dropped, because they could start it again. Lines about `deadman` stay, because
-    /// an earlier line may have restored the robot's own setting for a dropped line.
+    /// Stops the robot. Queued lines are dropped, because they could start it again. Lines about `deadman` stay: an
+    /// earlier line may have restored the robot's own setting for a dropped line.
     pub fn stop(&mut self, now: Instant) {
         self.queue.retain(|request| {
             matches!(request, Request::Deadman(line) if *line != DeadmanLine::RestoreForOneLine)

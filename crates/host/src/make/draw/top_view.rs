@@ -199,6 +199,40 @@ impl<'a> TopView<'a> {
 mod tests {
     use super::*;
     use crate::shared::robot_args::built_in_robot;
+    use lizard_kinematics::Pose;
+
+    /// Passes the paper's robot at `pose` to `check_view`; `None` is the neutral pose.
+    fn with_view(pose: Option<Pose>, check_view: impl Fn(&TopView)) {
+        let robot = built_in_robot("paper");
+        let pose = pose.unwrap_or_else(|| robot.neutral_pose());
+        let solution = robot.lizard().solve(&pose).expect("the pose closes");
+        check_view(&TopView::new(&robot, &solution));
+    }
+
+    #[test]
+    fn the_feet_are_beside_the_hips_at_neutral() {
+        with_view(None, |view| {
+            let feet = [0, 1, 2, 3].map(|servo| view.foot(servo));
+            let feet = feet.map(|foot| (foot.x.round(), foot.y.round()));
+            let expected = [(-80.0, 55.0), (80.0, 55.0), (80.0, -55.0), (-80.0, -55.0)];
+            assert_eq!(feet, expected);
+        });
+    }
+
+    #[test]
+    fn a_forward_turn_moves_the_foot_forward() {
+        use lizard_robot::servo::FORWARD_TURN_SIGN;
+        with_view(None, |view| {
+            for servo in 0..4 {
+                let mut angles: [f64; 4] = view.angles();
+                angles[servo] += 10.0 * FORWARD_TURN_SIGN[servo];
+                let foot_before = view.foot(servo);
+                with_view(Some(angles.into()), |moved_view| {
+                    assert!(moved_view.foot(servo).y > foot_before.y + 7.0);
+                });
+            }
+        });
+    }
 
     #[test]
     fn a_large_robot_fits_the_page() {
@@ -217,10 +251,9 @@ mod tests {
 
     #[test]
     fn labels_can_be_omitted() {
-        let robot = built_in_robot("paper");
-        let solution = robot.lizard().solve(&robot.neutral_pose());
-        let solution = solution.expect("the neutral pose closes");
-        assert!(draw_top_view(&robot, &solution, true).contains("θ1 = 138.59°"));
-        assert!(!draw_top_view(&robot, &solution, false).contains("<text"));
+        with_view(None, |view| {
+            assert!(draw_top_view(view.robot, view.solution, true).contains("θ1 = 138.59°"));
+            assert!(!draw_top_view(view.robot, view.solution, false).contains("<text"));
+        });
     }
 }

@@ -43,7 +43,7 @@ pub fn list_command_spans(script: &Script, answers: &[Option<String>]) -> Vec<Sp
     let mut starts = vec![(0.0, "stand")];
     for (step, answer) in script.steps.iter().zip(answers) {
         let is_refused = matches!(answer, Some(answer) if answer.starts_with("err"));
-        let is_within_run = step.ms < script.end_ms;
+        let is_within_run = step.ms <= script.end_ms;
         if is_within_run && !is_refused && changes_motion(&step.command) {
             starts.push((step.ms as f64 / 1000.0, step.command.as_str()));
         }

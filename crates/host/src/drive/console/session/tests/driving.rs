@@ -8,8 +8,8 @@ fn start_driving(polls_status: bool) -> (Instant, Session) {
     (now, session.with_deadman())
 }
 
-/// Runs the session for a second with the robot's answers from `answer_line`, and advances `now`. Returns the sent lines
-/// without `status`, separated by commas.
+/// Runs the session for a second with the robot's answers from `answer_line`, and advances `now`. Returns the sent
+/// lines without `status`, separated by commas.
 fn run_session(
     session: &mut Session,
     now: &mut Instant,
@@ -80,6 +80,20 @@ fn a_gait_after_stop_starts_only_with_deadman_set() {
         let lines = run_session(&mut session, &mut now, answer_as_robot);
         assert_eq!(lines, "deadman 700, walk", "{answered_count} answers");
     }
+}
+
+#[test]
+fn a_stop_that_drops_load_keeps_the_robots_own_deadman() {
+    let (mut now, mut session) = start_driving(true);
+    session.queue("walk");
+    let answer_with_own_deadman = |line: &str| answer_as_robot(line).replace("700", "2000");
+    run_session(&mut session, &mut now, answer_with_own_deadman);
+    session.queue("load");
+    session.stop(now);
+    let answer_with_driving_deadman = |line: &str| answer_as_robot(line).replace("700", "901");
+    let lines = run_session(&mut session, &mut now, answer_with_driving_deadman);
+    assert_eq!(lines, "stop, cal, deadman 901");
+    assert_eq!(session.restore_deadman().as_deref(), Some("deadman 2000"));
 }
 
 #[test]
