@@ -342,11 +342,24 @@ fn the_pin_that_measures_the_servo_supply_is_marked() {
     );
     let drawing = draw_robot_wiring(&text);
     for note in [
-        "A3 measures the +5 V strip, divided by 2.50.",
-        "Its divider: for example 15.0 k\u{3a9} from the strip to A3, 10 k\u{3a9} from A3 to ground.",
+        "Pin A3 measures the +5 V strip, divided by 2.50.",
+        "Its divider: for example 15.0 k\u{3a9} from the strip to the pin, 10 k\u{3a9} to ground.",
     ] {
         assert!(drawing.texts().any(|text| text == note), "{note}");
     }
     assert_eq!(pin_fill(&drawing, "pin-A3"), pin_fill(&drawing, "pin-D9"));
     assert_ne!(pin_fill(&drawing, "pin-A3"), pin_fill(&drawing, "pin-A2"));
+}
+
+#[test]
+fn servos_at_another_voltage_than_the_drawn_supply_are_mentioned() {
+    let text = format!("{}\n[servo]\nvolts = 6.0\n", paper_toml());
+    let note =
+        "The drawing is for servos at 5 V, but this robot's servos are at 6 V: the converter,";
+    assert!(draw_robot_wiring(&text).texts().any(|text| text == note));
+    assert!(
+        draw_robot_wiring(&paper_toml())
+            .texts()
+            .all(|text| text != note)
+    );
 }

@@ -9,6 +9,8 @@ mod strips;
 mod supply;
 mod wire;
 
+use std::ops::RangeInclusive;
+
 use lizard_robot::servo::SERVO_NAMES;
 use lizard_robot::{FUSE_RATING_A, MIN_SWITCH_RATING_A, Robot};
 use svg::node::element::Group;
@@ -212,6 +214,9 @@ fn draw_board_notes() -> Group {
         .add(text_start("computer", (42.0, usb_y - 12.0), 13.0))
 }
 
+/// The supply voltages of servos for which the drawn converter serves, V.
+const DRAWN_SERVO_VOLTS: RangeInclusive<f64> = 4.5..=5.5;
+
 /// Returns the remarks below the drawing, about facts that a drawing cannot show.
 fn list_remarks(robot: &Robot) -> Vec<String> {
     let mut lines = vec![
@@ -228,15 +233,25 @@ fn list_remarks(robot: &Robot) -> Vec<String> {
         "nothing, and a servo might take noise for a pulse.".into(),
         "The UNO gets its power from USB, or from the battery through its barrel jack.".into(),
     ];
+    let servo_volts = robot.servo_type().supply_volts;
+    if !DRAWN_SERVO_VOLTS.contains(&servo_volts) {
+        lines.push(format!(
+            "The drawing is for servos at 5 V, but this robot's servos are at {servo_volts} V: the converter,"
+        ));
+        lines.push("the fuse and the capacitor must fit that voltage.".into());
+    }
     if let (Some(pin), Some(rail)) = (robot.firmware().rail_pin(), robot.supplies().rail) {
         let (name, ratio) = (pin_name(pin), rail.divider_ratio);
         lines.push(format!(
-            "{name} measures the +5 V strip, divided by {ratio:.2}."
+            "Pin {name} measures the +5 V strip, divided by {ratio:.2}."
         ));
-        let upper_kohm = 10.0 * (ratio - 1.0);
-        lines.push(format!(
-            "Its divider: for example {upper_kohm:.1} k\u{3a9} from the strip to {name}, 10 k\u{3a9} from {name} to ground."
-        ));
+        // With a ratio of 1, the pin is on the strip itself.
+        if ratio > 1.0 {
+            let upper_kohm = 10.0 * (ratio - 1.0);
+            lines.push(format!(
+                "Its divider: for example {upper_kohm:.1} k\u{3a9} from the strip to the pin, 10 k\u{3a9} to ground."
+            ));
+        }
     }
     lines
 }
