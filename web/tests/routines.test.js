@@ -54,7 +54,7 @@ async function showRoutine(page, routine) {
 /** Opens the panel with a routine, for a robot that stands. */
 const openRoutine = async (routine = PATROL, options = {}) => showRoutine(await openStanding(options), routine);
 /** Opens the panel with a routine that the connected board does not have. */
-const openBoardWithRoutine = async (routine) => showRoutine(await openWithBoard(), routine);
+const openRoutineNotOnBoard = async (routine) => showRoutine(await openWithBoard(), routine);
 
 /** Runs the simulation for some seconds of its own time. */
 async function runSeconds(page, seconds) {
@@ -307,13 +307,13 @@ testPage('an invalid or existing name is refused, and the recorded steps stay', 
   assert.equal(await page.locator('#routine').inputValue(), 'two-steps');
 });
 
-test('a step that waits forever, or a large number of steps, does not block the page', async () => {
+test('a routine of a day with a large number of steps does not block the page', async () => {
   const page = await openRoutine(['walk 1', ...Array(98).fill('stand 999 s')]);
   await page.getByText('The first 120 s of a round end 3').waitFor();
   await page.locator('#routine-steps li').nth(98).waitFor();
 });
 
-testPage('a routine is written to a board, started by its name, and reports its end', () => openBoardWithRoutine(['walk 2', 'rest 2 s', 'left 1']), async (page) => {
+testPage('a routine is written to a board, started by its name, and reports its end', () => openRoutineNotOnBoard(['walk 2', 'rest 2 s', 'left 1']), async (page) => {
   // Until the routine is written, the board's robot does not have it.
   await press(page, 'Start it');
   await runUntil(page, 'the command is refused', async () => (await readText(page, '#drive-message')) === 'patrol: unknown command; send help for the list');
@@ -343,7 +343,7 @@ testPage('a resting routine is stopped when the page is hidden', openWithBoard, 
   assert.match(await page.evaluate(() => window.receivedText), /^stop\n/);
 });
 
-testPage('the page reports a board that is unplugged while a routine is written, and writes the routine later', () => openBoardWithRoutine(['walk 1']), async (page) => {
+testPage('the page reports a board that is unplugged while a routine is written, and writes the routine later', () => openRoutineNotOnBoard(['walk 1']), async (page) => {
   await press(page, 'Write it to the board');
   await waitForText(page, '#routine-message', /^writing/, 20);
   await page.clock.runFor(60);

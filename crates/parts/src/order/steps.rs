@@ -1,6 +1,6 @@
 //! The steps of the assembly, from the plate to the first walk.
 //!
-//! A step is one picture of the guide. It consists of successive stages, since some parts are joined on the bench
+//! A step is a section of the guide, with pictures unless it is done at the console. It consists of successive stages, since some parts are joined on the bench
 //! before they are mounted on the robot. `reach.rs` checks which screws can be reached in which stage.
 //!
 //! A servo does not report its angle. It is therefore wired and driven to its middle before its link is pressed on, and
