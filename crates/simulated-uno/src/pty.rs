@@ -25,10 +25,10 @@ use rustix::io::Errno;
 use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcsetattr};
 
+use crate::serial::MAX_BAUD;
+
 /// The baud rate until a program sets another one.
 const DEFAULT_BAUD: u32 = 115_200;
-/// The largest baud rate that [`crate::Uno::set_baud`] accepts; a program may set a higher one.
-const MAX_BAUD: u32 = 10_000_000;
 /// The longest time between fork and exec of a new process on a busy machine.
 const MAX_START_TIME: Duration = Duration::from_secs(10);
 
@@ -170,7 +170,8 @@ impl Pty {
         // Linux returns the settings that programs have made at the port. Speed 0 means "hang up".
         Ok(match tcgetattr(&self.our_end)?.output_speed() {
             0 => f64::from(DEFAULT_BAUD),
-            baud => f64::from(baud.min(MAX_BAUD)),
+            // A program may set a higher rate.
+            baud => f64::from(baud).min(MAX_BAUD),
         })
     }
 

@@ -3,6 +3,9 @@
 use crate::traces::SerialByte;
 use crate::{FREQUENCY, Uno, ffi};
 
+/// The largest baud rate that [`Uno::set_baud`] accepts.
+pub(crate) const MAX_BAUD: f64 = 1e7;
+
 impl Uno {
     /// The sender's default baud rate; [`Uno::set_baud`] changes it.
     pub const DEFAULT_BAUD: f64 = 115_200.0;
@@ -60,7 +63,7 @@ impl Uno {
     /// If the rate is not between 1 and 10 million.
     pub fn set_baud(&mut self, baud: f64) {
         assert!(
-            (1.0..=1e7).contains(&baud),
+            (1.0..=MAX_BAUD).contains(&baud),
             "the baud rate must be between 1 and 10 million, but is {baud}"
         );
         // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); for a rate in this range, the cycles per

@@ -79,7 +79,7 @@ struct Component {
 /// would replace an input or a user's robot, or if it cannot be written.
 pub fn identify_keys(args: KeysArgs) -> Result<(), Failure> {
     let old_text = args.robot.text()?;
-    let robot = args.robot.load()?;
+    let robot = args.robot.parse(&old_text)?;
     let mut movements = Vec::new();
     for path in &args.paths {
         movements.append(&mut read_movements(path, &robot)?);

@@ -113,7 +113,7 @@ struct Report {
 /// Fails if a video cannot be read or does not show the servo's steps, or if the output cannot be written.
 pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
     let robot_toml = args.robot.text()?;
-    let robot = args.robot.load()?;
+    let robot = args.robot.parse(&robot_toml)?;
     if let Some(output) = &args.output {
         files::check_replaceable_robot(output, |text| {
             measured_key::is_earlier_output(text, &robot_toml)

@@ -86,6 +86,20 @@ impl RobotArgs {
         })
     }
 
+    /// Checks a text that [`RobotArgs::text`] has returned, so that a pipe is read only once.
+    ///
+    /// # Errors
+    /// Fails if the text is invalid.
+    pub(crate) fn parse(&self, text: &str) -> Result<Robot, Failure> {
+        let robot = Robot::parse(text).map_err(|mut error| {
+            if let Ok(RobotSource::File(path)) = self.find_source() {
+                error.file = path.display().to_string();
+            }
+            error
+        });
+        Ok(robot?)
+    }
+
     /// Returns the name of the robot's source, for messages; not for a text from `from_text`.
     ///
     /// # Errors

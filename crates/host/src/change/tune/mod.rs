@@ -82,9 +82,9 @@ impl Spreadable for Args {
 /// finds no gait within the limits, or if the output cannot be written. Also fails, after the output, if robot.toml
 /// has no room for the new gait.
 pub fn run(args: Args) -> Result<(), Failure> {
-    let robot = args.spread.robot.load()?;
     // The output may be appended to the file, so the text is read before.
     let robot_toml = args.spread.robot.text()?;
+    let robot = args.spread.robot.parse(&robot_toml)?;
     let Some(comparison) = tune(&robot, &args)? else {
         return Ok(());
     };
