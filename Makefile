@@ -10,10 +10,12 @@ LIZARD := crates/target/release/lizard
 # build script and to the tests.
 ROBOT ?= $(LIZARD_ROBOT)
 ifneq ($(ROBOT),)
-ifeq ($(wildcard $(ROBOT)),)
+# make's own functions would split a path at a space.
+ROBOT_FILE := $(shell cd "$$(dirname '$(ROBOT)')" 2> /dev/null && ls -d "$$PWD/$$(basename '$(ROBOT)')" 2> /dev/null)
+ifeq ($(ROBOT_FILE),)
 $(error ROBOT=$(ROBOT) does not exist; give a file such as robots/paper.toml)
 endif
-export LIZARD_ROBOT := $(abspath $(ROBOT))
+export LIZARD_ROBOT := $(ROBOT_FILE)
 FOR_ROBOT := --robot '$(LIZARD_ROBOT)'
 endif
 

@@ -1,29 +1,29 @@
-//! The note in the ELF file that tells an unmodified simavr the chip, the clock and the voltages. It is not in flash.
-//! Without the note, simavr assumes a supply of 3.3 V, at which the firmware moves no servo.
+//! The section `.mmcu` of the ELF file, which tells an unmodified simavr the chip, the clock and the voltages. It is
+//! not in flash. Without it, simavr assumes a supply of 3.3 V, at which the firmware moves no servo.
 
-/// Makes a record as in simavr's `avr_mcu_section.h`: tag, length and 32-bit number.
-const fn make_record(tag: u8, value: u32) -> [u8; 6] {
+/// Makes a number's record as in simavr's `avr_mcu_section.h`: tag, length and 32-bit number.
+const fn make_number_record(tag: u8, value: u32) -> [u8; 6] {
     let [a, b, c, d] = value.to_le_bytes();
     [tag, 4, a, b, c, d]
 }
 
-/// The length of the chip's name, which is padded with zeros, in bytes.
+/// Bytes of the chip's name, including the zeros that pad it.
 const NAME_BYTES: usize = 64;
 
-/// The layout of the note: records of tag, length and value.
+/// The layout of the section: records of tag, length and value.
 #[repr(C)]
-struct Note {
+struct Mmcu {
     name_record: [u8; 2 + NAME_BYTES],
     number_records: [[u8; 6]; 4],
     end_record: [u8; 2],
 }
 
-/// The note, with the tags 1 to 5 for the name, the clock in Hz, and VCC, AVCC and AREF in mV, followed by the end tag
-/// 0.
+/// The section, with the tags 1 to 5 for the name, the clock in Hz, and VCC, AVCC and AREF in mV, followed by the end
+/// tag 0.
 #[used]
 #[unsafe(no_mangle)]
 #[unsafe(link_section = ".mmcu")]
-static SIMAVR: Note = Note {
+static MMCU: Mmcu = Mmcu {
     name_record: {
         let mut record = [0; 2 + NAME_BYTES];
         let (header, text) = record.split_at_mut(2);
@@ -32,10 +32,10 @@ static SIMAVR: Note = Note {
         record
     },
     number_records: [
-        make_record(2, 16_000_000),
-        make_record(3, 5000),
-        make_record(4, 5000),
-        make_record(5, 5000),
+        make_number_record(2, 16_000_000),
+        make_number_record(3, 5000),
+        make_number_record(4, 5000),
+        make_number_record(5, 5000),
     ],
     end_record: [0; 2],
 };

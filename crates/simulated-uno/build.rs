@@ -9,8 +9,8 @@ const TESTED_VERSION: &str = "1.6";
 fn main() {
     if std::env::var("CARGO_CFG_TARGET_OS").is_ok_and(|system| system == "windows") {
         panic!(
-            "libsimavr does not exist for Windows: build `lizard` without the simulator, with \
-             --no-default-features --features paper,console,parts"
+            "libsimavr does not exist for Windows: build without the package simulated-uno (for `lizard`: \
+             --no-default-features --features paper,console,parts)"
         );
     }
     check_version();
@@ -27,7 +27,7 @@ fn main() {
         .std("gnu11")
         .warnings(true)
         .extra_warnings(true)
-        // simavr's callbacks have parameters that most of ours do not use.
+        // simavr prescribes parameters that most of the shim's callbacks do not use.
         .flag("-Wno-unused-parameter")
         .try_compile("simulated_uno_shim");
     if let Err(error) = result {
@@ -41,7 +41,7 @@ fn main() {
     let features = std::env::var("CARGO_CFG_TARGET_FEATURE").unwrap_or_default();
     if features.split(',').any(|feature| feature == "crt-static") {
         for library in ["simavr", "elf", "z"] {
-            if let Some(folder) = find_folder(&format!("lib{library}.a")) {
+            if let Some(folder) = find_library_folder(&format!("lib{library}.a")) {
                 println!("cargo:rustc-link-search=native={}", folder.display());
             }
             println!("cargo:rustc-link-lib=static:-bundle={library}");
@@ -55,7 +55,7 @@ fn main() {
 
 /// Returns the folder in which the C compiler finds a library; `None` if it cannot find the library. rustc itself
 /// searches only the folders that are passed to it.
-fn find_folder(library: &str) -> Option<PathBuf> {
+fn find_library_folder(library: &str) -> Option<PathBuf> {
     let compiler = cc::Build::new().try_get_compiler().ok()?;
     let argument = format!("-print-file-name={library}");
     let output = compiler.to_command().arg(argument).output().ok()?;

@@ -89,7 +89,7 @@ fn with_several_boards_the_user_must_name_a_port() {
         File::create(port_folder.path().join(name)).expect("the file can be created");
     }
     let error_output = check_ports(port_folder.path()).expect_err("there are two boards");
-    assert_contains(&error_output, "several boards found");
+    assert_contains(&error_output, "several ports may have the board");
     assert_contains(&error_output, "make flash RAVEDUDE_PORT=");
     let named_port = port_folder.path().join("ttyUSB3");
     assert!(check_ports_as(&[], port_folder.path(), Some(&named_port)).is_ok());

@@ -60,7 +60,7 @@ fn eight_servos_are_exact_to_the_cycle_during_a_flood_of_echoed_bytes() {
                 assert_eq!(interval, frame_length_cycles, "{fidelity:?}, pin {pin}");
             }
         }
-        let echo: Vec<u8> = uno.transmitted().iter().map(|byte| byte.byte).collect();
+        let echo: Vec<u8> = uno.transmitted().iter().map(|sent| sent.byte).collect();
         // The serial line was saturated in both directions. Stock simavr sends more slowly than it receives and
         // therefore loses bytes. The simulation according to the data sheet loses no byte.
         if fidelity == Fidelity::DataSheet {
@@ -91,7 +91,7 @@ fn servo_pins_left_high_are_low_before_the_first_pulse() {
 }
 
 #[test]
-fn the_led_blinks_every_sixteen_frames() {
+fn the_led_toggles_every_sixteen_frames() {
     let mut uno = load_sweep_example(Fidelity::DataSheet);
     uno.run_ms(3_000);
     let blinks = uno.pulses(Pin::d(13));
@@ -117,7 +117,7 @@ fn the_costs_in_the_readme_match_the_example() {
         let number = cell.and_then(|cell| cell.replace(' ', "").parse().ok());
         number.unwrap_or_else(|| panic!("the README has no number in a row {name}: {row:?}"))
     };
-    // The tolerance is 2 %, because another compiler version may save a few bytes.
+    // The tolerance is 2 %, because another compiler version may change the costs slightly.
     let assert_near = |name: &str, measured: f64| {
         let stated_value = read_number(name);
         let error = (measured - stated_value).abs();

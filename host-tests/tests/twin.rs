@@ -4,7 +4,7 @@ use lizard_host::sim::script::{Script, Step};
 use lizard_host::sim::session::play;
 use lizard_host::sim::spans::list_command_spans;
 use lizard_host::twin::replay::Replay;
-use lizard_host::twin::report::compute_rows;
+use lizard_host::twin::report::compute_reports;
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_twin::ServoModel;
 use simulated_uno::{Fidelity, Uno};
@@ -30,7 +30,7 @@ fn walk_all_gaits(model: ServoModel) -> Replay {
 #[test]
 fn the_image_moves_the_body_as_predicted() {
     let model = ServoModel::Ideal;
-    let rows = compute_rows(robot(), &walk_all_gaits(model), model, false);
+    let rows = compute_reports(robot(), &walk_all_gaits(model), model, false);
     let cycles: Vec<_> = rows
         .iter()
         .filter_map(|row| Some((row, row.cycle.as_ref()?)))

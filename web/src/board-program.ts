@@ -76,29 +76,30 @@ export class BoardProgram {
     // The board is gone, or its boot loader already uses the line.
     if (dialogue.isClosed) return false;
     if (board.banner) await board.watch();
-    else if (isRadio) this.reportUnknown(`The module is connected, but no robot answers from the ${link.name}. Check that the module's TXD is on D0, and that the robot is switched on.`);
+    else if (isRadio) this.reportUnknown(`The module is connected, but no robot answers from the ${link.name}. Check that the module's TXD is on D0, and that the robot is switched on.`, false);
     else await this.identifyBootLoader(link);
     return board.link === link && !board.dialogue.isClosed;
   }
 
   /** Identifies a board without this firmware by its boot loader. */
   private async identifyBootLoader(link: Link): Promise<void> {
-    this.hasBootLoader = false;
     let message: string;
+    let hasBootLoader = false;
     try {
       const model = await this.withBootLoader(link, async ({ identify }, line) => identify(line));
       message = `The board is an Arduino ${model}, an ATmega328P according to its boot loader, without this firmware.`;
-      this.hasBootLoader = true;
+      hasBootLoader = true;
     } catch (error) {
       message = `The board does not answer like this firmware: ${getMessage(error)}.`;
     }
     const { board } = this;
     // A write may have begun first, and a started program of this firmware may already have sent its banner.
-    if (board.link === link && !board.dialogue.isClosed && board.banner === undefined) this.reportUnknown(message);
+    if (board.link === link && !board.dialogue.isClosed && board.banner === undefined) this.reportUnknown(message, hasBootLoader);
   }
 
   /** Reports a board on which this firmware does not answer. */
-  private reportUnknown(message: string): void {
+  private reportUnknown(message: string, hasBootLoader: boolean): void {
+    this.hasBootLoader = hasBootLoader;
     this.state.banner.value = null;
     this.listener.onProblem('board', message);
   }
@@ -115,6 +116,11 @@ export class BoardProgram {
       const board = !link.mayBeNano || !needsUno(endAddress) ? Board.Unknown : this.listener.confirmUno() ? Board.Uno : Board.Nano;
       this.board.forgetProgram();
       await upload(line, bytes, isRobotAlone, board, reportProgress);
+    }).catch((error: unknown) => {
+      const { banner, dialogue } = this.board;
+      // The board may still run its previous program.
+      if (this.board.link === link && !dialogue.isClosed && banner === undefined) void this.identify();
+      throw error;
     });
   }
 
@@ -138,7 +144,7 @@ export class BoardProgram {
     // The board is gone, or another write has begun.
     if (board.link !== link || dialogue.isClosed) return null;
     if (!hasSentBanner) {
-      this.reportUnknown(`The ${link.name} sends no banner: the written program is not this firmware.`);
+      this.reportUnknown(`The ${link.name} sends no banner: the written program is not this firmware.`, true);
       return 'the board sends no banner of this firmware';
     }
     const boardHash = isBanner(board.banner) ? board.banner.robot?.hash : null;

@@ -248,6 +248,8 @@ testPage('a HEX file of another program is written only after the user confirms'
   await page.clock.runFor(3000);
   await page.locator('#problems', { hasText: 'sends no banner: the written program is not this firmware.' }).waitFor();
   await page.getByRole('button', { name: 'Write firmware and robot to it' }).waitFor();
+  await page.locator('#setup-steps button', { hasText: 'Firmware' }).click();
+  await page.locator('#setup', { hasText: 'The board on USB is a UNO according to its boot loader, without this firmware.' }).waitFor();
 });
 
 testPage('the page removes the refusal by a board when the board is gone', openWithBoard, async (page) => {

@@ -19,7 +19,7 @@ testPage('the image walks as predicted, and Esc stops it', openStanding, async (
   await assertStops(page);
 });
 
-testPage('the page disables Connect a board if this Firefox has no Web Serial, and only then', openStanding, async (page) => {
+testPage('the button Connect a board is disabled only in a Firefox without Web Serial', openStanding, async (page) => {
   const { hasSerial, note, isConnectDisabled } = await page.evaluate(() => ({
     hasSerial: typeof navigator.serial?.requestPort === 'function',
     note: document.querySelector('#no-serial').hidden ? '' : document.querySelector('#no-serial').textContent,
@@ -37,7 +37,7 @@ testPage('every step of the first connection can be tried with the simulated boa
     await page.evaluate((n) => document.querySelectorAll('#setup-steps button')[n].click(), n);
     await advance(page, 2000);
     assert.match(await readText(page, '#setup-step'), new RegExp(`^${n + 1} of 9: `));
-    // The steps are read from a module that a busy machine loads late.
+    // On a busy machine, the module with the steps loads late.
     await page.waitForFunction(() => document.querySelector('#setup-content').textContent.length > 40);
     assert.doesNotMatch(await readText(page, '#setup-content'), /No robot/);
   }
@@ -47,13 +47,13 @@ testPage('every step of the first connection can be tried with the simulated boa
   assert.match(await readText(page, '#setup-message'), /^Every servo now holds its middle position/);
 });
 
-test('the page fits a phone and a large screen without scrolling sideways', async () => {
+test('the page fits windows 500 and 3840 px wide without scrolling sideways', async () => {
   for (const [width, height] of [[500, 800], [3840, 2160]]) {
     assert.equal(await measureOverflow(await openStanding({ viewport: { width, height } })), 0);
   }
 });
 
-test('the page works without a server once it was opened', async () => {
+test('the page works without a server once it has been opened', async () => {
   const server = await serveInTest(DIST);
   const page = await openStored(server);
   await stopServer(server);

@@ -1,5 +1,5 @@
-// The layout of the page does not change after the first frame, with narrow and with wide letters, and the view of the
-// floor follows the floor's size.
+// The layout of the page does not change after the first frame, with narrow and with wide letters, and the zoom of the
+// floor follows the size of its canvas.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -7,7 +7,7 @@ import { address, advance, openBlankPage, openStanding, useBrowser } from './bro
 
 useBrowser();
 
-/** Returns left, top, width and height of the main elements, CSS pixels. */
+/** Returns the name, left, top, width and height of each main element, CSS pixels. */
 const readBounds = (page) =>
   page.evaluate(() =>
     [...document.querySelectorAll('header, section, details, canvas, button, select, input')].map((node) => {
@@ -23,11 +23,11 @@ function setLetterHeight(height) {
   document.adoptedStyleSheets = [sheet];
 }
 
-for (const [letters, height] of [['narrow', 0.45], ['wide', 0.62]]) {
-  for (const [width, viewHeight] of [[1400, 700], [1280, 800], [390, 844]]) {
-    test(`the layout stays after the first frame: ${letters} letters, ${width} x ${viewHeight} pixels`, async () => {
-      const page = await openBlankPage({ viewport: { width, height: viewHeight } });
-      await page.addInitScript(setLetterHeight, height);
+for (const [letters, letterHeight] of [['narrow', 0.45], ['wide', 0.62]]) {
+  for (const [width, height] of [[1400, 700], [1280, 800], [390, 844]]) {
+    test(`the layout does not change after the first frame: ${letters} letters, ${width} x ${height} pixels`, async () => {
+      const page = await openBlankPage({ viewport: { width, height } });
+      await page.addInitScript(setLetterHeight, letterHeight);
       // Without the stored predictions, as for a user's own robot.
       await page.route(/predictions/, (route) => route.fulfill({ status: 404 }));
       let allowPredictions;
@@ -39,13 +39,13 @@ for (const [letters, height] of [['narrow', 0.45], ['wide', 0.62]]) {
       assert.ok(firstBounds.length > 100);
       await advance(page, 2500);
       await page.waitForFunction(() => /^on a simulated UNO/.test(document.querySelector('#where').textContent));
-      assert.deepEqual(await readBounds(page), firstBounds, 'the robot has started');
+      assert.deepEqual(await readBounds(page), firstBounds, 'the layout changed when the robot started');
       allowPredictions();
       await page.waitForFunction(() => {
         const getDistanceText = (gait) => document.querySelector(`#gaits button[data-command="${gait.command}"] small`).textContent;
         return window.lizard.robot.description.gaits.filter(({ moves }) => moves).every(getDistanceText);
       });
-      assert.deepEqual(await readBounds(page), firstBounds, 'the predictions are shown');
+      assert.deepEqual(await readBounds(page), firstBounds, 'the layout changed when the predictions appeared');
     });
   }
 }
@@ -53,13 +53,13 @@ for (const [letters, height] of [['narrow', 0.45], ['wide', 0.62]]) {
 /** Returns the view's zoom, CSS pixels per mm, and the zoom at which 420 mm of the floor fit. */
 const readZooms = (page) =>
   page.evaluate(async () => {
-    // The next frame is drawn with the current size.
+    // Waits until a frame has been drawn with the current size.
     for (let n = 0; n < 3; n++) await new Promise(requestAnimationFrame);
     const { dataset, clientWidth, clientHeight } = document.querySelector('#floor');
     return [dataset.zoom, (Math.min(clientWidth, clientHeight) / 420).toFixed(4)];
   });
 
-test('the view follows the size of the floor until the user zooms, and again after Back to start', async () => {
+test('the zoom follows the size of the canvas until the user zooms, and again after Back to start', async () => {
   const [large, small] = [{ width: 1400, height: 700 }, { width: 390, height: 568 }];
   const page = await openStanding({ viewport: large });
   const [firstZoom, largeFit] = await readZooms(page);

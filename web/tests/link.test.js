@@ -1,4 +1,5 @@
-// A link that loses lines: a stop reaches the robot, and the page shows only the states that the robot has reported.
+// A link that loses lines, a hidden page, and a robot that restarts: a stop reaches the robot, no gait starts by itself,
+// and the page shows only the states that the robot has reported.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -7,10 +8,10 @@ import { advance, openStanding, readText, useBrowser, hidePage, testPage, clickA
 
 useBrowser();
 
-const readReceivedText = (page) => page.evaluate(() => window.receivedText);
+const readTextReceivedByBoard = (page) => page.evaluate(() => window.receivedText);
 const isStopping = (page) => page.evaluate(() => document.body.classList.contains('stopping'));
 
-/** Drops the lines of the page that contain one of these words, or all its lines if the list is empty. */
+/** Drops the lines from the page to the board that contain one of these words, or all lines if the list is empty. */
 const dropLines = (page, words) =>
   page.evaluate((words) => {
     const board = window.attachedBoard;
@@ -30,7 +31,7 @@ async function startWalk(page) {
 }
 
 /** Presses Esc, and advances the clock by `ms`. */
-async function pressEscape(page, ms) {
+async function pressEscapeAndAdvance(page, ms) {
   await page.keyboard.press('Escape');
   await page.clock.runFor(ms);
 }
@@ -45,17 +46,17 @@ testPage('"stop" is sent at once, and drops a line that waits for a lost answer'
   await dropLines(page, ['status']);
   await runUntil(page, 'a status request is lost', () => page.evaluate(() => window.droppedCount > 0), 20);
   await findGaitButton(page, 'left').click();
-  const receivedLength = (await readReceivedText(page)).length;
-  await pressEscape(page, 40);
-  assert.ok((await readReceivedText(page)).slice(receivedLength).startsWith('stop\n'));
+  const receivedLength = (await readTextReceivedByBoard(page)).length;
+  await pressEscapeAndAdvance(page, 40);
+  assert.ok((await readTextReceivedByBoard(page)).slice(receivedLength).startsWith('stop\n'));
   await page.clock.runFor(4000);
-  assert.ok(!(await readReceivedText(page)).slice(receivedLength).includes('left'), 'no line is sent after "stop"');
+  assert.ok(!(await readTextReceivedByBoard(page)).slice(receivedLength).includes('left'), 'no line is sent after "stop"');
   assert.equal(await readText(page, '#doing'), 'stop');
 });
 
 testPage('a lost "stop" is repeated until the robot answers, and the page is red until then', openWalking, async (page) => {
   await dropLines(page, []);
-  await pressEscape(page, 600);
+  await pressEscapeAndAdvance(page, 600);
   assert.ok(await isStopping(page));
   assert.equal(await readText(page, '#doing'), 'walk', 'the robot has reported no other gait');
   await page.clock.runFor(700);
@@ -70,9 +71,9 @@ testPage('a lost "stop" is repeated until the robot answers, and the page is red
 
 testPage('a robot that rests gets no repeated "stop"', openWithBoard, async (page) => {
   await sendToBoard(page, 'rest');
-  const receivedLength = (await readReceivedText(page)).length;
-  await pressEscape(page, 1500);
-  const sentLines = (await readReceivedText(page)).slice(receivedLength).split('\n');
+  const receivedLength = (await readTextReceivedByBoard(page)).length;
+  await pressEscapeAndAdvance(page, 1500);
+  const sentLines = (await readTextReceivedByBoard(page)).slice(receivedLength).split('\n');
   assert.equal(sentLines.filter((line) => line === 'stop').length, 1);
   assert.equal(await isStopping(page), false);
 });
@@ -81,7 +82,7 @@ testPage('a refusal that the radio has truncated is not mistaken for the answer 
   await dropLines(page, ['stop']);
   await page.keyboard.press('Escape');
   await page.evaluate(() => {
-    for (const letter of 'err 7 the servos are resting; senok walk\r\n') window.attachedBoard.onByte(letter.charCodeAt(0));
+    for (const character of 'err 7 the servos are resting; senok walk\r\n') window.attachedBoard.onByte(character.charCodeAt(0));
   });
   await page.clock.runFor(600);
   assert.ok(await isStopping(page));
@@ -96,11 +97,11 @@ testPage('answers to repeated stops are not mistaken for answers to the next lin
     // The robot's lines arrive a second late.
     board.onByte = (byte) => setTimeout(() => onByte(byte), 1000);
   });
-  await pressEscape(page, 1100);
-  assert.ok((await readReceivedText(page)).split('stop').length > 4, '"stop" was sent again');
+  await pressEscapeAndAdvance(page, 1100);
+  assert.ok((await readTextReceivedByBoard(page)).split('stop').length > 4, '"stop" was sent again');
   await findGaitButton(page, 'left').click();
   await waitForText(page, '#doing', /^left$/);
-  await pressEscape(page, 3000);
+  await pressEscapeAndAdvance(page, 3000);
   assert.equal(await readText(page, '#doing'), 'stop');
 });
 
@@ -119,7 +120,7 @@ testPage('a gait that ended during a silence is shown as ended', openWalking, as
     const board = window.attachedBoard;
     const { onByte } = board;
     board.onByte = () => {};
-    board.send([...'stop\n'].map((letter) => letter.charCodeAt(0)));
+    board.send([...'stop\n'].map((character) => character.charCodeAt(0)));
     setTimeout(() => (board.onByte = onByte), 2000);
   });
   await page.clock.runFor(4000);
@@ -139,20 +140,20 @@ testPage('"stop" is repeated for the simulated UNO, too', openStanding, async (p
   assert.equal(await readText(page, '#doing'), 'stop');
 });
 
-/** Records the times between the lines that the board receives, ms of page time. */
+/** Records the arrivalTimesMs between the lines that the board receives, ms of page time. */
 const recordLineGaps = (page) =>
   page.evaluate(() => {
-    const times = [];
+    const arrivalTimesMs = [];
     const { onReceived } = window.attachedBoard;
     window.attachedBoard.onReceived = (byte, cycle) => {
       onReceived(byte, cycle);
-      if (byte === 10) times.push(performance.now());
+      if (byte === 10) arrivalTimesMs.push(performance.now());
     };
-    window.readLineGapsMs = () => times.slice(1).map((time, n) => time - times[n]);
+    window.readLineGapsMs = () => arrivalTimesMs.slice(1).map((time, n) => time - arrivalTimesMs[n]);
   });
 
-/** Returns true if a servo turns within `ms`, that is, if a pulse changes by more than 1 us. */
-async function isMoving(page, ms) {
+/** Advances the clock by `ms`, and returns true if a servo turns meanwhile, that is, if a pulse changes by more than 1 us. */
+async function runAndDetectMovement(page, ms) {
   const observedWidths = [];
   for (let remainingMs = ms; remainingMs > 0; remainingMs -= 20) {
     // The LED's pin belongs to no servo.
@@ -162,8 +163,8 @@ async function isMoving(page, ms) {
   return observedWidths.some((widths) => widths.some((width, servo) => Math.abs(width - observedWidths[0][servo]) > 1));
 }
 
-testPage('while a user drives, the page sets deadman and sends a line at least three times in that period', openWalking, async (page) => {
-  const lines = (await readReceivedText(page)).split('\n');
+testPage('while a user drives, the page sets deadman to 901 ms and sends at least three lines in that time', openWalking, async (page) => {
+  const lines = (await readTextReceivedByBoard(page)).split('\n');
   assert.ok(lines.indexOf('deadman 901') > 0 && lines.indexOf('deadman 901') < lines.indexOf('walk'), 'deadman is set before the walk');
   await recordLineGaps(page);
   await page.clock.runFor(5000);
@@ -174,10 +175,10 @@ testPage('while a user drives, the page sets deadman and sends a line at least t
 });
 
 testPage('a robot out of range stops, and reports the reason when it is in range again', openWalking, async (page) => {
-  assert.ok(await isMoving(page, 500));
+  assert.ok(await runAndDetectMovement(page, 500));
   await dropLines(page, []);
   await page.clock.runFor(901 + 40);
-  assert.equal(await isMoving(page, 500), false);
+  assert.equal(await runAndDetectMovement(page, 500), false);
   await restoreLink(page);
   await page.clock.runFor(3000);
   assert.equal(await readText(page, '#doing'), 'stop');
@@ -191,23 +192,23 @@ testPage('stopping the robot restores its own deadman', openWithBoard, async (pa
   await sendToBoard(page, 'deadman 5000');
   await findGaitButton(page, 'walk').click();
   await page.clock.runFor(1500);
-  // The robot's own setting is saved.
+  // The robot's own setting is saved, not the page's.
   await sendToBoard(page, 'save');
   await sendToBoard(page, 'cal');
   await page.locator('#log div', { hasText: /^# deadman 5000$/ }).waitFor();
   assert.equal(await readText(page, '#doing'), 'walk');
-  await pressEscape(page, 1500);
-  assert.match(await readReceivedText(page), /deadman 901\n[^]*save\n[^]*deadman 901\n[^]*stop\n[^]*deadman 5000\n(status\n)*$/);
+  await pressEscapeAndAdvance(page, 1500);
+  assert.match(await readTextReceivedByBoard(page), /deadman 901\n[^]*save\n[^]*deadman 901\n[^]*stop\n[^]*deadman 5000\n(status\n)*$/);
 });
 
 testPage('a board gets its own deadman back after a walk in which its settings were replaced', openWalking, async (page) => {
   await sendToBoard(page, 'factory');
   await page.clock.runFor(1000);
-  await pressEscape(page, 1000);
-  assert.match(await readReceivedText(page), /\nfactory\n[^]*\ndeadman 0\n/);
+  await pressEscapeAndAdvance(page, 1000);
+  assert.match(await readTextReceivedByBoard(page), /\nfactory\n[^]*\ndeadman 0\n/);
 });
 
-testPage('a walk keeps its deadman if the settings are read before its answer', openWithBoard, async (page) => {
+testPage('the page sets deadman again if it reads the settings before a walk is answered', openWithBoard, async (page) => {
   await page.evaluate(() => {
     const { attachedBoard, lizard } = window;
     const { send } = attachedBoard;
@@ -218,7 +219,7 @@ testPage('a walk keeps its deadman if the settings are read before its answer', 
   });
   await startWalk(page);
   await page.clock.runFor(1000);
-  assert.match(await readReceivedText(page), /\nwalk\n[^]*deadman 0\ncal\n[^]*deadman 901\n/);
+  assert.match(await readTextReceivedByBoard(page), /\nwalk\n[^]*deadman 0\ncal\n[^]*deadman 901\n/);
 });
 
 testPage('a walk whose answer is lost keeps its deadman until it ends', openWithBoard, async (page) => {
@@ -237,18 +238,18 @@ testPage('a walk whose answer is lost keeps its deadman until it ends', openWith
   await waitForText(page, '#problems', /no answer to "walk"/);
   await waitForText(page, '#doing', /^walk$/);
   await page.clock.runFor(1000);
-  assert.doesNotMatch(await readReceivedText(page), /\nwalk\n[^]*deadman 0\n/);
-  await pressEscape(page, 1000);
-  assert.match(await readReceivedText(page), /\nstop\n[^]*deadman 0\n/);
+  assert.doesNotMatch(await readTextReceivedByBoard(page), /\nwalk\n[^]*deadman 0\n/);
+  await pressEscapeAndAdvance(page, 1000);
+  assert.match(await readTextReceivedByBoard(page), /\nstop\n[^]*deadman 0\n/);
 });
 
 testPage('a deadman left behind by a page is not mistaken for the robot\'s own', openWithBoard, async (page) => {
-  await page.evaluate(() => window.attachedBoard.send([...'deadman 901\n'].map((letter) => letter.charCodeAt(0))));
+  await page.evaluate(() => window.attachedBoard.send([...'deadman 901\n'].map((character) => character.charCodeAt(0))));
   await page.clock.runFor(500);
   await findGaitButton(page, 'walk').click();
   await page.clock.runFor(1000);
-  await pressEscape(page, 1000);
-  assert.match(await readReceivedText(page), /stop\n[^]*deadman 0\n(status\n)*$/);
+  await pressEscapeAndAdvance(page, 1000);
+  assert.match(await readTextReceivedByBoard(page), /stop\n[^]*deadman 0\n(status\n)*$/);
 });
 
 test('the page treats an HC-05 at a serial port with 9600 baud as a radio', async () => {
@@ -256,7 +257,7 @@ test('the page treats an HC-05 at a serial port with 9600 baud as a radio', asyn
   const page = await openWithBoard('robot', 0, { boardKeepsRunning: true, moduleBaud: 9600, bluetoothService });
   await waitForText(page, '#where', /^on a board on Bluetooth that has not restarted/);
   assert.deepEqual(await page.evaluate(() => window.portRequest.allowedBluetoothServiceClassIds), [bluetoothService]);
-  assert.match(await readReceivedText(page), /^(status\n)+watch 10\n/, 'the page does not wait for a reset');
+  assert.match(await readTextReceivedByBoard(page), /^(status\n)+watch 10\n/, 'the page does not wait for a reset');
   const baudRate = await page.evaluate(() => window.attachedBoard.uno.usart.baudRate);
   assert.ok(Math.abs(baudRate / 9600 - 1) < 0.03, `the chip has not found the baud rate: ${baudRate} baud`);
   assert.ok(await page.locator('#flash-write').isDisabled());
@@ -275,7 +276,7 @@ testPage('a gait that waits for the confirmation of deadman does not start on a 
   await findGaitButton(page, 'walk').click();
   await hidePage(page);
   await page.clock.runFor(3000);
-  assert.doesNotMatch(await readReceivedText(page), /^walk$/m);
+  assert.doesNotMatch(await readTextReceivedByBoard(page), /^walk$/m);
   assert.equal(await readGait(page), 'stop');
 });
 
@@ -283,7 +284,7 @@ testPage('no gait starts on a hidden page', openWithBoard, async (page) => {
   await hidePage(page);
   await page.evaluate(() => void window.lizard.board.drive('walk'));
   await page.clock.runFor(3000);
-  assert.doesNotMatch(await readReceivedText(page), /^walk$/m);
+  assert.doesNotMatch(await readTextReceivedByBoard(page), /^walk$/m);
   assert.match(await readText(page, '#problems'), /"walk" was not sent, because the page is hidden\./);
 });
 
@@ -296,7 +297,7 @@ testPage('a gait that waits for an answer does not start after a restart of the 
   await findGaitButton(page, 'left').click();
   await cutSupply(page);
   await page.clock.runFor(3500);
-  assert.doesNotMatch(await readReceivedText(page), /^left$/m);
+  assert.doesNotMatch(await readTextReceivedByBoard(page), /^left$/m);
   assert.equal(await readGait(page), 'stand');
 });
 
@@ -304,7 +305,7 @@ testPage('after a restart of a walking robot, the page sends no line that would 
   await cutSupply(page);
   await page.clock.runFor(3500);
   assert.equal(await readGait(page), 'stand');
-  assert.doesNotMatch(await readReceivedText(page), /^deadman 0$/m);
+  assert.doesNotMatch(await readTextReceivedByBoard(page), /^deadman 0$/m);
 });
 
 testPage('a gait that waits for the confirmation of deadman does not start after a restart of the robot', openWithBoard, async (page) => {
@@ -312,13 +313,13 @@ testPage('a gait that waits for the confirmation of deadman does not start after
   await findGaitButton(page, 'walk').click();
   await cutSupply(page);
   await page.clock.runFor(4500);
-  assert.doesNotMatch(await readReceivedText(page), /^walk$/m);
+  assert.doesNotMatch(await readTextReceivedByBoard(page), /^walk$/m);
   assert.equal(await readGait(page), 'stand');
 });
 
 testPage('after a lost confirmation of deadman, the next press of a gait starts it', openWithBoard, async (page) => {
   // Another sender has started the robot.
-  await page.evaluate(() => window.attachedBoard.send([...'walk\n'].map((letter) => letter.charCodeAt(0))));
+  await page.evaluate(() => window.attachedBoard.send([...'walk\n'].map((character) => character.charCodeAt(0))));
   await waitForText(page, '#doing', /^walk$/);
   await dropLines(page, ['deadman']);
   await findGaitButton(page, 'left').click();
@@ -333,5 +334,5 @@ testPage('a hidden page stops sending the lines that keep a robot walking', open
   await dropLines(page, ['stop']);
   await hidePage(page);
   await page.clock.runFor(3000);
-  assert.equal(await isMoving(page, 500), false);
+  assert.equal(await runAndDetectMovement(page, 500), false);
 });

@@ -241,6 +241,18 @@ testPage('the dialog reports a restarted board and the loss of unsaved settings'
   await page.evaluate(() => window.attachedBoard.reset('external'));
   await waitForMessage(page, /^The board has restarted\. Unsaved settings are lost\.$/);
   await pressAndWait(page, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
+  // The next movement notices a restart whose banner is lost.
+  await goToStep(page, 'Signs', 4000);
+  await pressAndWait(page, 'Turn A1', /^A1 received the command to turn by 10°/);
+  await page.evaluate(() => {
+    const board = window.attachedBoard;
+    const { onByte } = board;
+    board.onByte = () => {};
+    board.reset('external');
+    setTimeout(() => (board.onByte = onByte), 2000);
+  });
+  await page.clock.runFor(2100);
+  await pressAndWait(page, 'Turn A1 again', /^The board has restarted\. Unsaved settings are lost\.$/);
 });
 
 testPage('leaving restores the calibration, and the dialog opens again at the same step', () => openWithBoard('robot', 4500), async (page) => {

@@ -139,7 +139,13 @@ testPage('a robot whose format the firmware does not read is refused, and the fi
 
 testPage('the robot alone is written to a board that has not restarted', () => openWithBoard('large', 5000, { boardKeepsRunning: true }), async (page) => {
   assert.match(await readText(page, '#where'), /that has not restarted/);
-  await page.evaluate(() => (window.boardKeepsRunning = false));
+  await page.evaluate(() => {
+    window.boardKeepsRunning = false;
+    window.attachedBoard.reset = () => {};
+  });
+  await pressAndWait(page, '#flash-robot', /^not written: no boot loader answers/);
+  await waitForText(page, '#where', /that has not restarted/);
+  await page.evaluate(() => delete window.attachedBoard.reset);
   await pressAndWait(page, '#flash-robot', /^written and verified in [\d.]+ s$/);
   await assertFlash(page, SECTION_START, await makeSection('robot'));
 });

@@ -164,6 +164,6 @@ int Servo::readMicroseconds() const { return widthCycles / 16; }
 // One microsecond is added, because `write` rounds down.
 int Servo::read() const { return map(readMicroseconds() + 1, minUs, maxUs, 0, 180); }
 
-uint8_t Servo::frames() { return frameCount; }
+uint8_t Servo::frameCount() { return ::frameCount; }
 
-uint8_t Servo::late() { return lateEdgeCount; }
+uint8_t Servo::lateEdgeCount() { return ::lateEdgeCount; }

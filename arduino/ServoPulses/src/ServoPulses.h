@@ -2,7 +2,7 @@
 //
 // The library has the functions of Arduino's Servo library: to switch, include this file instead of Servo.h. It drives
 // one to eight servos on any pins except A6 and A7 of an ATmega328P at 16 MHz (UNO, Nano, Pro Mini). It uses Timer1, so
-// analogWrite does not work on pins 9 and 10. A frame, the time between two pulses of a servo, lasts 22.5 ms.
+// analogWrite does not work on pins 9 and 10. Each servo gets one pulse in a frame, which lasts 22.5 ms.
 #ifndef SERVO_PULSES_H
 #define SERVO_PULSES_H
 
@@ -42,10 +42,10 @@ public:
 
   // Returns the number of frames since the first `attach`, modulo 256. Widths that are all written within 2.4 ms
   // after a change of this number take effect together, in the next frame.
-  static uint8_t frames();
+  static uint8_t frameCount();
   // Returns the number of edges that were late because interrupts were blocked for more than 10 us. A pulse that would
   // begin late is omitted, since its width would be wrong. The count stops at 255.
-  static uint8_t late();
+  static uint8_t lateEdgeCount();
 
 private:
   // The servo's number, 0 to 7, or INVALID_SERVO.

@@ -6,7 +6,8 @@
 //! it is the only access to the constant. On any other machine a [`Flash`] is an ordinary reference, so the same code
 //! runs there, even with tables made at run time.
 //!
-//! A read never fails: an index past the end reads the last element, so the program needs no code for a panic.
+//! No access panics: [`Flash::at`] and [`Flash::get`] limit an index past the end to the last element, so the program
+//! needs no code for a panic.
 
 use core::marker::PhantomData;
 #[cfg(target_arch = "avr")]
@@ -27,8 +28,8 @@ impl<T: ?Sized> Clone for Flash<'_, T> {
 
 impl<T: ?Sized> Copy for Flash<'_, T> {}
 
-// SAFETY: while a `Flash` exists, the value at its `address` is not written, so readers on all threads see the same
-// value.
+// SAFETY: by the contract of `Flash::new`, the value at `address` is not written while a `Flash` exists, so readers on
+// all threads see the same value.
 unsafe impl<T: ?Sized + Sync> Sync for Flash<'_, T> {}
 // SAFETY: as above.
 unsafe impl<T: ?Sized + Sync> Send for Flash<'_, T> {}

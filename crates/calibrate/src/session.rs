@@ -230,12 +230,17 @@ impl<C: Console> Session<C> {
         Ok(Some((*gait).to_owned()))
     }
 
-    /// Saves the active settings on the board.
+    /// Saves the active settings on the board. If the board has lost them by a reset, first sends them again.
     ///
     /// # Errors
-    /// Fails if the robot cannot save now.
+    /// Fails if the robot cannot save now, or refuses a setting.
     pub async fn save(&mut self) -> Result<(), C> {
         self.refresh().await?;
+        // Only a wait for the end of a movement notices a reset.
+        let robot_settings = read_settings(&mut self.console).await?;
+        if !robot_settings.is_equivalent_to(&self.active) {
+            send_settings(&mut self.console, &self.active).await?;
+        }
         let result = self.send_line("save").await;
         self.unanswered_save = self.may_be_outdated.then(|| self.active.clone());
         result?;

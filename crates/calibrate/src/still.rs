@@ -15,7 +15,7 @@ const MAX_STATUS_COUNT: u32 = 100;
 /// reset: its frame count is then smaller than before. `frame_count` is the count in the latest status.
 ///
 /// # Errors
-/// Fails if the robot does not answer, or has no pose.
+/// Fails if the robot does not answer, or if its answer cannot be read or has no pose.
 pub(crate) async fn wait_until_still<C: Console>(
     console: &mut C,
     frame_count: &mut u64,
@@ -61,9 +61,9 @@ mod tests {
     use crate::console::Reply;
 
     /// A robot whose `status` answers have these frames and angles of A1; the last answer is repeated.
-    struct ScriptedStatus(Vec<(u64, i32)>);
+    struct ScriptedRobot(Vec<(u64, i32)>);
 
-    impl Console for ScriptedStatus {
+    impl Console for ScriptedRobot {
         type Error = Infallible;
 
         async fn ask(&mut self, _: &str) -> Result<Reply, Infallible> {
@@ -96,7 +96,7 @@ mod tests {
             // The frame count stops, so the wait ends at the time limit.
             (vec![(100, 1), (105, 1)], (1.0, false)),
         ] {
-            let mut robot = ScriptedStatus(states);
+            let mut robot = ScriptedRobot(states);
             let result = pollster::block_on(wait_until_still(&mut robot, &mut 0));
             let result = result.map(|([a1, ..], was_reset)| (a1, was_reset));
             assert_eq!(result, Ok(expected));

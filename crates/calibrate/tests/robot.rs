@@ -342,7 +342,7 @@ fn restore_returns_to_settings_that_were_unsaved_at_the_start_even_after_a_lost_
         (Loss::Answer, None, 3.0),
         (Loss::Line, Some(-1.0), 2.0),
     ] {
-        let mut session = begin_lossy_session(&["trim 1 5", "save", "trim 1 2"], vec![(2, loss)]);
+        let mut session = begin_lossy_session(&["trim 1 5", "save", "trim 1 2"], vec![(3, loss)]);
         block_on(session.change_trim(0, 1.0)).expect("the robot accepts the settings");
         block_on(session.save()).expect_err("the exchange is lost");
         if let Some(change) = later_change {

@@ -3,7 +3,7 @@
 use crate::friction::Twist;
 use crate::travel::Travel;
 
-/// The pose of the body on the floor, in the body's axes at the start of the walk.
+/// The pose of the body on the floor. The floor's axes are the body's axes at the start of the walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyPose {
     /// Distance forward, mm.
@@ -22,7 +22,8 @@ impl BodyPose {
         heading: 0.0,
     };
 
-    /// Returns the pose after a unit of time with a constant twist. The opposite twist leads back exactly.
+    /// Returns the pose after this twist, in which the body's velocities in its own axes are constant. The opposite
+    /// twist leads back, except for rounding.
     pub(crate) fn moved_by_twist(self, [forward, left, turn]: Twist) -> Self {
         // The ratio of the chord's length to the arc's. The chord's direction is the heading at half the turn.
         let half_turn = turn / 2.0;

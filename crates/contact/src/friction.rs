@@ -273,14 +273,15 @@ impl Pads {
                 (inertia.leg_stiffness, [slide[0] - x, slide[1] - y])
             });
             let length_derivative = |[a, b]: Point| (wx * a * ux + wy * b * uy) / length;
+            let with_slope = |row: Point| (row, length_derivative(row));
+            let derivatives = derivatives.map(with_slope);
             // Derivatives of the pad's friction cost plus its leg's inertia cost. Each argument is the derivative of
-            // the slide with respect to one unknown.
+            // the slide with respect to one unknown, with that of the length.
             let first_derivative =
-                |row: Point| load * length_derivative(row) + leg_stiffness * dot(row, slide_change);
-            let second_derivative = |a: Point, b: Point| {
+                |(row, slope): (Point, f64)| load * slope + leg_stiffness * dot(row, slide_change);
+            let second_derivative = |(a, a_slope): (Point, f64), (b, b_slope): (Point, f64)| {
                 let weighted_product = wx * wx * a[0] * b[0] + wy * wy * a[1] * b[1];
-                load * (weighted_product - length_derivative(a) * length_derivative(b)) / length
-                    + leg_stiffness * dot(a, b)
+                load * (weighted_product - a_slope * b_slope) / length + leg_stiffness * dot(a, b)
             };
             cost += load * length + leg_stiffness * dot(slide_change, slide_change) / 2.0;
             for i in 0..3 {
@@ -294,7 +295,7 @@ impl Pads {
             };
             let lag_unit = units.lags[i];
             let [bx, by] = compliance.sweep_derivatives[i];
-            let lag_row = [-bx * lag_unit, -by * lag_unit];
+            let lag_row = with_slope([-bx * lag_unit, -by * lag_unit]);
             let (lag_energy, lag) = (&compliance.lag_energies[i], displacement.lags[i]);
             let expansion = lag_energy.expand(lag, eps / units.slide_size * lag_unit);
             cost += expansion.energy;

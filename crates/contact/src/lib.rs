@@ -13,8 +13,8 @@
 //! reads no file.
 //!
 //! # When not to use it
-//! Feet neither lift nor tilt. Only [`Walker::drive`] models motors and inertia; everything else is quasi-static, so
-//! speed has no effect. For a robot that lifts its feet or moves very fast, use a physics engine.
+//! No leg lifts its foot, and no foot tilts. Only [`Walker::drive`] models motors and inertia; everything else is
+//! quasi-static, so speed has no effect. For a robot that lifts its feet or moves very fast, use a physics engine.
 //!
 //! ```
 //! use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, GroundContact, Stance};

@@ -1,6 +1,6 @@
-//! A servo's motor in a short time step, as a convex energy, which is a function of the servo's lag at the end of the
-//! step. The energy's slope is the sum of the torques of the motor, its damping, its rotor's inertia, and friction. The
-//! contact problem of `friction.rs` can therefore treat a servo like a spring.
+//! A servo's motor in a short time step, as a convex energy: a function of the servo's lag at the end of the step. Its
+//! slope is the sum of the torques of the motor, its damping, its rotor's inertia, friction and the slider. Therefore
+//! the contact problem of `friction.rs` can treat a servo like a spring.
 
 use crate::motor::Motor;
 
@@ -87,7 +87,7 @@ impl MotorStep {
         }
     }
 
-    /// Energy, torque and stiffness at a lag (rad), with the kink of dry friction smoothed over `eps` rad.
+    /// Computes energy, torque and stiffness at a lag (rad), with the kink of dry friction smoothed over `eps` rad.
     pub fn expand(&self, lag: f64, eps: f64) -> Expansion {
         let error = self.target_lead + lag;
         let excess_error = (error.abs() - self.half_dead_band).max(0.0);
@@ -105,23 +105,23 @@ impl MotorStep {
                 0.0,
             ),
         };
-        let deviation = lag - self.coasting_lag;
-        let angle = lag - self.standstill_lag;
-        let smoothed_angle = (angle * angle + eps * eps).sqrt();
-        let (direction, curvature) = match smoothed_angle > 0.0 {
+        let coasting_deviation = lag - self.coasting_lag;
+        let backward_turn = lag - self.standstill_lag;
+        let smoothed_turn = (backward_turn * backward_turn + eps * eps).sqrt();
+        let (direction, curvature) = match smoothed_turn > 0.0 {
             true => (
-                angle / smoothed_angle,
-                eps * eps / (smoothed_angle * smoothed_angle * smoothed_angle),
+                backward_turn / smoothed_turn,
+                eps * eps / (smoothed_turn * smoothed_turn * smoothed_turn),
             ),
             false => (0.0, 0.0),
         };
         Expansion {
             energy: energy
-                + self.inertial_stiffness * deviation * deviation / 2.0
-                + self.pin_torque * smoothed_angle
+                + self.inertial_stiffness * coasting_deviation * coasting_deviation / 2.0
+                + self.pin_torque * smoothed_turn
                 + self.slider_torque * lag,
             torque: torque.copysign(error)
-                + self.inertial_stiffness * deviation
+                + self.inertial_stiffness * coasting_deviation
                 + self.pin_torque * direction
                 + self.slider_torque,
             stiffness: stiffness + self.inertial_stiffness + self.pin_torque * curvature,
@@ -134,16 +134,17 @@ impl MotorStep {
     }
 
     /// Finds the lag (rad) at which the motor's torque equals the load's. `load_at` returns the load's torque and
-    /// stiffness at a lag; the torque is at most `max_load` and changes abruptly at the `kinks`.
+    /// stiffness at a lag; this torque is at most `max_load_torque` and changes abruptly at the `kinks`, in ascending
+    /// order.
     pub fn find_balance_lag(
         &self,
         kinks: [f64; 2],
-        max_load: f64,
+        max_load_torque: f64,
         eps: f64,
         load_at: impl Fn(f64) -> (f64, f64),
     ) -> f64 {
         let max_deviation =
-            (self.stall_torque + self.pin_torque + self.slider_torque.abs() + max_load)
+            (self.stall_torque + self.pin_torque + self.slider_torque.abs() + max_load_torque)
                 / self.inertial_stiffness;
         let mut low = self.coasting_lag - max_deviation;
         let mut high = self.coasting_lag + max_deviation;
@@ -152,8 +153,8 @@ impl MotorStep {
         let mut last_step_length = max_deviation;
         for _ in 0..MAX_ITERATIONS {
             let motor = self.expand(lag, eps);
-            let (load, load_stiffness) = load_at(lag);
-            let torque_error = motor.torque - load;
+            let (load_torque, load_stiffness) = load_at(lag);
+            let torque_error = motor.torque - load_torque;
             match torque_error > 0.0 {
                 true => high = lag,
                 false => low = lag,

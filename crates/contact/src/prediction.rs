@@ -9,7 +9,7 @@ use crate::ground_contact::GroundContact;
 use crate::travel::{Prediction, Travel};
 use crate::walker::Walker;
 
-/// Relative change of a load or of the friction ratio in the test for ties. No printed pad and no floor is more even.
+/// Relative change of a load or of the friction ratio in the test for ties. No real pads on a real floor are more even.
 const UNEVENNESS: f64 = 0.01;
 /// Largest difference between walks on uneven and on even pads at which a component counts as determined, as a
 /// fraction of the path's length or of the sum of all turns.
@@ -23,7 +23,8 @@ const MIN_TURN_TOLERANCE: f64 = 0.5 * std::f64::consts::PI / 180.0;
 struct UnevenWalk {
     /// The robot on the uneven pads.
     walker: Walker,
-    /// Sums, over all steps, of the absolute differences of the twists: forward and left in mm, turn in rad.
+    /// Sums, over all steps, of the absolute differences from the twists on even pads: forward and left in mm, turn in
+    /// rad.
     total_differences: Twist,
 }
 
@@ -62,8 +63,8 @@ impl GroundContact {
     /// Predicts the displacement for a series of sweeps (deg, foot forward positive, servo order), as far as it does
     /// not depend on ties.
     ///
-    /// Six walkers follow the same sweeps on uneven pads: one percent changes either the load of one pad or the
-    /// backward friction of all pads. In a tie the body then follows one pair of feet or the other. A component is
+    /// Six walkers follow the same sweeps on uneven pads: either the load of one pad or the backward friction of all
+    /// pads is changed by one percent. In a tie the body then follows one pair of feet or the other. A component is
     /// determined if its difference from the walk on even pads is within a tolerance. For a distance, the tolerance is
     /// the larger of 1 mm and a twentieth of the path's length; for the turn, the larger of 0.5 deg and a twentieth of
     /// the sum of all turns.
@@ -113,7 +114,7 @@ impl GroundContact {
 
     /// Computes the displacement for a series of sweeps (deg, foot forward positive, servo order), even if it depends
     /// on ties. In a tie the body moves by the twist midway between the twists of the two pairs of feet.
-    pub fn travel(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Travel {
+    pub fn compute_travel(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         let mut sweeps = sweeps.into_iter();
         let mut walker = Walker::new(*self, sweeps.next().unwrap_or_default());
         for next_sweeps in sweeps {
@@ -157,8 +158,8 @@ mod tests {
     #[test]
     fn with_three_feet_against_one_the_displacement_is_determined() {
         let prediction = GROUND.predict(build_cycle(ONE_BY_ONE_STARTS, stroke_wave(0.75)));
-        let is_forward = prediction.forward > Some(25.0);
-        assert!(prediction.is_determined() && is_forward, "{prediction:?}");
+        let is_long = prediction.forward > Some(25.0);
+        assert!(prediction.is_determined() && is_long, "{prediction:?}");
     }
 
     #[test]

@@ -3,8 +3,8 @@
 //! The loads of a rigid body on three feet follow from statics. On four feet they do not: the feet on one diagonal may
 //! carry more and the feet on the other less, and all forces still balance. The lengths of the feet and their stiffness
 //! decide. If a foot is `twist` mm too long, that foot and the diagonally opposite one each carry more by a quarter of
-//! `twist` times the stiffness; the other two carry less by as much. In a gait three feet hold the body while the
-//! fourth swings, which fails if two of the three hardly touch the floor.
+//! `twist` times the stiffness; the other two carry less by as much. In a gait, three feet hold the body while the
+//! fourth swings. They cannot do so if two of the three hardly touch the floor.
 //!
 //! The model therefore treats a foot as a spring that can only push: a foot that would have to pull is in the air.
 
@@ -24,8 +24,8 @@ pub struct Stance {
     pub twist_error: f64,
 }
 
-/// Largest load that counts as zero, as a fraction of the mean.
-const MAX_ZERO_LOAD: f64 = 1e-9;
+/// Largest magnitude of a load that counts as zero, as a fraction of the mean load.
+const LOAD_TOLERANCE: f64 = 1e-9;
 
 impl Stance {
     /// Default values of robot.toml.
@@ -61,8 +61,8 @@ impl Stance {
         let is_consistent = |(is_standing, loads): &&([bool; 4], [f64; 4])| {
             let mut pairs = is_standing.iter().zip(loads);
             pairs.all(|(is_standing, load)| match is_standing {
-                true => *load >= -MAX_ZERO_LOAD,
-                false => *load <= MAX_ZERO_LOAD,
+                true => *load >= -LOAD_TOLERANCE,
+                false => *load <= LOAD_TOLERANCE,
             })
         };
         // A robot that falls over matches no case and gets the loads of the first case.
@@ -83,17 +83,17 @@ fn compute_loads(
     is_standing: [bool; 4],
 ) -> [f64; 4] {
     let mut matrix = [[0.0; 3]; 3];
-    let mut right_side = [4.0, 4.0 * centre_of_mass[0], 4.0 * centre_of_mass[1]];
+    let mut right_hand_side = [4.0, 4.0 * centre_of_mass[0], 4.0 * centre_of_mass[1]];
     for i in (0..4).filter(|&i| is_standing[i]) {
         let row = [1.0, feet[i][0], feet[i][1]];
         for j in 0..3 {
-            right_side[j] -= length_loads[i] * row[j];
+            right_hand_side[j] -= length_loads[i] * row[j];
             for k in 0..3 {
                 matrix[j][k] += row[j] * row[k];
             }
         }
     }
-    let [heave, pitch, roll] = solve_symmetric(matrix, right_side);
+    let [heave, pitch, roll] = solve_symmetric(matrix, right_hand_side);
     std::array::from_fn(|i| length_loads[i] + heave + pitch * feet[i][0] + roll * feet[i][1])
 }
 

@@ -2,7 +2,8 @@
 //!
 //! A tick of the pulses or a received byte wakes the main loop. Each step does one task, and a tick has priority, so a
 //! frame waits for at most one byte or one line. The loop takes no input while it writes the EEPROM (3.4 ms per byte),
-//! or while an answer waits for room in the transmit buffer; but frames continue even if the answers are not read.
+//! or while an answer waits for room in the transmit buffer; but frames and EEPROM writes continue even if the answers
+//! are not read.
 //!
 //! The loop computes one frame per tick. If several ticks have passed, the loop still computes only one frame: of
 //! several frames only the last would be played, and the servos would jump. While the pulses run, the loop also skips a
@@ -157,6 +158,7 @@ impl Main {
     #[inline(always)]
     pub fn step<B: Board>(&mut self, board: &mut B) -> StepResult {
         let ticks = board.ticks();
+        let has_output = self.console.has_output(&self.control);
         if ticks != self.last_tick {
             self.last_tick = ticks;
             if board.is_frame_taken() {
@@ -179,10 +181,7 @@ impl Main {
             if let Some(rate) = self.console.advance_frame(&self.control) {
                 board.set_rate(rate);
             }
-        } else if self.console.has_output(&self.control) {
-            if board.room() < MAX_OUTPUT_LINE_BYTES {
-                return StepResult::Idle(self.last_tick);
-            }
+        } else if has_output && board.room() >= MAX_OUTPUT_LINE_BYTES {
             let counters = board.counters();
             let out = board.writer();
             self.console.write_line(&mut self.control, out, counters);
@@ -192,7 +191,7 @@ impl Main {
             if let Some(outcome) = self.control.advance_operation(board.memory()) {
                 self.console.finish_order(outcome);
             }
-        } else if let Some(byte) = board.receive() {
+        } else if !has_output && let Some(byte) = board.receive() {
             let was_resting = self.control.motion().is_resting();
             self.console.receive(byte, &mut self.control);
             // The servo state is stored before the answer is written, because a reset may follow the answer at once.

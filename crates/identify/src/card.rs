@@ -30,9 +30,9 @@ impl CardPose {
             left: self.left,
             turn: self.turn,
         };
-        let end = BodyPose::START.moved_by_travel(robot_travel);
-        let start_of_card = BodyPose::START.moved_by_travel(to_card);
-        let card_travel = end.moved_by_travel(to_card).travel_from(start_of_card);
+        let robot_end = BodyPose::START.moved_by_travel(robot_travel);
+        let card_start = BodyPose::START.moved_by_travel(to_card);
+        let card_travel = robot_end.moved_by_travel(to_card).travel_from(card_start);
         [card_travel.forward, card_travel.left, card_travel.turn]
     }
 }
@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn a_card_in_front_of_the_chassis_centre_moves_around_it() {
-        // A quarter turn about the chassis centre leads from 10 mm in front of it to 10 mm to its left.
+        // A quarter turn about the chassis centre moves the card from 10 mm in front of it to 10 mm to its left.
         assert_card_travel([0.0, 10.0, 0.0], [0.0, 0.0, 90.0], [-10.0, 10.0, 90.0]);
     }
 }

@@ -6,8 +6,8 @@
 //! unknown which of the two linkages the leg has become. The margin is therefore signed: positive between the change
 //! points on the side on which the leg was assembled, negative beyond them.
 //!
-//! The paper's half-angle formulas for the follower give the anti-parallelogram for
-//! 0 < theta_lg < 180, have wrong signs in J and L, and have theta1 in H for all four legs.
+//! The paper's half-angle formulas for the follower give the anti-parallelogram for 0 < theta_lg < 180. Their J and L
+//! have wrong signs, and their H contains theta1 for all four legs.
 
 use crate::angle::wrap;
 use crate::end::End;

@@ -1,12 +1,12 @@
-//! The range of a prediction when one of its assumptions varies over its plausible values.
+//! The range of a prediction when one assumption at a time is moved to an end of its plausible range.
 
 use lizard_robot::{CheckedGait, MovementRange, Robot};
 use serde::Serialize;
 
 use crate::component::COMPONENT_LABELS;
 
-/// The smallest and the largest predicted movement per cycle, forward or turn, when one assumption at a time is moved
-/// to an end of its plausible range.
+/// The smallest and the largest predicted movement per cycle, ahead or turn, when one assumption at a time is moved to
+/// an end of its plausible range.
 #[derive(Debug, Serialize)]
 pub(crate) struct PredictionRange {
     /// The component of the movement, one of [`COMPONENT_LABELS`].
@@ -42,13 +42,15 @@ impl PredictionRange {
 
     /// Formats the range as a line of text.
     pub(crate) fn format_line(&self) -> String {
-        let (name, unit) = self.component.split_once(", ").unwrap_or_default();
+        let (component_name, unit) = self.component.split_once(", ").unwrap_or_default();
         let format_bound = |movement: f64, assumption: Option<&str>| {
             let assumption = assumption.unwrap_or("as in robot.toml");
             format!("{movement:+.2} {unit} ({assumption})")
         };
         let min_text = format_bound(self.min, self.min_assumption);
         let max_text = format_bound(self.max, self.max_assumption);
-        format!("predicted {name} with one assumption changed: {min_text} to {max_text}\n")
+        format!(
+            "predicted {component_name} with one assumption changed: {min_text} to {max_text}\n"
+        )
     }
 }

@@ -38,7 +38,7 @@ pub enum BuildError {
     Dimension(String),
     /// A screw that cannot be reached.
     #[error(
-        "{0}, at every pose; other links, or other dimensions under [parts] in robot.toml, may make room"
+        "{0}, at every pose that was tried; other links, or other dimensions under [parts] in robot.toml, may make room"
     )]
     Blocked(#[from] BlockedScrew),
     /// A part, by name, whose layers do not form a single closed body.
@@ -48,7 +48,7 @@ pub enum BuildError {
     OpenSurface(String),
 }
 
-/// Two parts whose collision prevents a robot from being built.
+/// Two parts that do not stay clear of each other, so the robot cannot be built.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CollidingPair {
     /// Name of one body.
@@ -62,7 +62,7 @@ pub struct CollidingPair {
 }
 
 impl BuildError {
-    /// The parts that collide or may collide; `None` if the error has another reason.
+    /// The parts that overlap, come too close, or may overlap; `None` if the error has another reason.
     pub fn colliding_pair(&self) -> Option<CollidingPair> {
         let (first, second, mm, pose) = match self {
             Self::Clash(Clash::Overlap(pair) | Clash::Narrow(pair)) => {
@@ -100,7 +100,8 @@ impl Assembly {
     /// guard accepts, and every screw can be reached. The collision proof takes seconds.
     ///
     /// # Errors
-    /// Returns the first dimension that does not fit, the two parts that overlap most, or a screw without access.
+    /// Returns the first error of [`Self::check_dimensions`], the two parts that clash worst, or a screw without
+    /// access.
     pub fn check_fit(&self) -> Result<(), BuildError> {
         self.check_dimensions()?;
         self.prove(|_, _| ()).check()?;
@@ -111,7 +112,8 @@ impl Assembly {
     /// Checks that the dimensions in robot.toml are consistent.
     ///
     /// # Errors
-    /// Returns the first dimension that does not fit.
+    /// Returns the first dimension that does not fit, a part whose layers do not form one body, or two parts that
+    /// overlap and move together.
     pub fn check_dimensions(&self) -> Result<(), BuildError> {
         let (robot, stack) = (self.robot(), self.stack());
         let (parts, drive) = (robot.parts(), robot.drive());
@@ -216,7 +218,8 @@ impl Assembly {
         Ok(())
     }
 
-    /// The layers of a body that must not overlap others: all layers, but only the head of a self-tapping screw.
+    /// The layers of a body that must not overlap others: all its layers, or only the head if it is a self-tapping
+    /// screw.
     fn layers_without_thread<'a>(&self, body: &'a Body) -> &'a [Prism] {
         let nut_name = body.name.replacen("screw", "nut", 1);
         match (body.kind, &body.prisms[..]) {
@@ -252,7 +255,7 @@ fn choose_overlap_advice(a: &Body, b: &Body) -> &'static str {
 /// Computes the smallest distance in plan view between layers of two bodies at a common height, mm; negative if they
 /// overlap. A shape is clear of a layer if it lies beside the layer's shapes or inside one of the layer's holes.
 fn compute_min_layer_gap(a: &[Prism], b: &[Prism]) -> f64 {
-    let layer_gap = |shape: &Shape, holes: &[Shape], gap_beside: f64| {
+    let shape_gap = |shape: &Shape, holes: &[Shape], gap_beside: f64| {
         let holes = holes.iter();
         let depths = holes.map(|hole| shape.depth_in(hole, Vector::default()));
         depths.fold(gap_beside, f64::max)
@@ -262,8 +265,8 @@ fn compute_min_layer_gap(a: &[Prism], b: &[Prism]) -> f64 {
     for (p, q) in layers.filter(|(p, q)| p.z[0] <= q.z[1] - 1e-6 && q.z[0] <= p.z[1] - 1e-6) {
         for first in &p.filled_shapes {
             for second in &q.filled_shapes {
-                let gap = layer_gap(first, &q.cut_shapes, first.distance(second));
-                min_gap = min_gap.min(layer_gap(second, &p.cut_shapes, gap));
+                let gap = shape_gap(first, &q.cut_shapes, first.distance(second));
+                min_gap = min_gap.min(shape_gap(second, &p.cut_shapes, gap));
             }
         }
     }

@@ -23,7 +23,7 @@ pub struct Part {
     pub name: String,
     /// Names of the bodies that are printed as this part.
     pub body_names: Vec<String>,
-    /// Layers as printed, each a prism: from z = 0 up, with the larger face below.
+    /// Layers in the orientation of printing, from z = 0 up, without the mark and the bridges.
     pub prisms: Vec<Prism>,
     /// True if the part is flipped (turned over) for printing.
     pub is_flipped: bool,
@@ -31,7 +31,8 @@ pub struct Part {
     pub is_flexible: bool,
     /// Name of the part that this part may replace; `None` for a part of the robot itself.
     pub replaces: Option<String>,
-    /// Engraved digits: the numbers of the part's servos, such as `13` for A1 and A3. Empty if its noun is unique.
+    /// Engraved digits: the numbers of the part's servos, such as `13` for A1 and A3. Empty if no other part has
+    /// the same noun.
     pub mark: String,
 }
 
@@ -49,7 +50,7 @@ impl Part {
         }
     }
 
-    /// Number of pieces needed.
+    /// Number of pieces of this part in a robot.
     pub fn count(&self) -> usize {
         self.body_names.len()
     }
@@ -66,8 +67,9 @@ impl Part {
         roof::bridge_unsupported_holes(&marked_prisms.unwrap_or_else(|| self.prisms.clone()))
     }
 
-    /// Finds the centres of the bridged holes, which are drilled later, in the frame of the printed part, mm.
-    pub fn find_bridged_holes(&self) -> Vec<Vector> {
+    /// Finds the centres of the bridged holes in the frame of the printed part, mm; the holes are drilled after
+    /// printing.
+    pub fn find_bridged_hole_centres(&self) -> Vec<Vector> {
         let holes = roof::find_unsupported_holes(&self.prisms).into_iter();
         holes.map(|(hole, _)| hole.middle()).collect()
     }
@@ -82,8 +84,8 @@ impl Part {
         }
     }
 
-    /// True if a body is printed as this part.
-    pub fn has_body(&self, body: &Body) -> bool {
+    /// True if this part is the printed form of the body.
+    pub fn prints_body(&self, body: &Body) -> bool {
         self.body_names.contains(&body.name)
     }
 
@@ -154,7 +156,10 @@ fn format_servo_digits(names: &[String]) -> String {
     digits.collect()
 }
 
-/// Finds the printed parts of these bodies; equal bodies have a common part.
+/// A body is flipped for printing if its first layer has less than this fraction of its last layer's area.
+const MAX_FLIPPED_AREA_RATIO: f64 = 0.7;
+
+/// Finds the printed parts of these bodies; equal bodies share one part.
 fn find_distinct_parts(bodies: &[Body]) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     for body in bodies.iter().filter(|body| body.kind.is_printed()) {
@@ -179,11 +184,13 @@ fn find_distinct_parts(bodies: &[Body]) -> Vec<Part> {
 }
 
 /// Converts a body's layers to the frame in which they are printed. The second value is true if the body is flipped for
-/// printing. The first shape is at the origin and the first bar along x, so equal parts have equal layers.
+/// printing. Except on the chassis, the first shape is at the origin and the first bar along x, so equal bodies have
+/// equal layers.
 fn to_print_layers(body: &Body) -> (Vec<Prism>, bool) {
     let layer_area =
         |prism: Option<&Prism>| prism.map_or(0.0, |prism| Outline::from_prism(prism).area());
-    let is_flipped = layer_area(body.prisms.first()) < 0.7 * layer_area(body.prisms.last());
+    let [first_area, last_area] = [body.prisms.first(), body.prisms.last()].map(layer_area);
+    let is_flipped = first_area < MAX_FLIPPED_AREA_RATIO * last_area;
     let [low, high] = body.z();
     let frame = compute_print_frame(body);
     let to_print_frame = |shape: &Shape| {

@@ -2,7 +2,7 @@
 //!
 //! Every condition of a safe pose depends on one servo (a leg), on an end's two servos or on a side's two servos. It is
 //! therefore enough to try every pair of positions of each end and each side, in the firmware's angle steps. This
-//! decides every possible pose: 1.8e18 poses for servos with a travel of half a turn. Only a [`PairSample`] leaves out
+//! decides every possible pose: 1.2e18 poses for servos with a travel of half a turn. Only a [`PairSample`] leaves out
 //! pairs.
 //!
 //! [`Proof::compute`] computes the whole proof. The pieces of a [`GuardComparison`] can also be computed on several

@@ -394,7 +394,7 @@ impl Robot {
     pub fn predict_travel(&self, angles: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         self.ground()
             .with_rigid_drive()
-            .travel(angles.into_iter().map(|angles| self.sweeps(angles)))
+            .compute_travel(angles.into_iter().map(|angles| self.sweeps(angles)))
     }
 
     /// Predicts the displacement over one cycle of a gait on the robot's own floor.

@@ -39,7 +39,7 @@ struct uno {
 	struct recorder recorder;        /* edges of the pins, and marks in GPIOR0 */
 	struct handlers handlers;        /* cycles spent in interrupt handlers */
 	struct call_timer call_timer;    /* times the calls of one function */
-	struct serial_bytes transmitted; /* bytes that the firmware has sent */
+	struct serial_record transmitted; /* bytes that the firmware has sent */
 	struct stock_uart stock_uart;    /* simavr's USART; receives only in the stock fidelity */
 	struct sender sender;            /* the other end of the serial cable */
 	struct disturbance disturbance;  /* interrupts and stalls imposed by a test */

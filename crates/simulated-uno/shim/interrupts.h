@@ -14,17 +14,18 @@
 struct interrupts {
 	const struct instruction *instruction;
 	avr_t *avr;
-	/* EE_READY has no flag: it is requested as long as the EEPROM is not busy. */
+	/* EE_READY has no flag: it is pending as long as the EEPROM is not busy. */
 	const avr_int_vector_t *eeprom_ready;
 	const bool *is_eeprom_busy;
 	bool ends_sleep;  /* the next interrupt to be served wakes the CPU */
 	bool needs_check; /* a flag or an enable bit has changed since the last check of all interrupts */
 };
 
+/* Takes over simavr's handling of interrupts. */
 void interrupts_attach(struct interrupts *interrupts, const struct instruction *instruction);
 /* Requests a check of all interrupts after the current instruction; must be called when a flag or
  * an enable bit has changed. */
 void interrupts_request_check(struct interrupts *interrupts);
-/* Enters the handler of the pending interrupt with the highest priority. Returns true if it has
- * entered a handler, which takes cycles. */
+/* If interrupts are enabled, enters the handler of the pending interrupt with the highest priority.
+ * Returns true if it has entered a handler, which takes cycles. */
 bool interrupts_serve(struct interrupts *interrupts);

@@ -15,13 +15,13 @@ void list_push(struct list *list, const void *item)
 	memcpy((char *)list->items + list->item_size * list->count++, item, list->item_size);
 }
 
-void serial_bytes_init(struct serial_bytes *bytes)
+void serial_record_init(struct serial_record *record)
 {
-	*bytes = (struct serial_bytes){ .bytes.item_size = sizeof(struct serial_byte) };
+	*record = (struct serial_record){ .bytes.item_size = sizeof(struct serial_byte) };
 }
 
-void serial_bytes_push(struct serial_bytes *bytes, uint64_t cycle, uint8_t byte)
+void serial_record_push(struct serial_record *record, uint64_t cycle, uint8_t byte)
 {
-	list_push(&bytes->bytes, &(struct serial_byte){ cycle, byte });
-	bytes->has_line_ended |= byte == '\n';
+	list_push(&record->bytes, &(struct serial_byte){ cycle, byte });
+	record->has_line_ended |= byte == '\n';
 }

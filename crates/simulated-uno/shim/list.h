@@ -1,5 +1,5 @@
-/* Growing arrays. A reader may read `items` and `count`, and may empty the list by setting
- * `count` to 0.
+/* A list that grows, and the bytes of a serial line in such a list. A reader may read a list's
+ * `items` and `count`, and may empty it by setting `count` to 0.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -21,10 +21,10 @@ void list_push(struct list *list, const void *item);
 struct serial_byte { uint64_t cycle; uint8_t byte; };
 
 /* The bytes of one direction of the serial line. */
-struct serial_bytes {
+struct serial_record {
 	struct list bytes;  /* struct serial_byte */
-	bool has_line_ended; /* true after a line feed, until the reader resets it */
+	bool has_line_ended; /* set by each line feed; only the reader clears it */
 };
 
-void serial_bytes_init(struct serial_bytes *bytes);
-void serial_bytes_push(struct serial_bytes *bytes, uint64_t cycle, uint8_t byte);
+void serial_record_init(struct serial_record *record);
+void serial_record_push(struct serial_record *record, uint64_t cycle, uint8_t byte);

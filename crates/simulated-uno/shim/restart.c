@@ -5,12 +5,12 @@
  * reset. */
 static void release_pins_and_stop_timers(struct uno *uno)
 {
-	static const uint16_t control_registers[] = {
+	static const uint16_t timer_control_registers[] = {
 		REG_TCCR0B, REG_TCCR1B, REG_TCCR2B, REG_TCCR0A, REG_TCCR1A, REG_TCCR2A,
 	};
 	recorder_release_pins(&uno->recorder);
-	for (size_t i = 0; i < ARRAY_SIZE(control_registers); i++)
-		chip_store(uno->avr, control_registers[i], 0);
+	for (size_t i = 0; i < ARRAY_SIZE(timer_control_registers); i++)
+		chip_store(uno->avr, timer_control_registers[i], 0);
 }
 
 void restart(struct uno *uno, uint8_t causes)
@@ -21,7 +21,7 @@ void restart(struct uno *uno, uint8_t causes)
 		reset_fill_sram(&uno->reset);
 	if (causes & RESET_WATCHDOG)
 		uno->watchdog_resets++;
-	/* Before avr_reset, which calls watchdog_reset, which reads WDRF. */
+	/* Must precede avr_reset, in which watchdog_reset reads WDRF. */
 	reset_record(&uno->reset, causes, uno->avr->cycle);
 	avr_reset(uno->avr);
 	uno->avr->data[REG_MCUSR] = uno->reset.mcusr;

@@ -32,7 +32,7 @@ static avr_cycle_count_t deliver_byte(avr_t *avr, avr_cycle_count_t when, void *
 	const struct receiver *receiver = &sender->receiver;
 	uint8_t received = receiver->receive_byte(receiver->param, sender->current_byte,
 	                                          sender->current_cycles_per_bit);
-	serial_bytes_push(&sender->delivered, avr->cycle, received);
+	serial_record_push(&sender->delivered, avr->cycle, received);
 	/* Check again when the line is free, even if the queue is empty now: a byte that is queued
 	 * meanwhile starts at that cycle. */
 	chip_call_at(avr, ceil(sender->line_free_at), begin_byte, sender);
@@ -80,7 +80,7 @@ void sender_attach(struct sender *sender, avr_t *avr, struct receiver receiver, 
 		.queue.item_size = sizeof(struct line_byte),
 		.flood.item_size = sizeof(struct line_byte),
 	};
-	serial_bytes_init(&sender->delivered);
+	serial_record_init(&sender->delivered);
 	sender_set_baud(sender, baud);
 }
 

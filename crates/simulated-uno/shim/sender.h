@@ -37,7 +37,7 @@ struct sender {
 	struct line_byte current_byte;  /* the byte on the line while `is_busy` */
 	double current_cycles_per_bit;  /* the length of its bits */
 	bool is_busy;                   /* a byte is on the line, and the receiver has not read it yet */
-	struct serial_bytes delivered;  /* bytes that have arrived at the receiver */
+	struct serial_record delivered;  /* bytes that have arrived at the receiver */
 };
 
 void sender_attach(struct sender *sender, avr_t *avr, struct receiver receiver, double baud);

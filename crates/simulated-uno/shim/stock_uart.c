@@ -5,16 +5,17 @@ static void on_transmit(struct avr_irq_t *irq, uint32_t value, void *param)
 {
 	struct stock_uart *stock = param;
 	uint64_t cycle = instruction_effect_cycle(stock->instruction);
-	serial_bytes_push(stock->transmitted, cycle, value);
+	serial_record_push(stock->transmitted, cycle, value);
 }
 
-/* In stock simavr, a frame has 11 bits. At the sender's true rate, a long stream would overflow
- * simavr's receive buffer of 64 bytes, so the sender sends no faster than simavr receives. */
+/* In stock simavr, a frame has 11 bits, so it takes longer than the sender's. At the sender's true
+ * rate, a long stream would overflow simavr's receive buffer of 64 bytes, so the sender sends no
+ * faster than simavr receives. */
 static double begin_frame(void *param, double sender_frame_cycles)
 {
 	const struct stock_uart *stock = param;
-	double min_cycles = stock->uart->cycles_per_byte;
-	return min_cycles < sender_frame_cycles ? sender_frame_cycles : min_cycles;
+	double min_frame_cycles = stock->uart->cycles_per_byte;
+	return min_frame_cycles < sender_frame_cycles ? sender_frame_cycles : min_frame_cycles;
 }
 
 static uint8_t receive_byte(void *param, struct line_byte byte, double cycles_per_bit)
@@ -26,7 +27,7 @@ static uint8_t receive_byte(void *param, struct line_byte byte, double cycles_pe
 }
 
 void stock_uart_attach(struct stock_uart *stock, const struct instruction *instruction,
-                       struct serial_bytes *transmitted)
+                       struct serial_record *transmitted)
 {
 	avr_t *avr = instruction->avr;
 	stock->uart = avr->io[AVR_DATA_TO_IO(REG_UDR0)].r.param;

@@ -13,11 +13,11 @@
 struct stock_uart {
 	avr_uart_t *uart;                       /* simavr's USART0 */
 	const struct instruction *instruction;  /* the current one, for the cycle of a transmitted byte */
-	struct serial_bytes *transmitted;       /* record of the transmitted bytes */
+	struct serial_record *transmitted;       /* record of the transmitted bytes */
 };
 
 /* Switches off simavr's pauses and its echo to stdout, and records the transmitted bytes. */
 void stock_uart_attach(struct stock_uart *stock, const struct instruction *instruction,
-                       struct serial_bytes *transmitted);
+                       struct serial_record *transmitted);
 /* Returns a receiver that passes the sender's bytes to this UART. */
 struct receiver stock_uart_receiver(struct stock_uart *stock);

@@ -91,6 +91,7 @@ struct uno *uno_new(bool follows_data_sheet, double baud)
 		abort(); /* out of memory, or a libsimavr without the UNO's chip */
 	avr->custom.data = uno;
 	avr_init(avr);
+	disable_level_polling(avr); /* its first poll would never be freed */
 	widen_data_space(avr);
 	avr->frequency = CHIP_FREQUENCY;
 	avr->vcc = avr->avcc = avr->aref = 5000;
@@ -103,7 +104,7 @@ struct uno *uno_new(bool follows_data_sheet, double baud)
 	handlers_attach(&uno->handlers, avr);
 	call_timer_attach(&uno->call_timer, &uno->handlers);
 	uno->disturbance = (struct disturbance){ .avr = avr, .handlers = &uno->handlers };
-	serial_bytes_init(&uno->transmitted);
+	serial_record_init(&uno->transmitted);
 	stock_uart_attach(&uno->stock_uart, &uno->instruction, &uno->transmitted);
 	struct receiver receiver = stock_uart_receiver(&uno->stock_uart);
 	reset_attach(&uno->reset, avr, follows_data_sheet);
@@ -127,9 +128,20 @@ struct uno *uno_new(bool follows_data_sheet, double baud)
 	return uno;
 }
 
+/* Frees the irqs that avr_terminate leaves: those of the I/O registers and of the interrupt vectors. */
+static void free_irqs(avr_t *avr)
+{
+	for (size_t i = 0; i < ARRAY_SIZE(avr->io); i++)
+		avr_free_irq(avr->io[i].irq, AVR_IOMEM_IRQ_ALL + 1);
+	for (int i = 0; i < avr->irq_pool.count; i++)
+		avr_free_irq(avr->irq_pool.irq[i], 1);
+	free(avr->irq_pool.irq);
+}
+
 void uno_free(struct uno *uno)
 {
 	avr_terminate(uno->avr);
+	free_irqs(uno->avr);
 	free(uno->avr);
 	const struct list *lists[] = {
 		&uno->recorder.edges, &uno->recorder.marks, &uno->call_timer.calls,

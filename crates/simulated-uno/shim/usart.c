@@ -97,7 +97,7 @@ static uint8_t read_data(avr_t *avr, avr_io_addr_t addr, void *param)
 static avr_cycle_count_t finish_frame(avr_t *avr, avr_cycle_count_t when, void *param)
 {
 	struct usart *usart = param;
-	serial_bytes_push(usart->stock->transmitted, when, usart->sent_byte);
+	serial_record_push(usart->stock->transmitted, when, usart->sent_byte);
 	if (usart->has_waiting_byte) {
 		usart->sent_byte = usart->waiting_byte;
 		usart->has_waiting_byte = false;

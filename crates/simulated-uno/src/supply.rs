@@ -26,10 +26,10 @@ impl Uno {
     ///
     /// Below the brown-out level minus half the hysteresis of 50 mV, the chip is held in reset: its pins are inputs,
     /// and time passes. Above the brown-out level plus half the hysteresis, the program starts, with BORF set. Below
-    /// 1.8 V the byte of an EEPROM operation in progress is torn. Below 1.3 V the contents of SRAM are lost, and the
-    /// next start is a power-on.
+    /// 1.8 V the byte that an EEPROM operation is erasing or writing is torn. Below 1.3 V the contents of SRAM are
+    /// lost, and the next start is a power-on.
     ///
-    /// With [`Fidelity::Stock`](crate::Fidelity) the ADC measures `mv` at once, and nothing is ever reset.
+    /// With [`Fidelity::Stock`](crate::Fidelity) the ADC measures `mv` at once, and the supply never resets the chip.
     ///
     /// # Panics
     /// If the voltage is not between 0 and 10 000 mV.
@@ -43,7 +43,7 @@ impl Uno {
         unsafe { ffi::uno_ramp_supply(self.raw, mv, cycles) }
     }
 
-    /// Sets the brown-out level in mV; `None` disables brown-out detection. The default is 2700 mV, as set by the
+    /// Sets the brown-out level in mV; `None` or 0 disables brown-out detection. The default is 2700 mV, as set by the
     /// UNO's fuses; the level of a given chip may be 2500 to 2900 mV. Without brown-out detection, the chip runs down
     /// to 1.3 V and starts above 1.4 V.
     pub fn set_brown_out_mv(&mut self, level_mv: Option<f64>) {

@@ -17,12 +17,12 @@ fn is_front(servo: usize) -> bool {
     LEG_NAMES[servo].ends_with('F')
 }
 
-/// The reason for which a gait has no goal. Each variant holds the gait's name.
+/// The reason why a gait has no goal. Each variant holds the gait's name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum GoalError {
     /// Two feet pull against the other two, so the movement depends on unknown differences between the pads.
     #[error(
-        "the direction of the gait `{0}` is undecided, since two feet pull against the other two; tune another gait"
+        "the direction of the gait `{0}` is undetermined, since two feet pull against the other two; tune another gait"
     )]
     Undetermined(String),
     /// The gait stands, or returns the robot to its start in each cycle.
@@ -73,8 +73,8 @@ impl Goal {
         }
     }
 
-    /// True if the movement has almost no component other than that towards this goal.
-    pub fn matches_direction(self, movement: &Travel) -> bool {
+    /// True if the movement has almost no component other than the goal's; the sign is not checked.
+    pub fn is_free_of_drift(self, movement: &Travel) -> bool {
         match self {
             Self::Straight(_) => {
                 movement.turn.abs() < MIN_TURN_DEG && movement.left.abs() < MIN_DISTANCE_MM
@@ -93,7 +93,8 @@ impl Goal {
         }
     }
 
-    /// Returns the index of a leg's pair: 0 for the pair that contains the left hind leg (LH), otherwise 1.
+    /// Returns the index of a leg's pair: the front or the hind legs in a straight walk, diagonal legs in a turn. The
+    /// pair with the left hind leg (LH) has index 0, the other 1.
     pub fn pair_index(self, servo: usize) -> usize {
         match self {
             Self::Straight(_) => usize::from(is_front(servo)),
@@ -131,7 +132,7 @@ mod tests {
         for (name, reason) in [
             ("stand", "does not move the robot"),
             ("arc-left", "walks along a curve"),
-            ("look", "is undecided"),
+            ("look", "is undetermined"),
         ] {
             let error = find_goal(name).expect_err("the gait has no goal");
             assert!(error.contains(reason), "{name}: {error}");
@@ -139,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn left_and_right_legs_push_in_opposite_directions_in_a_turn() {
+    fn in_a_turn_left_and_right_legs_push_in_opposite_directions_and_diagonal_legs_are_pairs() {
         let signs = [0, 1, 2, 3].map(|servo| Goal::Turn(1.0).stroke_sign(servo));
         assert_eq!(
             signs,

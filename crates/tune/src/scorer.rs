@@ -168,7 +168,7 @@ impl Scorer {
         // The direction is checked in fine steps. If the period is not a whole number of frames, a simulation by frames
         // does not include the end of the cycle, so it would show a sideways movement.
         let ideal_movement = self.simulate_ideal_cycle(gait);
-        if !self.goal.matches_direction(&ideal_movement) {
+        if !self.goal.is_free_of_drift(&ideal_movement) {
             return None;
         }
         let speeds = self.compute_speeds(gait, gait.period());

@@ -20,17 +20,17 @@ const MAX_HIP_SHIFT_MM: f64 = 2.0;
 /// Range of the random factors on the springs' force and rate.
 const SPRING_FACTORS: (f64, f64) = (0.8, 1.2);
 /// Range of the random factor on the stiffness of the feet's leaves. Stiffness grows with the cube of the thickness,
-/// and the thickness error of a print is at most one fifteenth.
+/// so these factors belong to prints that are 7 % too thin or 8 % too thick.
 const LEAF_FACTORS: (f64, f64) = (0.8, 1.25);
 /// Largest random play that is added to the legs' play.
 const MAX_ADDED_PLAY_DEG: f64 = 1.0;
 
-/// Description of the random robots' ranges, for reports.
-pub const SPREAD_TEXT: &str = "friction x 0.5 to 1.5, each pad's x 0.9 to 1.1, backward over forward x 0.9 to 1.1, centre of mass +-8 mm,\n\
-mounting +-4 deg, hips +-2 mm, springs x 0.8 to 1.2, leaves of feet x 0.8 to 1.25, a foot longer by\n\
--1 to 1 times [feet] level";
+/// The ranges of the random values, in words, for reports.
+pub const SPREAD_TEXT: &str = "friction x 0.5 to 1.5, each pad's load x 0.9 to 1.1, backward over forward x 0.9 to 1.1,\n\
+centre of mass +-8 mm, mounting +-4 deg, hips +-2 mm, springs x 0.8 to 1.2, foot leaves x 0.8 to 1.25,\n\
+a foot longer by -1 to 1 times [feet] level";
 
-/// Description of the play that [`Variation::with_play`] adds, for reports.
+/// The range of the play that [`Variation::with_play`] adds, in words, for reports.
 pub const PLAY_SPREAD_TEXT: &str = "play of the legs 0 to 1 deg more";
 
 /// A robot and a floor that differ randomly from those in robot.toml.
@@ -121,7 +121,7 @@ impl Variation {
         };
         let first_cycle: Vec<[f64; 4]> =
             gait.frames().map(|(_, phase)| move_servos(phase)).collect();
-        // The first cycle has no effect on rigid legs, so only its servos are simulated.
+        // If the legs are rigid, only the servos carry over from the first cycle, so the walker starts at its end.
         let can_legs_lag = self.ground.drive.can_lag();
         let start_sweeps = match can_legs_lag {
             true => first_cycle.first(),
@@ -142,7 +142,7 @@ impl Variation {
 }
 
 /// Computes quantiles without interpolation: for each fraction, the sorted value whose index is nearest to the fraction
-/// of the last index. Returns NaN if there are no values.
+/// times the last index. Returns NaN if there are no values.
 pub fn compute_quantiles<const N: usize>(mut values: Vec<f64>, fractions: [f64; N]) -> [f64; N] {
     values.sort_by(f64::total_cmp);
     let last_index = values.len().saturating_sub(1);
@@ -187,14 +187,14 @@ mod tests {
 
     #[test]
     fn uneven_feet_slow_a_walk_only_if_they_are_stiff() {
-        let compute_slow_forward = |feet: &str| {
+        let compute_low_forward = |feet: &str| {
             let movements = simulate_walks(&format!("{PAPER}\n{feet}"), 60).into_iter();
             let forward_distances = movements.map(|movement| movement.forward).collect();
             compute_quantiles(forward_distances, [0.05])[0]
         };
-        let level_forward = compute_slow_forward("[feet]\nlevel = 0.0");
-        assert!(compute_slow_forward("") > 0.97 * level_forward);
-        assert!(compute_slow_forward("[feet]\nstiffness = 3.3") < 0.65 * level_forward);
+        let level_forward = compute_low_forward("[feet]\nlevel = 0.0");
+        assert!(compute_low_forward("") > 0.97 * level_forward);
+        assert!(compute_low_forward("[feet]\nstiffness = 3.3") < 0.65 * level_forward);
     }
 
     #[test]

@@ -63,8 +63,8 @@ impl AnalysedVideo {
         });
         let cycles = cycles::find_cycles(path, gait)?;
         // A deck tag that is higher than given seems to move farther.
-        let distance = self.camera.height - self.scene.dimensions.deck_height;
-        let scale_error = (HEIGHT_SIGMA / distance).hypot(RULER_SIGMA);
+        let camera_to_deck = self.camera.height - self.scene.dimensions.deck_height;
+        let scale_error = (HEIGHT_SIGMA / camera_to_deck).hypot(RULER_SIGMA);
         let deviations = cycle_path::compute_deviations(path, &cycles, gait);
         let walk = Walk {
             scene_variances: self.compute_scene_variances(&cycles),
@@ -76,8 +76,8 @@ impl AnalysedVideo {
     }
 
     /// Finds the walks. Returns the start and the end of each walk, s, extended at both ends by half of
-    /// `min_rest_duration`. The robot rests if it stands still for at least `min_rest_duration` seconds, for which
-    /// [`min_rest_duration`](crate::min_rest_duration) returns a lower bound.
+    /// `min_rest_duration`. The robot rests if it stands still for at least `min_rest_duration` seconds;
+    /// [`min_rest_duration`](crate::min_rest_duration) returns the smallest suitable value for given gaits.
     pub fn find_walks(&self, min_rest_duration: f64) -> Vec<[f64; 2]> {
         walks::find_walks(&self.path, min_rest_duration)
     }
@@ -90,7 +90,7 @@ impl AnalysedVideo {
     /// Computes the variances of the mean cycle that result from the scene's covariance: forward and left, mm^2, and
     /// turn, deg^2.
     fn compute_scene_variances(&self, cycles: &Cycles) -> [f64; 3] {
-        // A moving camera has its own pose in each frame, so only the common parameters count.
+        // A moving camera has its own pose in each frame, so only the shared parameters count.
         let parameter_count = match self.camera.has_camera_moved {
             true => SHARED_PARAMETER_COUNT,
             false => SHARED_PARAMETER_COUNT + POSE_PARAMETER_COUNT,

@@ -7,7 +7,7 @@ use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
 use crate::Frame;
-use crate::frame::luminance;
+use crate::frame::luma;
 
 impl Frame {
     /// Decodes the bytes of a PNG or JPEG file.
@@ -33,7 +33,7 @@ fn decode_png(bytes: &[u8]) -> Result<Frame, String> {
     let channels = info.color_type.samples();
     let pixels = pixels[..info.buffer_size()].chunks_exact(channels);
     let grey = pixels.map(|pixel| match *pixel {
-        [red, green, blue, ..] => luminance(red, green, blue),
+        [red, green, blue, ..] => luma(red, green, blue),
         [grey, ..] => grey,
         [] => 0,
     });

@@ -20,7 +20,9 @@ const SAMPLE_SPACING: f64 = 0.5;
 /// Smallest difference in brightness that counts as an edge, grey levels.
 const MIN_CONTRAST: f64 = 25.0;
 /// Largest root-mean-square distance of an edge's points from the fitted line, px.
-const MAX_EDGE_DEVIATION: f64 = 0.7;
+const MAX_RMS_DEVIATION: f64 = 0.7;
+/// Largest length of an edge, px; no frame is larger.
+const MAX_EDGE_LENGTH: f64 = 1e4;
 /// Number of iterations; each fits the lines again, starting from the improved corners.
 const ITERATION_COUNT: usize = 3;
 
@@ -65,7 +67,7 @@ fn fit_edge(frame: &Frame, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
     let length = dx.hypot(dy);
     let sampling_distance =
         MAX_SAMPLING_DISTANCE.min(MAX_SAMPLING_FRACTION * length / CELLS_PER_SIDE as f64);
-    if !(2.0 * SAMPLE_SPACING..1e4).contains(&sampling_distance) {
+    if !(sampling_distance >= 2.0 * SAMPLE_SPACING && length < MAX_EDGE_LENGTH) {
         return None;
     }
     let (along, normal) = ([dx / length, dy / length], [dy / length, -dx / length]);
@@ -75,11 +77,12 @@ fn fit_edge(frame: &Frame, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
     let stride = length * (1.0 - 2.0 * END_FRACTION) / (profile_count - 1) as f64;
     let mut profiles = vec![0.0; profile_count * (2 * half_count + 1)];
     for (i, profile) in profiles.chunks_mut(2 * half_count + 1).enumerate() {
-        let s = start + i as f64 * stride;
+        let distance_along = start + i as f64 * stride;
         for (j, grey) in profile.iter_mut().enumerate() {
             let t = (j as f64 - half_count as f64) * SAMPLE_SPACING;
-            *grey =
-                frame.grey_at([0, 1].map(|axis| from[axis] + s * along[axis] + t * normal[axis]));
+            *grey = frame.grey_at(
+                [0, 1].map(|axis| from[axis] + distance_along * along[axis] + t * normal[axis]),
+            );
         }
     }
     let mean_grey_at = |j: usize| {
@@ -95,7 +98,7 @@ fn fit_edge(frame: &Frame, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
     }
     // Fits the straight line t = offset + slope s by least squares: s runs along the edge from its centre, and t
     // runs outward across the edge.
-    let (mut sum, mut moment, mut square_sum) = (0.0, 0.0, 0.0);
+    let (mut t_sum, mut st_sum, mut ss_sum) = (0.0, 0.0, 0.0);
     let mut edge_points = Vec::with_capacity(profile_count);
     for (i, profile) in profiles.chunks(2 * half_count + 1).enumerate() {
         let ends_mean = (profile[0] + profile[2 * half_count]) / 2.0;
@@ -105,14 +108,14 @@ fn fit_edge(frame: &Frame, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
         let s = (i as f64 - (profile_count - 1) as f64 / 2.0) * stride;
         let t = half_count as f64 * SAMPLE_SPACING - bright_width;
         edge_points.push((s, t));
-        sum += t;
-        moment += s * t;
-        square_sum += s * s;
+        t_sum += t;
+        st_sum += s * t;
+        ss_sum += s * s;
     }
-    let (offset, slope) = (sum / profile_count as f64, moment / square_sum);
+    let (offset, slope) = (t_sum / profile_count as f64, st_sum / ss_sum);
     let squared_residual = |(s, t): &(f64, f64)| (t - offset - slope * s).powi(2);
     let residual_sum: f64 = edge_points.iter().map(squared_residual).sum();
-    if (residual_sum / profile_count as f64).sqrt() > MAX_EDGE_DEVIATION {
+    if (residual_sum / profile_count as f64).sqrt() > MAX_RMS_DEVIATION {
         return None;
     }
     let half_length = length / 2.0;

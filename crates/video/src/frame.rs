@@ -26,14 +26,14 @@ impl Frame {
     /// `None` if the length of `pixels` is not `4 * width * height`, or is zero.
     pub fn from_rgba(width: usize, height: usize, pixels: &[u8]) -> Option<Self> {
         let (pixels, remainder) = pixels.as_chunks::<4>();
-        let to_grey = |&[red, green, blue, _]: &[u8; 4]| luminance(red, green, blue);
+        let to_grey = |&[red, green, blue, _]: &[u8; 4]| luma(red, green, blue);
         if !remainder.is_empty() {
             return None;
         }
         Self::new(width, height, pixels.iter().map(to_grey).collect())
     }
 
-    /// Returns the part of the frame from `[left, top]` up to, but without, `[right, bottom]`; `None` if the part is
+    /// Returns the part of the frame from `[left, top]` up to `[right, bottom]`, exclusive; `None` if the part is
     /// empty or extends beyond the frame.
     pub(crate) fn crop(
         &self,
@@ -71,8 +71,8 @@ impl Frame {
     }
 }
 
-/// Returns the grey value of a colour according to BT.601.
-pub(crate) fn luminance(red: u8, green: u8, blue: u8) -> u8 {
+/// Returns the luma of a colour according to BT.601.
+pub(crate) fn luma(red: u8, green: u8, blue: u8) -> u8 {
     let sum = 299 * u32::from(red) + 587 * u32::from(green) + 114 * u32::from(blue);
     (sum / 1000) as u8
 }

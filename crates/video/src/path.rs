@@ -45,8 +45,8 @@ pub(crate) fn unwrap_headings(path: &mut [PathPoint]) {
     for i in 1..path.len() {
         let previous = path[i - 1].pose.heading;
         let turn = path[i].pose.heading - previous;
-        let whole_turns = (turn / std::f64::consts::TAU).round() * std::f64::consts::TAU;
-        path[i].pose.heading -= whole_turns;
+        let whole_turns = (turn / std::f64::consts::TAU).round();
+        path[i].pose.heading -= whole_turns * std::f64::consts::TAU;
     }
 }
 
@@ -65,8 +65,9 @@ pub(crate) fn interpolate_at(path: &[PathPoint], seconds: f64) -> Option<BodyPos
     Some(interpolate(a.pose, b.pose, fraction))
 }
 
-/// Computes the pose at a time from a parabola fitted to the frames within `half_window` seconds of that time, and to
-/// at least four frames. `None` if there are no frames before or after that time.
+/// Computes the pose at a time from a parabola fitted to the frames within `half_window` seconds of that time. A window
+/// with fewer than four frames is widened at both ends until it has four. `None` if the path ends before that, if all
+/// frames of the window are before or after that time, or if the fit fails.
 pub(crate) fn smoothed_pose_at(
     path: &[PathPoint],
     seconds: f64,
@@ -85,15 +86,16 @@ pub(crate) fn smoothed_pose_at(
         return None;
     }
     let smoothed_coordinate = |coordinate: fn(&BodyPose) -> f64| {
-        // Any initial guess suffices, because the model is linear. This one is the value in the first frame.
-        let model = |parameters: &[f64]| -> Vec<f64> {
+        // Any initial guess suffices, because the residuals are linear in the parameters. This one is the value in the
+        // first frame.
+        let residuals = |parameters: &[f64]| -> Vec<f64> {
             let residual = |point: &PathPoint| {
                 let t = (point.seconds - seconds) / half_window;
                 parameters[0] + parameters[1] * t + parameters[2] * t * t - coordinate(&point.pose)
             };
             nearby.iter().map(residual).collect()
         };
-        Some(least_squares::fit(&[coordinate(&nearby[0].pose), 0.0, 0.0], model)?.parameters[0])
+        Some(least_squares::fit(&[coordinate(&nearby[0].pose), 0.0, 0.0], residuals)?.parameters[0])
     };
     Some(BodyPose {
         forward: smoothed_coordinate(|pose| pose.forward)?,

@@ -1,6 +1,6 @@
 //! The rate of a servo in large steps, computed from frames of the turning horn.
 //!
-//! At full torque a motor accelerates toward a steady rate with its rotor time constant. Data sheets give the steady
+//! At full torque a motor accelerates towards a steady rate with its rotor time constant. Data sheets give the steady
 //! rate; a straight line through the middle of a step of 60 deg would give 2 % less. A video with few frames per second
 //! hardly distinguishes the rate from the time constant. The fit therefore assumes the time constant in robot.toml to
 //! be right within a factor of two, and the error of the rate includes this uncertainty.
@@ -19,11 +19,11 @@ const LOG_SIGMA: f64 = 0.7;
 const MAX_LOG_ERROR: f64 = 0.25;
 /// Relative standard error of a time constant due to the simple motor model.
 const MOTOR_SIGMA: f64 = 0.02;
-/// First estimate of an angle's standard error in one frame, deg; the residuals give the true value.
+/// First estimate of an angle's standard error in one frame, deg; the residuals of the first fit then replace it.
 const ANGLE_SIGMA: f64 = 0.3;
 /// Number of groups of steps that are fitted together: both directions, or without and with a load.
 const GROUP_COUNT: usize = 2;
-/// Smallest number of steps with at least two frames in a group.
+/// Smallest number of steps in a group, counting only steps with at least two frames.
 const MIN_STEPS: usize = 2;
 /// Smallest number of frames in a group, not counting the first frame of each step.
 const MIN_FRAMES: usize = 6;
@@ -66,7 +66,9 @@ impl Rates {
         groups: [&[LargeStep]; GROUP_COUNT],
         expected_time_constant: f64,
     ) -> Option<Self> {
-        let mut start = Vec::new();
+        // The parameters: the rate of each group; the logarithm of the time constant relative to the expected one; the
+        // time at which each step begins.
+        let mut first_guess = Vec::new();
         let mut steps: Vec<(usize, &LargeStep)> = Vec::new();
         for (group_index, group) in groups.into_iter().enumerate() {
             let usable_steps = group.iter().filter(|step| step.frames.len() > 1);
@@ -76,13 +78,13 @@ impl Rates {
                 return None;
             }
             let rates = usable_steps.iter().map(|step| mean_rate(step));
-            start.push(rates.sum::<f64>() / usable_steps.len() as f64);
+            first_guess.push(rates.sum::<f64>() / usable_steps.len() as f64);
             steps.extend(usable_steps.into_iter().map(|step| (group_index, step)));
         }
-        start.push(0.0);
+        first_guess.push(0.0);
         for (group, step) in &steps {
             let (time, angle) = step.frames[0];
-            start.push(time - angle / start[*group] - expected_time_constant);
+            first_guess.push(time - angle / first_guess[*group] - expected_time_constant);
         }
         let residuals = |parameters: &[f64], sigma: f64| {
             let time_constant = expected_time_constant * parameters[GROUP_COUNT].exp();
@@ -95,16 +97,17 @@ impl Rates {
             }
             all_residuals
         };
-        let first_fit =
-            least_squares::fit(&start, |parameters| residuals(parameters, ANGLE_SIGMA))?;
+        let first_fit = least_squares::fit(&first_guess, |parameters| {
+            residuals(parameters, ANGLE_SIGMA)
+        })?;
         let total_frame_count: usize = steps.iter().map(|(_, step)| step.frames.len()).sum();
         let degrees_of_freedom = total_frame_count
             .checked_sub(steps.len() + GROUP_COUNT)
             .filter(|n| *n > 0)?;
         let variance = first_fit.sum_of_squares / degrees_of_freedom as f64;
         let sigma = ANGLE_SIGMA * variance.sqrt().max(0.05);
-        let model = |parameters: &[f64]| residuals(parameters, sigma);
-        let fit = least_squares::fit(&first_fit.parameters, model)?;
+        let rescaled_residuals = |parameters: &[f64]| residuals(parameters, sigma);
+        let fit = least_squares::fit(&first_fit.parameters, rescaled_residuals)?;
         let variance_factor = small_sample_factor(degrees_of_freedom).powi(2);
         let covariance = fit.covariance.view((0, 0), (GROUP_COUNT, GROUP_COUNT));
         let log_error = fit.covariance[(GROUP_COUNT, GROUP_COUNT)].sqrt();

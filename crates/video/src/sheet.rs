@@ -1,4 +1,5 @@
-//! The layout of the printed sheet of tags. All its dimensions are defined here.
+//! The layout of the printed sheet of tags. All dimensions on which a measurement depends are
+//! defined here.
 //!
 //! The robot is larger than a sheet of paper, so the sheet is cut into three pieces. Two strips lie on the floor, one
 //! on either side of the robot's path, and a card lies on the robot's deck. The known distance between a strip's two
@@ -38,7 +39,8 @@ pub const DECK_TAG_EDGE: f64 = 36.0;
 pub const TAG_SPACING: f64 = 200.0;
 /// Length and width of a strip, mm. The white margin around its tags is wider than one of their cells.
 pub const STRIP_SIZE: [f64; 2] = [266.0, 66.0];
-/// Width and length of the deck's card, mm. The tag is at its lower edge; its upper edge faces the robot's head.
+/// Width and length of the deck's card, mm. The tag is at the card's lower edge; the card's upper edge faces
+/// the robot's head.
 pub const CARD_SIZE: [f64; 2] = [50.0, 60.0];
 /// White margin around the deck's tag, mm.
 pub const CARD_MARGIN: f64 = 7.0;
@@ -54,8 +56,8 @@ pub fn strip_index(id: usize) -> usize {
 
 /// Returns the centre of a floor tag, mm, relative to the centre of its strip; x runs along the strip.
 pub fn centre_on_strip(id: usize) -> Point {
-    let end = (id % TAGS_PER_STRIP) as f64 * 2.0 - 1.0;
-    [end * TAG_SPACING / 2.0, 0.0]
+    let side = (id % TAGS_PER_STRIP) as f64 * 2.0 - 1.0;
+    [side * TAG_SPACING / 2.0, 0.0]
 }
 
 /// Returns the edge length of a tag, mm.
@@ -121,8 +123,8 @@ mod tests {
         for id in 0..FLOOR_TAG_COUNT {
             let [x, y] = centre_on_strip(id).map(f64::abs);
             let cell = FLOOR_TAG_EDGE / CELLS_PER_SIDE as f64;
-            let half = FLOOR_TAG_EDGE / 2.0 + cell;
-            assert!(x + half < STRIP_SIZE[0] / 2.0 && y + half < STRIP_SIZE[1] / 2.0);
+            let reach = FLOOR_TAG_EDGE / 2.0 + cell;
+            assert!(x + reach < STRIP_SIZE[0] / 2.0 && y + reach < STRIP_SIZE[1] / 2.0);
         }
         const {
             assert!(CARD_MARGIN > DECK_TAG_EDGE / CELLS_PER_SIDE as f64);

@@ -135,6 +135,7 @@ impl<'a> Drive<'a> {
             7 => "rest".to_owned(),
             8 | 9 => PATROL.to_owned(),
             10..14 => format!("{gait} {}", self.rng.u8(1..40)),
+            14 => format!("watch {}", self.rng.u8(0..4)),
             _ => gait,
         }
     }

@@ -21,7 +21,7 @@ pub(super) const REFUSED_POSE: &str = "pose 0 0 0 0";
 /// A random scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
-    /// The seed of the scenario's random numbers.
+    /// The seed of the series to which the scenario belongs.
     pub seed: u64,
     /// The scenario's number among the scenarios of the seed.
     pub number: u64,
@@ -80,8 +80,8 @@ struct Script<'a> {
     rng: &'a mut Rng,
     robot: &'a Robot,
     steps: Vec<Step>,
-    /// True while a person drives by radio. Lines are then sent without a wait for their answers, since the next answer
-    /// may belong to a line sent by radio.
+    /// True while a person drives by radio. Lines are then sent without waiting for their answers, since the next
+    /// answer may belong to a line sent by radio.
     is_driven: bool,
 }
 
@@ -167,8 +167,8 @@ impl Script<'_> {
                 self.wait_up_to(2_000);
             }
             Activity::Saving => self.start_saving(),
-            Activity::Starting => self.start_program(is_at_power_on),
-            Activity::Answering => self.start_requests(),
+            Activity::Starting => self.restart_program(is_at_power_on),
+            Activity::Answering => self.send_requests(),
             Activity::Patrolling => self.start_patrol(),
             Activity::Driven => self.start_drive(),
         }
@@ -196,7 +196,7 @@ impl Script<'_> {
     }
 
     /// Restarts the program, unless the scenario is still at power-on, and waits for part of the start.
-    fn start_program(&mut self, is_at_power_on: bool) {
+    fn restart_program(&mut self, is_at_power_on: bool) {
         if !is_at_power_on {
             match self.rng.u8(0..4) {
                 0 => self.say("rest"),
@@ -213,8 +213,8 @@ impl Script<'_> {
         self.wait_up_to(ms);
     }
 
-    /// Sends up to four lines without a wait for their answers, in some cases at rest or while a gait runs.
-    fn start_requests(&mut self) {
+    /// Sends up to four lines without waiting for their answers, in some cases at rest or while a gait runs.
+    fn send_requests(&mut self) {
         match self.rng.u8(0..3) {
             0 => self.say("rest"),
             1 => self.say_random_gait(),
@@ -227,6 +227,7 @@ impl Script<'_> {
                 "cal",
                 "speed 50",
                 "nonsense",
+                "watch 1",
                 REFUSED_POSE,
             ];
             let line = *self.rng.choice(&lines).unwrap_or(&"status");
@@ -235,8 +236,8 @@ impl Script<'_> {
         self.wait_up_to(120);
     }
 
-    /// Starts the routine. In three of four cases, presses the button that the routine waits for. Then presses random
-    /// inputs.
+    /// Starts the patrol routine. In three cases of four, presses the button that the routine waits for. Then presses
+    /// random inputs.
     fn start_patrol(&mut self) {
         self.say(PATROL);
         if self.rng.u8(0..4) > 0 {
@@ -288,13 +289,13 @@ impl Script<'_> {
         self.continue_drive();
     }
 
-    /// Lets the person continue to drive while other people send lines by cable.
+    /// Lets the person continue to drive while the scenario sends lines by cable.
     fn continue_drive(&mut self) {
         for _ in 0..self.rng.u8(1..4) {
             self.wait_up_to(3_000);
             let gait = self.random_gait();
             let lines = [
-                "status", "help", "cal", "speed 70", "nonsense", "stop", &gait, PATROL,
+                "status", "help", "cal", "speed 70", "nonsense", "stop", "watch 1", &gait, PATROL,
             ];
             let line = *self.rng.choice(&lines).unwrap_or(&"status");
             self.send(line);
@@ -327,8 +328,8 @@ impl Script<'_> {
         self.wait(600);
     }
 
-    /// Waits and asks for the status. Then sends a line that the board must refuse, `walk`, `rest` and `stand`, and asks
-    /// for the status after each of them.
+    /// Waits and asks for the status. Then sends four lines: one that the board must refuse, `walk`, `rest` and
+    /// `stand`. Asks for the status after each.
     fn add_final_checks(&mut self) {
         // In one of four cases, waits long enough for the LED's fault pattern and for the gait after power-on.
         let wait_ms = match self.rng.u8(0..4) {

@@ -161,7 +161,7 @@ fn load_factory_and_power_on_discard_unsaved_settings() {
 }
 
 #[test]
-fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
+fn a_save_writes_only_changed_bytes_one_by_one_and_loses_no_input() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_walking(fidelity);
         for round in 1..=6 {
@@ -192,7 +192,7 @@ fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
 }
 
 #[test]
-fn a_byte_that_arrives_as_a_write_of_the_memory_begins_does_not_prevent_it() {
+fn a_byte_that_arrives_as_a_memory_write_begins_does_not_prevent_the_write() {
     let save_while_sending = |byte_cycle: Option<u64>| {
         let mut bench = boot_to_stand(Fidelity::DataSheet);
         bench.expect_ok("deadman 54321");
@@ -204,17 +204,17 @@ fn a_byte_that_arrives_as_a_write_of_the_memory_begins_does_not_prevent_it() {
         bench.run_ms(500);
         bench
     };
-    let undisturbed_board = save_while_sending(None);
-    let operations = undisturbed_board.uno.eeprom_operations();
+    let undisturbed_bench = save_while_sending(None);
+    let operations = undisturbed_bench.uno.eeprom_operations();
     let last_write = operations.last().expect("a byte was written").cycle;
     let early_cycle = last_write - 5_000;
     let received_bytes = save_while_sending(Some(early_cycle)).uno.received_by_uno();
     let arrival = received_bytes.last().expect("the byte has arrived").cycle;
     let transfer_cycles = arrival - early_cycle;
     for lead in 0..20 {
-        let board = save_while_sending(Some(last_write - transfer_cycles - lead));
+        let bench = save_while_sending(Some(last_write - transfer_cycles - lead));
         assert!(
-            board.uno.eeprom() == undisturbed_board.uno.eeprom(),
+            bench.uno.eeprom() == undisturbed_bench.uno.eeprom(),
             "a byte {lead} cycles before a write prevents it"
         );
     }
@@ -228,7 +228,7 @@ fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
         let start = run.run_to_next_frame();
         let operations_before = run.bench.uno.eeprom_operations().len();
         run.bench.send("save");
-        // The serial line stays busy, because the main loop reads no byte until it has saved.
+        // Keeps the serial line busy. The main loop reads none of these bytes until it has saved.
         for _ in 0..14 {
             run.bench.uno.send(b" \t ");
             run.run_to(run.bench.uno.cycle() + FRAME_CYCLES);
@@ -314,7 +314,7 @@ fn a_power_cut_during_a_rest_save_leaves_the_rest_pose_or_the_neutral_pose() {
     assert!(operation_count > 10, "{operation_count} operations");
     let (mut neutral_count, mut rest_count) = (0, 0);
     for operation in 0..operation_count as u64 {
-        for (stuck_bits, cut) in [
+        for (ones, cut) in [
             (0, PowerCut::InWrite(operation)),
             (0x5a, PowerCut::InWrite(operation)),
             (0x33, PowerCut::InErase(operation)),
@@ -323,7 +323,7 @@ fn a_power_cut_during_a_rest_save_leaves_the_rest_pose_or_the_neutral_pose() {
             power_cycle(&mut bench);
             bench.run_ms(500);
             move_to_nearby_pose(&mut bench);
-            bench.uno.cut_power(cut, stuck_bits);
+            bench.uno.cut_power(cut, ones);
             bench.say("rest");
             bench.uno.run_ms(400);
             assert_eq!(*bench.uno.state(), State::Off);
@@ -332,7 +332,7 @@ fn a_power_cut_during_a_rest_save_leaves_the_rest_pose_or_the_neutral_pose() {
             match recorded_pulses(&bench).map(|pulses| pulses[0].width) {
                 widths if widths == rest_widths => rest_count += 1,
                 widths if widths == neutral_widths() => neutral_count += 1,
-                widths => panic!("byte {operation}, {stuck_bits:02x}: {widths:?}"),
+                widths => panic!("operation {operation}, ones {ones:02x}: {widths:?}"),
             }
         }
     }

@@ -1,5 +1,5 @@
 //! Tests of the firmware with a missing or damaged robot section in flash: the firmware sends no pulse, and its console
-//! and LED show the reason. The core's own tests (`section/damaged.rs`) flip every bit. Here the firmware itself reads
+//! and LED show the reason. The tests in `tests/section/damaged.rs` flip every bit. Here the firmware itself reads
 //! the chip's flash, where no bounds checking stops a read beyond the section.
 
 use std::mem::offset_of;
@@ -20,7 +20,7 @@ const OTHER_VERSION_NOTE: &str =
     "# fault: the robot in the flash is for another version; write it again";
 const DAMAGED_ROBOT_NOTE: &str = "# fault: the robot in the flash is damaged; write it again";
 
-/// Bytes in flash in place of a valid robot.
+/// A missing, incomplete or damaged section in flash, and the line that reports it.
 struct DamagedSection {
     description: String,
     section: Vec<u8>,
@@ -59,13 +59,13 @@ fn damage_numbers(description: &str, offset: usize, bytes: &[u8]) -> DamagedSect
 }
 
 /// Returns sections that are missing, truncated or for another version.
-fn build_missing_sections() -> Vec<DamagedSection> {
+fn build_incomplete_or_outdated_sections() -> Vec<DamagedSection> {
     let mut sections = vec![
         damage_section("erased flash", MISSING_ROBOT_NOTE, Vec::clear),
         damage_section("zeros", MISSING_ROBOT_NOTE, |section| {
             *section = vec![0; REGION_BYTES.into()];
         }),
-        damage_section("a program's noise", MISSING_ROBOT_NOTE, |section| {
+        damage_section("random bytes", MISSING_ROBOT_NOTE, |section| {
             *section = vec![0; REGION_BYTES.into()];
             rng(160).fill(section);
         }),
@@ -126,7 +126,7 @@ fn build_sections_with_flipped_bit() -> Vec<DamagedSection> {
     starts.windows(2).enumerate().map(flip).collect()
 }
 
-/// Returns sections with a correct checksum but a wrong content.
+/// Returns sections with a correct checksum but invalid numbers.
 fn build_invalid_sections() -> Vec<DamagedSection> {
     let pins = offset_of!(Numbers, pins);
     let calibration = offset_of!(Numbers, calibration);
@@ -147,12 +147,12 @@ fn build_invalid_sections() -> Vec<DamagedSection> {
         ),
         damage_numbers("a travel on one side of neutral", calibration + 4, &[5, 0]),
         damage_numbers("no cranks", offset_of!(Numbers, ends), &[0; 20]),
-        damage_numbers("ones for numbers", 0, &vec![0xff; numbers_bytes]),
-        damage_numbers("zeros for numbers", 0, &vec![0; numbers_bytes]),
+        damage_numbers("numbers with all bits one", 0, &vec![0xff; numbers_bytes]),
+        damage_numbers("numbers with all bits zero", 0, &vec![0; numbers_bytes]),
     ]
 }
 
-/// Powers on a board with this damage in its flash.
+/// Starts a board with this section in its flash.
 fn boot_damaged_board(damaged: &DamagedSection, fidelity: Fidelity) -> FirmwareBench {
     let mut image = FirmwareBench::image();
     let addresses = u32::from(START_ADDRESS)..u32::from(START_ADDRESS) + u32::from(REGION_BYTES);
@@ -206,7 +206,10 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
 
 #[test]
 fn without_a_complete_robot_there_is_no_pulse_and_the_console_names_the_reason() {
-    for_each_in_parallel(&build_missing_sections(), assert_finds_no_robot);
+    for_each_in_parallel(
+        &build_incomplete_or_outdated_sections(),
+        assert_finds_no_robot,
+    );
 }
 
 #[test]
@@ -221,7 +224,7 @@ fn impossible_numbers_move_no_servo_even_with_a_valid_checksum() {
 
 /// This check is the only part of the start-up that a robot compiled into the firmware would not need.
 #[test]
-fn the_largest_section_is_checked_within_a_frame() {
+fn every_robots_section_is_checked_within_a_frame() {
     let names = ["grain", "large", "own-gaits", "paper", "unequal"];
     for_each_in_parallel(&names, |name| {
         let robot = load_named_robot(name);
@@ -239,10 +242,10 @@ fn the_largest_section_is_checked_within_a_frame() {
 #[test]
 fn without_a_robot_the_led_flashes_eight_times_and_pauses() {
     run_in_both_simulations(|fidelity| {
-        let bench = &mut boot_damaged_board(&build_missing_sections()[0], fidelity);
+        let bench = &mut boot_damaged_board(&build_incomplete_or_outdated_sections()[0], fidelity);
         bench.run_ms(8_000);
         let led_edges = led_edges(bench);
-        // The durations in frames, with true if the LED was on.
+        // For each interval, true if the LED was on, and the interval's length in frames.
         let durations = led_edges.windows(2).map(|pair| {
             let frames = (pair[1].cycle - pair[0].cycle) as f64 / FRAME_CYCLES as f64;
             (pair[0].is_rising, frames.round() as u64)

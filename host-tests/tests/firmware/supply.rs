@@ -7,8 +7,9 @@ use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Fidelity, Pin};
 use crate::measurements::{assert_flashes, assert_no_pulse, measure_widths};
 use crate::{Status, assert_near, boot_to_stand, boot_to_walk, expect_answer, first_moving_gait};
 
-/// The largest error of a printed board supply, V: one converter step at 5.5 V, and the rounding to two decimals.
-const MAX_BOARD_ERROR_V: f64 = 0.04;
+/// The tolerance of a board voltage, V: 0.03 V of the printed value, and the steps of 0.01 V in which these tests
+/// change the supply.
+const BOARD_TOLERANCE_V: f64 = 0.04;
 
 /// The Arduino number of the first pin that can measure a rail.
 const FIRST_ANALOGUE_PIN: u8 = 14;
@@ -86,7 +87,7 @@ fn lower_supply_and_check_reactions(
 fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     let mut bench = boot_to_walk(Fidelity::DataSheet);
     let thresholds = robot().supplies().board_thresholds;
-    lower_supply_and_check_reactions(&mut bench, thresholds, MAX_BOARD_ERROR_V, |bench, volts| {
+    lower_supply_and_check_reactions(&mut bench, thresholds, BOARD_TOLERANCE_V, |bench, volts| {
         bench.uno.set_supply_mv(1000.0 * volts);
     });
     Status::read(&mut bench).assert_has("gait=rest fault=supply");
@@ -109,11 +110,11 @@ fn a_low_supply_limits_the_pace_and_prevents_saving() {
     let operations_before = bench.uno.eeprom_operations().len();
     expect_answer(&mut bench, "save", "err 8 the supply is too low");
     let slow_pace = measure_pace(&mut bench);
-    let expected = f64::from(robot().supplies().slow_pace_percent) / 100.0;
+    let expected_ratio = f64::from(robot().supplies().slow_pace_percent) / 100.0;
     assert!(full_pace > 0.0, "the robot does not walk");
     assert!(
-        (slow_pace / full_pace - expected).abs() < 0.1,
-        "slow pace {slow_pace} of {full_pace}, expected a ratio of {expected}"
+        (slow_pace / full_pace - expected_ratio).abs() < 0.1,
+        "slow pace {slow_pace} of {full_pace}, expected a ratio of {expected_ratio}"
     );
     bench.say("rest");
     bench.run_ms(400);
@@ -141,9 +142,9 @@ fn a_recovered_supply_allows_commands_again_and_starts_nothing() {
         }
     }
     let good_volts = good_volts.expect("the supply is reported as good");
-    let rise_volts = good_volts - slow_volts;
-    let case = "voltage above the threshold when good, V";
-    assert_near(rise_volts, 0.150, MAX_BOARD_ERROR_V, case);
+    let hysteresis_volts = good_volts - slow_volts;
+    let case = "hysteresis of the recovery, V";
+    assert_near(hysteresis_volts, 0.150, BOARD_TOLERANCE_V, case);
     assert_eq!(measure_widths(&mut bench), held_widths, "a servo moved");
     assert_eq!(
         Status::read(&mut bench).text("fault"),
@@ -168,7 +169,7 @@ fn short_dips_cause_no_note_and_a_wavering_supply_causes_one() {
         bench.run_ms(100);
     }
     assert!(read_supply_notes(&mut bench, line_count).is_empty());
-    // The supply alternates around the threshold for half a minute.
+    // For half a minute the supply alternates between a voltage below the threshold and one above it.
     let slow_mv = robot().supplies().board_thresholds[0] * 1000.0;
     for n in 0..100 {
         let offset_mv = if n % 2 == 0 { -40.0 } else { 90.0 };
@@ -189,9 +190,11 @@ fn set_rail(bench: &mut FirmwareBench, rail: &Rail, volts: f64) {
 /// effect.
 fn assert_no_rail() {
     let mut bench = boot_to_walk(Fidelity::DataSheet);
-    let servos = robot().servos().each_ref().map(|servo| servo.pin);
-    let pins = FIRST_ANALOGUE_PIN..FIRST_ANALOGUE_PIN + 6;
-    let free_pins: Vec<u8> = pins.filter(|pin| !servos.contains(pin)).collect();
+    let servo_pins = robot().servos().each_ref().map(|servo| servo.pin);
+    let analogue_pins = FIRST_ANALOGUE_PIN..FIRST_ANALOGUE_PIN + 6;
+    let free_pins: Vec<u8> = analogue_pins
+        .filter(|pin| !servo_pins.contains(pin))
+        .collect();
     assert!(free_pins.len() >= 2, "{free_pins:?}");
     for mv in [0, 2_500, 5_000] {
         for pin in &free_pins {
@@ -242,5 +245,5 @@ fn a_sinking_rail_slows_stops_and_rests_the_robot_with_a_good_board_supply() {
     });
     assert_no_pulse(&mut bench, 200, "below the lowest threshold");
     let board_volts = Status::read(&mut bench).number("vcc");
-    assert_near(board_volts, 5.0, MAX_BOARD_ERROR_V, "board supply, V");
+    assert_near(board_volts, 5.0, BOARD_TOLERANCE_V, "board supply, V");
 }

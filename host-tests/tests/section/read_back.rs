@@ -1,5 +1,5 @@
 //! Tests that read sections back with the firmware's reader: each field must match the robot's file. The expected
-//! values come from the robot in floating point, not from the numbers in the section's source.
+//! values come from the robot in floating point, not from the integers from which the section was made.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::numbers::curve::{ENTRY_COUNT, Table, argument_at};
@@ -43,8 +43,8 @@ fn steps_to_degrees(sweep: i32) -> f64 {
 #[test]
 fn the_name_the_pins_and_the_supplies_are_read_back() {
     for_each_robot(|name, robot, file_robot, _| {
-        let label: String = robot.robot_name().map(char::from).collect();
-        assert_eq!(label, file_robot.name(), "{name}");
+        let read_name: String = robot.robot_name().map(char::from).collect();
+        assert_eq!(read_name, file_robot.name(), "{name}");
         let pins = file_robot.servos().map(|servo| servo.pin);
         assert_eq!(robot.pins(), pins, "{name}");
         let supplies = file_robot.supplies();
@@ -142,7 +142,7 @@ fn the_limits_the_slew_limit_and_the_gaits_travel_are_read_back() {
                 steps_to_degrees(stored.min.0.into()) - min,
                 steps_to_degrees(stored.max.0.into()) - max,
             ];
-            // The tables have an error of up to a tenth of a degree, and rounding adds up to a step.
+            // At its extremes a table has an error of up to a tenth of a degree, and rounding adds up to a step.
             assert!(
                 errors.iter().all(|error| error.abs() < 0.11),
                 "{name} {servo:?}: {errors:?}"
@@ -202,7 +202,7 @@ fn the_link_lengths_and_the_sliders_are_read_back() {
     });
 }
 
-/// The kind of a coupler table of a five-bar. Each kind has its own argument.
+/// The function in a coupler table of a five-bar. Each function has its own argument.
 #[derive(Clone, Copy, PartialEq)]
 enum CurveKind {
     Rise,
@@ -215,10 +215,10 @@ enum CurveKind {
 fn the_curves_are_read_back_at_every_point_of_their_tables() {
     for_each_robot(|name, robot, file_robot, flash| {
         let links = file_robot.lizard().links;
-        let [head_curves, tail_curves] = read_numbers(flash).curves;
-        for (end, [a, b], curves) in [
-            (End::Head, [links.l2, links.l3], head_curves),
-            (End::Tail, [links.l7, links.l8], tail_curves),
+        let [head_addresses, tail_addresses] = read_numbers(flash).curves;
+        for (end, [a, b], addresses) in [
+            (End::Head, [links.l2, links.l3], head_addresses),
+            (End::Tail, [links.l7, links.l8], tail_addresses),
         ] {
             let scale = robot.link_lengths(end).scale();
             let [a, b] = [a, b].map(|mm| mm_to_steps(mm, scale));
@@ -233,11 +233,11 @@ fn the_curves_are_read_back_at_every_point_of_their_tables() {
                 CurveKind::Skew,
             ];
             assert!(
-                curves[0] != 0 && (curves[3] != 0) == (a != b),
+                addresses[0] != 0 && (addresses[3] != 0) == (a != b),
                 "{name} {end:?}"
             );
-            let addresses = kinds.into_iter().zip(curves);
-            for (kind, address) in addresses.filter(|(_, address)| *address != 0) {
+            let kinds_and_addresses = kinds.into_iter().zip(addresses);
+            for (kind, address) in kinds_and_addresses.filter(|(_, address)| *address != 0) {
                 let table = flash.values::<Table>(address, 1).get(0);
                 let table = table.expect("a curve is at the address").load();
                 for (index, entry) in table.into_iter().enumerate().take(ENTRY_COUNT) {
@@ -264,8 +264,8 @@ fn the_curves_are_read_back_at_every_point_of_their_tables() {
                     let exact = (1024.0 * exact).min(32_767.0);
                     // The entry has a rounding error of one unit. Where the curve is steep, the rounding error of
                     // `distance_sq` matters, too.
-                    let room_sq = beyond_folded_sq.min(below_stretched_sq).max(1.0);
-                    let tolerance = 1.01 + exact * 2.0 / room_sq;
+                    let distance_to_end_sq = beyond_folded_sq.min(below_stretched_sq).max(1.0);
+                    let tolerance = 1.01 + exact * 2.0 / distance_to_end_sq;
                     let error = f64::from(entry) - exact;
                     assert!(
                         error.abs() <= tolerance,
@@ -298,7 +298,8 @@ fn the_gaits_their_names_and_their_waveforms_are_read_back() {
                 for (index, angle) in pose.angles(&robot.neutral_angles()).into_iter().enumerate() {
                     let angle = f64::from(angle.0) / STEPS_PER_DEGREE;
                     let error = (angle - exact[index] + 180.0).rem_euclid(360.0) - 180.0;
-                    // The tolerance is the error of a table plus half a step of the neutral angle.
+                    // The tolerance is the largest error that is allowed for a table, 0.5 deg, plus half a step of the
+                    // neutral angle.
                     assert!(
                         error.abs() <= 0.504,
                         "{gait_label} A{} at {step}: {error}",
@@ -325,19 +326,19 @@ fn read_maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] 
             let columns = rows.get(next_row).expect("the maps have this row").load();
             let [first_column, last_column] = columns.map(i32::from);
             next_row += 1;
-            let row = 256 * (i32::from(header.first_row) + row);
+            let first_sweep = 256 * (i32::from(header.first_row) + row);
             let columns = 128 * first_column..=128 * last_column + 127;
-            [row..=row + 255, columns]
+            [first_sweep..=first_sweep + 255, columns]
         });
         map.collect()
     })
 }
 
-/// True if the exact guard accepts every condition that depends on a map's servos.
-fn accepts_map_conditions(robot: &Robot, map_index: usize, pose: &Pose) -> bool {
+/// True if a pose, measured without the maps, meets every condition that depends on a map's servos.
+fn meets_map_conditions(robot: &Robot, map_index: usize, pose: &Pose) -> bool {
     let clearance = Clearance::measure(robot, pose);
     let limits = robot.limits();
-    let accepts_margins = |end_index: usize, first_servo: usize| {
+    let meets_margins = |end_index: usize, first_servo: usize| {
         let is_within_limit = |index: usize, limit: Sine| clearance.margins[index] >= limit;
         is_within_limit(end_index, limits.type2)
             && (first_servo..first_servo + 2).all(|index| {
@@ -345,8 +346,8 @@ fn accepts_map_conditions(robot: &Robot, map_index: usize, pose: &Pose) -> bool 
             })
     };
     match map_index {
-        0 => accepts_margins(0, 0),
-        1 => accepts_margins(1, 2),
+        0 => meets_margins(0, 0),
+        1 => meets_margins(1, 2),
         2 => robot
             .slider(Side::Left)
             .allows(clearance.slider_lengths_sq[0]),
@@ -357,7 +358,7 @@ fn accepts_map_conditions(robot: &Robot, map_index: usize, pose: &Pose) -> bool 
 }
 
 #[test]
-fn the_exact_guard_accepts_the_maps_conditions_in_every_certified_cell() {
+fn every_pose_in_a_certified_cell_meets_the_maps_conditions() {
     let mut checked_count = 0;
     let mut robots_with_maps_count = 0;
     for_each_robot(|name, robot, _, flash| {
@@ -381,7 +382,7 @@ fn the_exact_guard_accepts_the_maps_conditions_in_every_certified_cell() {
                         }
                         if is_within_travel {
                             assert!(
-                                accepts_map_conditions(robot, map_index, &pose),
+                                meets_map_conditions(robot, map_index, &pose),
                                 "{name}: map {map_index} {pose:?}"
                             );
                             checked_count += 1;

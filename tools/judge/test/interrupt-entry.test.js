@@ -22,7 +22,8 @@ const program = `
     sei
     rjmp stop`;
 
-/** Returns the cycles of the interrupt response. Between the two readings, LDS takes 2 more cycles, and SEI 1. */
+// Without the correction interrupt-after-enable.js, no instruction runs between SEI and the interrupt.
+/** Returns the number of cycles of the interrupt response: those between the two readings without LDS (2) and SEI (1). */
 function measureEntryCycles(corrections) {
   const { data } = runProgram(corrections, program, 100).cpu;
   return data[17] - data[16] - 3;

@@ -1,5 +1,5 @@
-//! Assumptions that MuJoCo can vary but the contact model cannot, and their effect on the gaits: the floor, the pads'
-//! printed shape, the drive of analog servos, and the mass distribution.
+//! Assumptions that `lizard gaits --assumptions` does not vary, or not so far, and their effect on the gaits in MuJoCo:
+//! the floor, the pads' printed shape, the drive of analog servos, and the mass distribution.
 
 use std::fmt::Write as _;
 
@@ -14,15 +14,15 @@ use crate::table::Component;
 
 /// The simulated gaits, as in `lizard gaits --assumptions`.
 pub const GAITS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
-/// The smallest change that the table shows as a number, percent.
+/// A row has numbers only if a gait changes by at least this much, percent.
 const MIN_CHANGE_PERCENT: f64 = 10.0;
 
 /// A changed assumption about the paper's robot or its floor.
 #[derive(Clone, Copy)]
 pub struct Assumption {
-    /// The assumption's name in the table.
+    /// The label of the assumption's row in the table.
     pub description: &'static str,
-    /// Texts of robot.toml, each with the text that replaces it.
+    /// Texts of robots/paper.toml, each with its replacement.
     replacements: &'static [(&'static str, &'static str)],
     /// The surface, unless the floor is level and even.
     surface: Option<Surface>,
@@ -38,7 +38,7 @@ const UNCHANGED: Assumption = Assumption {
 };
 
 impl Assumption {
-    /// All changed assumptions except the surfaces, which `Surface::ALL` lists.
+    /// All changed assumptions except those that change only the surface, which `Surface::ALL` lists.
     pub const ALL: [Self; 6] = [
         Self {
             description: "analog servos that drive in bursts",

@@ -50,7 +50,7 @@ fn format_entries(value: &Value, depth: usize) -> String {
 /// `BLESS_PHYSICS` is set, updates the file instead.
 ///
 /// # Panics
-/// Panics if the texts differ, or if `begin` or `end` is missing.
+/// If the texts differ and `BLESS_PHYSICS` is not set, or if `begin` or `end` is missing.
 pub fn check_or_update_block(path: &str, begin: &str, end: &str, expected_text: &str) {
     let file = crate_dir().join("../..").join(path);
     let text = fs::read_to_string(&file).expect(path);

@@ -25,7 +25,7 @@ pub struct Limits {
     pub max_frame_remainder: Time,
     /// The longest time from a fault to its report on the console.
     pub max_report_time: Time,
-    /// The longest time for which the robot's line waits in the queue before it is printed.
+    /// The longest time for which a line of the robot waits in the queue before it is printed.
     pub max_queue_time: Time,
     /// The longest rest within a routine; 0 if no routine rests.
     pub max_routine_rest: Time,
@@ -77,6 +77,7 @@ pub struct Observer {
     pub(crate) now: Time,
     pub(crate) started_at: Time,
     pub(crate) start_cause: Cause,
+    /// The time at which the program was last interrupted: RESET was pulled low, or power was lost.
     pub(crate) cut_at: Time,
     /// End of the last disturbance: a stall of main, or blocked interrupts.
     pub(crate) disturbed_until: Time,
@@ -90,6 +91,7 @@ pub struct Observer {
     pub(crate) boot_rest_at: Time,
     pub(crate) unanswered_line_count: i32,
     pub(crate) last_command_at: Time,
+    /// The `deadman` time; 0 if it is off or not known.
     pub(crate) deadman_time: Time,
     /// The latest time at which the last command may have been read.
     pub(crate) last_command_read_at: Time,
@@ -164,8 +166,8 @@ impl Observer {
         let servo_widths = widths.into_iter().enumerate();
         for (servo, width) in servo_widths.filter(|(_, width)| *width > 0) {
             let pulse = Pulse::exact(servo, width.into());
-            // The times are nominal, to about a millisecond: A1's pulse begins 4 ms after the tick, and each further
-            // servo's pulse one slot of 4 ms later.
+            // These times are a millisecond late: A1's pulse begins 4 ms after the tick, and each further servo's pulse
+            // one slot of 4 ms later.
             self.observe(start + (5 + 4 * servo as Time) * MS, Event::Pulse(pulse));
         }
         self.observe(start + 20 * MS, Event::TimePasses);
@@ -347,8 +349,8 @@ impl Observer {
 
     fn record_program_start(&mut self, cause: Cause) {
         let now = self.now;
-        // A brown-out may last a long time, so the program hung if a disturbance came shortly before the brown-out
-        // began.
+        // The program counts as hung if a disturbance came shortly before it stopped. In a brown-out, which may last
+        // long, it stopped when the brown-out began.
         let ran_until = match cause {
             Cause::BrownOut => self.cut_at.max(self.started_at),
             _ => now,

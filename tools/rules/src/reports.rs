@@ -58,10 +58,10 @@ impl Observer {
             if self.unanswered_line_count < 0 {
                 self.record_violation(Rule::OneAnswer, format!("unsolicited answer: {line}"));
             }
-            if self.unanswered_line_count > 0 {
-                // The robot may have read the next command only now, after this answer.
-                self.last_command_read_at = self.now;
-            }
+        }
+        if self.unanswered_line_count > 0 {
+            // The robot may have read the next command only now, after this line.
+            self.last_command_read_at = self.now;
         }
         self.record_accepted_command(line);
         if is_complete && (line.starts_with("# fault: ") || line.starts_with("# held")) {

@@ -1,8 +1,9 @@
-//! Renders a video of a walk with a known displacement, for the page's tests. Writes FOLDER/video.y4m, which a browser
-//! uses as its camera, the same frames in FOLDER/frames, and the true displacement per cycle in FOLDER/truth.json.
+//! Renders a video of a gait with a known displacement, for the page's tests. Writes FOLDER/video.y4m, which a browser
+//! uses as its camera, the same frames in FOLDER/frames, and in FOLDER/truth.json the gait's displacement per cycle,
+//! from which each cycle in the video deviates slightly.
 //!
-//! `studio FOLDER WIDTH CYCLES [HIDDEN_TAG]...`: WIDTH is in pixels. The robot walks CYCLES cycles of the paper's
-//! `walk` and rests before and after them. Each HIDDEN_TAG is the id of a tag that is covered.
+//! `studio FOLDER WIDTH CYCLES [COVERED_TAG]...`: WIDTH is in pixels. The robot walks CYCLES cycles of the paper's
+//! `walk` and rests before and after them. Each COVERED_TAG is the id of a tag that is covered.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -25,7 +26,7 @@ const JPEG_QUALITY: u8 = 85;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = env::args().skip(1);
-    let usage = "usage: studio FOLDER WIDTH CYCLES [HIDDEN_TAG]...";
+    let usage = "usage: studio FOLDER WIDTH CYCLES [COVERED_TAG]...";
     let mut next_argument = || arguments.next().ok_or(usage);
     let folder = PathBuf::from(next_argument()?);
     let width: usize = next_argument()?.parse()?;
@@ -45,8 +46,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let walk = Walk::new(&gait, [start, 0.0, 0.0], cycle_count, variation, rng);
     let background = studio.render_background(rng);
-    let frames_dir = folder.join("frames");
-    fs::create_dir_all(&frames_dir)?;
+    let frames_folder = folder.join("frames");
+    fs::create_dir_all(&frames_folder)?;
     let [video_width, video_height] = studio.size;
     let header =
         format!("YUV4MPEG2 W{video_width} H{video_height} F{FRAMES_PER_S}:1 Ip A1:1 C420jpeg\n");
@@ -55,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let seconds = i as f64 / f64::from(FRAMES_PER_S);
         let frame = background.render_frame(seconds, |time| walk.pose_at(time), rng);
         let jpeg = encode_jpeg(&frame, JPEG_QUALITY)?;
-        fs::write(frames_dir.join(format!("{seconds:.4}s.jpg")), jpeg)?;
+        fs::write(frames_folder.join(format!("{seconds:.4}s.jpg")), jpeg)?;
         video.extend(b"FRAME\n");
         video.extend(frame.grey());
         video.resize(video.len() + video_width * video_height / 2, NEUTRAL_CHROMA);

@@ -42,6 +42,8 @@ export class BoardCalibrator {
   calibration: Readonly<Calibration>;
   /** True if the calibration is not saved. */
   isChanged = false;
+  /** True if an action noticed a restart, whose banner a radio may lose. */
+  private wasReset = false;
 
   private constructor(
     private readonly boardConsole: BoardConsole,
@@ -59,7 +61,7 @@ export class BoardCalibrator {
 
   /** True if the board is still connected and has not restarted. */
   get isCurrent(): boolean {
-    return this.boardConsole.isCurrent;
+    return !this.wasReset && this.boardConsole.isCurrent;
   }
 
   /** Runs an action; only one action may run at a time. Throws an error with a message for the user. */
@@ -67,7 +69,9 @@ export class BoardCalibrator {
     try {
       return await action(this.calibrator);
     } finally {
-      ({ calibration: this.calibration, isChanged: this.isChanged } = this.calibrator);
+      this.wasReset ||= this.calibrator.takeReset();
+      // After a restart, `isChanged` tells whether settings are lost.
+      if (!this.wasReset) ({ calibration: this.calibration, isChanged: this.isChanged } = this.calibrator);
     }
   }
 }

@@ -6,7 +6,7 @@ import type { Edits, Point, Scene } from '../robot';
 export interface Joint {
   name: string;
   position: Point;
-  /** Returns the edits of lengths that move the joint to `to`. If `isSymmetric`, the mirrored lengths change, too. */
+  /** Returns the edits of lengths that move the joint to `to`. If `isSymmetric`, the lengths that must stay equal change, too. */
   makeEdits(to: Point, isSymmetric: boolean): Edits;
 }
 
@@ -15,8 +15,11 @@ const toLinkKey = (n: number) => `links.l${n}`;
 const roundToHalf = (mm: number) => Math.round(mm * 2) / 2;
 const computeDistance = ([x, y]: Point, [u, v]: Point) => Math.hypot(x - u, y - v);
 
-/** Returns the distance between `from` and the projection of `to` onto the line from `from` through `towards`. */
-function projectDistance(from: Point, towards: Point, to: Point): number {
+/**
+ * Returns the distance from `from` to the projection of `to` onto the line from `from` through `towards`; negative on
+ * the side away from `towards`.
+ */
+function projectSignedDistance(from: Point, towards: Point, to: Point): number {
   const length = computeDistance(from, towards) || 1;
   return ((towards[0] - from[0]) * (to[0] - from[0]) + (towards[1] - from[1]) * (to[1] - from[1])) / length;
 }
@@ -68,8 +71,8 @@ export function listBars({ shafts, tips, points, sliders, legs }: Scene) {
 /** Returns the joints that the user can drag; `getLength` returns a length in robot.toml, mm, by its key. */
 export function listJoints({ shafts, tips, points, sliders, legs }: Scene, getLength: (key: string) => number): Joint[] {
   /**
-   * Lengthens each half of a slider by half of `change`, the change of the distance between its arm tips, so that the
-   * slider keeps its travel.
+   * Returns the edits that lengthen each half of a slider by half of `change`, the change of the distance between its
+   * arm tips, so that the slider keeps its travel.
    */
   const editHalves = (side: (typeof SIDES)[number], change: number): Edits =>
     [toLinkKey(side.rearHalf), toLinkKey(side.frontHalf)]
@@ -81,11 +84,11 @@ export function listJoints({ shafts, tips, points, sliders, legs }: Scene, getLe
       return {
         name: `end of the ${end.name}'s ${side} crank`,
         position: tips[servo],
-        makeEdits: (to, isSymmetric) => [ownKey, ...(isSymmetric ? [otherKey] : [])].map((n) => [toLinkKey(n), roundToHalf(projectDistance(shafts[servo], tips[servo], to))]),
+        makeEdits: (to, isSymmetric) => [ownKey, ...(isSymmetric ? [otherKey] : [])].map((n) => [toLinkKey(n), roundToHalf(projectSignedDistance(shafts[servo], tips[servo], to))]),
       };
     }),
   );
-  const ends = ENDS.map((end, n): Joint => ({
+  const endPoints = ENDS.map((end, n): Joint => ({
     name: `point of the ${end.name}`,
     position: points[n],
     makeEdits(to, isSymmetric) {
@@ -102,7 +105,7 @@ export function listJoints({ shafts, tips, points, sliders, legs }: Scene, getLe
         name: `end of the ${end} ${side.name} arm`,
         position: tip,
         makeEdits(to, isSymmetric) {
-          const length = roundToHalf(projectDistance(shaft, tip, to));
+          const length = roundToHalf(projectSignedDistance(shaft, tip, to));
           const scale = length / computeDistance(shaft, tip);
           const movedTip: Point = [shaft[0] + scale * (tip[0] - shaft[0]), shaft[1] + scale * (tip[1] - shaft[1])];
           const change = end === 'front' ? computeDistance(movedTip, rear) - computeDistance(front, rear) : computeDistance(front, movedTip) - computeDistance(front, rear);
@@ -121,7 +124,7 @@ export function listJoints({ shafts, tips, points, sliders, legs }: Scene, getLe
         // The head's servos move outward by +y, the tail's by -y.
         const change = roundToHalf((n === 0 ? 1 : -1) * (to[1] - ownShaft[1]));
         // Both sides change, so that equal sides stay equal.
-        const chassis = SIDES.flatMap((side): Edits => (change === 0 ? [] : [[toLinkKey(side.chassis), getLength(toLinkKey(side.chassis)) + change], ...editHalves(side, change)]));
+        const chassis = SIDES.flatMap((changedSide): Edits => (change === 0 ? [] : [[toLinkKey(changedSide.chassis), getLength(toLinkKey(changedSide.chassis)) + change], ...editHalves(changedSide, change)]));
         return [[toLinkKey(end.base), roundToHalf(2 * Math.abs(to[0] - middleX))], ...chassis];
       },
     })),
@@ -129,7 +132,7 @@ export function listJoints({ shafts, tips, points, sliders, legs }: Scene, getLe
   const knees = legs.map(({ pivots, joints }, n): Joint => ({
     name: `knee of leg ${n + 1}`,
     position: joints[0],
-    makeEdits: (to, isSymmetric) => ['leg.crank', ...(isSymmetric ? ['leg.follower'] : [])].map((key) => [key, roundToHalf(projectDistance(pivots[0], joints[0], to))]),
+    makeEdits: (to, isSymmetric) => ['leg.crank', ...(isSymmetric ? ['leg.follower'] : [])].map((key) => [key, roundToHalf(projectSignedDistance(pivots[0], joints[0], to))]),
   }));
-  return [...bases, ...arms, ...knees, ...cranks, ...ends];
+  return [...bases, ...arms, ...knees, ...cranks, ...endPoints];
 }

@@ -6,7 +6,7 @@ import type { ProblemList } from './problems';
 const readName = (toml: string) => /^name\s*=\s*["'](.+?)["']/m.exec(toml)?.[1] ?? 'robot';
 
 export class OwnRobots {
-  /** The robots in the list; another page may have changed the stored robots since. */
+  /** The robots in the list; another tab may have changed the stored robots since. */
   private listedRobots: SavedChanges[] = [];
 
   /** `loadFile` loads a robot by its file name; `showNames` shows the names of the robots put aside. */
@@ -32,7 +32,7 @@ export class OwnRobots {
     this.problems.setMessage('own', null);
     const { changes: previousRobot } = this.session.robot;
     await this.loadFile(ownRobot.file);
-    // The user has chosen another robot meanwhile, whose file is still being loaded.
+    // Empty: the user has meanwhile chosen another robot, whose file is still being loaded.
     if (this.session.robot.file === '') return;
     // If the file has changed since the robot was put aside, the text is loaded without its floor, servos and supply.
     const isRestored = (await this.session.robot.restoreSaved(ownRobot)) || (await this.session.robot.change(ownRobot.toml)) === null;

@@ -20,7 +20,7 @@ interface Pulse {
   widthCycles: number;
 }
 
-/** Returns the label on the board of the pin with this Arduino number. */
+/** Returns the label that the board prints beside a pin, from the pin's Arduino number. */
 const formatPin = (pin: number) => (pin >= 14 ? `A${pin - 14}` : `D${pin}`);
 
 export class ScopeView {
@@ -63,7 +63,7 @@ export class ScopeView {
     if (this.pulses.length > 64) this.pulses.splice(0, 32);
   }
 
-  /** Updates the table; called less often than `draw`, because each change of a text causes a layout. */
+  /** Updates the table; called less often than `draw`, because each changed text makes the browser lay out the page again. */
   updateNumbers(scene: Scene | null): void {
     if (!isShown(element<HTMLDetailsElement>('pulses'))) return;
     this.rows.forEach(({ width, angle }, servo) => {
@@ -88,11 +88,11 @@ export class ScopeView {
       context.strokeRect(-1, servo * rowHeight, width + 2, rowHeight);
       if (!this.hasPulses) continue;
       beginLines(context, getServoColour(servo), 2);
-      const edges = this.pulses
+      const spans = this.pulses
         .filter((pulse) => pulse.servo === servo)
         .map(({ riseCycle, widthCycles }) => [toX(riseCycle), toX(riseCycle + widthCycles)])
         .filter(([, to]) => to >= 0);
-      addPolyline(context, [0, lowY], ...edges.flatMap(([from, to]): [number, number][] => [[from, lowY], [from, highY], [to, highY], [to, lowY]]), [width, lowY]);
+      addPolyline(context, [0, lowY], ...spans.flatMap(([from, to]): [number, number][] => [[from, lowY], [from, highY], [to, highY], [to, lowY]]), [width, lowY]);
       context.stroke();
     }
   }

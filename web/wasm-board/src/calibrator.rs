@@ -33,6 +33,12 @@ impl Calibrator {
         self.0.has_unsaved_changes()
     }
 
+    /// Returns true if a reset of the robot was noticed since the last call; the robot has lost its unsaved settings.
+    #[wasm_bindgen(js_name = takeReset)]
+    pub fn take_reset(&mut self) -> bool {
+        self.0.take_reset()
+    }
+
     /// Makes the robot stand.
     pub async fn stand(&mut self) -> Result<(), JsValue> {
         self.0.stand().await.map(drop).map_err(error_to_js)

@@ -135,7 +135,7 @@ impl Model {
         let mut next_bought_index = self.needed_parts().count();
         let bodies = self.assembly.bodies().iter().map(|body| {
             sole_z = sole_z.min(body.z()[0]);
-            let part = self.needed_parts().position(|part| part.has_body(body));
+            let part = self.needed_parts().position(|part| part.prints_body(body));
             let transform = part.map(|part| self.parts[part].transform_to_body(body));
             let step_index = self.steps.iter().position(|step| step.adds(body));
             let solid = part.unwrap_or_else(|| {

@@ -24,7 +24,7 @@ impl Model {
     pub fn make_solids(&self) -> Result<Vec<Triangles>, Refusal> {
         let parts = self.needed_parts();
         let printed = parts.map(|part| make_triangles(&part.name, &part.build_printed_layers().0));
-        let is_bought = |body: &&Body| !self.needed_parts().any(|part| part.has_body(body));
+        let is_bought = |body: &&Body| !self.needed_parts().any(|part| part.prints_body(body));
         let bodies = self.assembly.bodies().iter().filter(is_bought);
         let bought = bodies.map(|body| make_triangles(&body.name, &body.prisms));
         printed.chain(bought).collect()

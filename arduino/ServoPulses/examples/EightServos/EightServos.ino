@@ -12,8 +12,8 @@ void setup() {
 }
 
 void loop() {
-  if (Servo::frames() == lastFrame) return;
-  lastFrame = Servo::frames();
+  if (Servo::frameCount() == lastFrame) return;
+  lastFrame = Servo::frameCount();
   for (uint8_t i = 0; i < 8; i++) {
     uint16_t ramp = uint16_t(frame * (16 * i + 5)) % 32000;
     servos[i].writeCycles(16000 + (ramp < 16000 ? ramp : 32000 - ramp));

@@ -68,7 +68,7 @@ const MAX_CENTIDEG: u16 = CENTIDEG_PER_TURN as u16;
 enum Syntax {
     /// A whole number in decimal digits.
     Whole,
-    /// Degrees with a sign and at most two decimals, read as an [`Angle`].
+    /// Degrees with an optional sign and at most two decimals, read as an [`Angle`].
     Degrees,
     /// A number with at most two decimals, read as hundredths.
     Hundredths,
@@ -285,7 +285,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Finds the gait with whose name the line begins. Returns the gait and the count of cycles after the name, 0 if there
+/// Finds the gait whose name begins the line. Returns the gait and the count of cycles after the name, 0 if there
 /// is none. Any blanks may separate the words. If a gait's name is that of another gait followed by a number, the
 /// longer name has priority.
 #[inline(never)]
@@ -335,7 +335,7 @@ fn match_gait_name(line: &[u8], name: GaitName) -> Result<u16, LineError> {
 const DECIMAL_COUNT: u8 = 2;
 
 /// Parses a word as a number: returns its magnitude and true for a minus sign, or `None` if the word does not have this
-/// syntax. A magnitude of more than sixteen bits becomes 65535.
+/// syntax. A magnitude of 65530 or more becomes 65535.
 #[inline(never)]
 fn parse_number(word: &[u8], syntax: Syntax) -> Option<(u16, bool)> {
     let (mut sign, mut digits) = (b'+', word);
@@ -373,10 +373,10 @@ fn parse_number(word: &[u8], syntax: Syntax) -> Option<(u16, bool)> {
     Some((magnitude, is_negative))
 }
 
-/// Appends a decimal digit to a number; saturates at 65535.
+/// Appends a decimal digit to a number; returns 65535 if the result is 65530 or more.
 #[inline(never)]
 fn append_digit(number: u16, digit: u8) -> u16 {
-    // With another digit, 6553 may exceed sixteen bits.
+    // 6553 followed by a digit from 6 to 9 exceeds sixteen bits.
     if number < 6553 {
         number * 10 + u16::from(digit)
     } else {

@@ -34,7 +34,8 @@ impl Fault {
     }
 }
 
-/// Frames for which the LED is lit in each flash, and dark after each flash.
+/// Frames for which the LED is lit in each flash, and dark after each flash; a power of two, because one bit of the
+/// frame tells lit from dark.
 const FLASH_FRAMES: u8 = 8;
 
 /// Additional dark frames after the last flash.
@@ -117,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn any_pattern_replaces_any_other_at_once_at_every_frame_and_repeats() {
+    fn a_new_pattern_starts_at_once_in_any_frame_of_another_and_repeats() {
         let shown_faults: Vec<Option<Fault>> =
             ALL_FAULTS.into_iter().map(Some).chain([None]).collect();
         for first_fault in &shown_faults {

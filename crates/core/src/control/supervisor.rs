@@ -16,7 +16,8 @@ pub enum State {
     Resting,
     /// The robot stands, holds a pose or moves to a pose.
     Posing,
-    /// The robot is in a gait other than `stand`, or changes to such a gait.
+    /// The robot is in a gait other than `stand`, changes to such a gait, or runs a routine, even while the routine
+    /// stands or rests.
     Walking,
 }
 
@@ -25,7 +26,7 @@ pub enum State {
 pub enum Event {
     /// The command `stand`.
     Stand,
-    /// A motion command other than `stand`.
+    /// A command that starts a gait other than `stand`, or a move to a pose.
     Move,
     /// The command `stop`.
     Stop,

@@ -5,7 +5,8 @@ use crate::numbers::units::Sine;
 
 /// One of the ten margins of a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-// Discriminants start at 3, so that the absence of a hazard is stored as zero: see `Main::new`.
+// Discriminants start at 3: 0 remains for the absence of a hazard, so that `Main::new` consists of zeros, 1 and 2 for
+// the other hazards.
 #[repr(u8)]
 pub enum Margin {
     /// The margin between the two couplers of an end.
@@ -17,8 +18,9 @@ pub enum Margin {
 }
 
 impl Margin {
-    /// True if `value` is a computed margin. If two couplers are nearly in line or cannot meet, the value is 0, which
-    /// means only that their type-2 margin is below a tenth; see [`crate::guard::five_bar::FiveBar::margins`].
+    /// True if `value` is a computed margin; false for a type-2 margin of 0, which means only that the couplers are
+    /// nearly in line or cannot meet, and that their margin is below a tenth; see
+    /// [`crate::guard::five_bar::FiveBar::margins`].
     pub fn is_known(self, value: Sine) -> bool {
         !matches!(self, Self::Type2(_)) || value != Sine(0)
     }

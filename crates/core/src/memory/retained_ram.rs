@@ -1,13 +1,14 @@
 //! The state that survives a reset of the processor, in a few bytes of RAM that the start-up code does not clear.
 //!
 //! RAM keeps its contents while there is power. The boot loader of the UNO clears the register with the cause of the
-//! reset and does not pass its value on. Therefore these bytes have a mark and checksums, from which the next run
-//! determines whether power was lost and whether the program hung, and restores the servo state. Random bytes seem to
+//! reset and does not pass its value on. Therefore these bytes have a mark, the state of the program and
+//! checksums, from which the next run determines whether power was lost and whether the program hung, and restores the
+//! servo state. Random bytes seem to
 //! have survived a reset (a correct mark and a valid program state) with a probability of 1 in 32 768, and then have a
 //! seemingly valid servo state with a probability of 1 in 256.
 //!
-//! A reset may occur between any two stores without a loss of the servo state, of which two copies are written
-//! alternately. One byte, which is stored last, selects the complete copy.
+//! Two copies of the servo state are written alternately, so a reset between any two stores does not lose it. One byte,
+//! which is stored last, selects the complete copy.
 //!
 //! | cell | content |
 //! |---|---|
@@ -35,7 +36,7 @@ pub trait Cells {
 }
 
 const MARK_CELL: usize = 0;
-const STATE_CELL: usize = 1;
+const PROGRAM_STATE_CELL: usize = 1;
 const RESET_COUNT_CELL: usize = 2;
 const VALID_COPY_CELL: usize = 3;
 const RATE_CELL: usize = 4;
@@ -47,24 +48,24 @@ const CELLS_PER_COPY: usize = 19;
 /// The value of [`MARK_CELL`] while there is power.
 const POWERED_MARK: u8 = 0x96;
 
-/// The value of [`STATE_CELL`] while the program runs.
+/// The value of [`PROGRAM_STATE_CELL`] while the program runs.
 const RUNNING: u8 = 0x5c;
 
-/// The value of [`STATE_CELL`] after the program has hung.
+/// The value of [`PROGRAM_STATE_CELL`] after the program has hung.
 const HUNG: u8 = 0xa3;
 
 /// The flag in a copy's first byte that is set while the servos rest; the other bits are the frames awake.
 const RESTING_FLAG: u8 = 0x80;
 
 /// The first byte of a copy that holds no servo state.
-const EMPTY_STATE: u8 = 0x7f;
+const NO_SERVO_STATE: u8 = 0x7f;
 
 /// Returns the information that survived the reset, and marks the program as running. `reported_cause` is the cause
 /// that the chip reports, or `None` if a boot loader has cleared it. Call this function once, before the watchdog
 /// starts.
 #[inline(never)]
 pub fn begin<C: Cells>(cells: &C, reported_cause: Option<Cause>) -> Restart {
-    let (state, reset_count) = (cells.get(STATE_CELL), cells.get(RESET_COUNT_CELL));
+    let (state, reset_count) = (cells.get(PROGRAM_STATE_CELL), cells.get(RESET_COUNT_CELL));
     let has_survived = cells.get(MARK_CELL) == POWERED_MARK && matches!(state, RUNNING | HUNG);
     let cause = match reported_cause {
         Some(cause) => cause,
@@ -90,12 +91,12 @@ pub fn begin<C: Cells>(cells: &C, reported_cause: Option<Cause>) -> Restart {
         read_servo_state(cells, &mut restart);
     } else {
         // By chance RAM may contain a seemingly valid copy, which the next run must not find.
-        cells.set(FIRST_COPY_CELL, EMPTY_STATE);
-        cells.set(FIRST_COPY_CELL + CELLS_PER_COPY, EMPTY_STATE);
+        cells.set(FIRST_COPY_CELL, NO_SERVO_STATE);
+        cells.set(FIRST_COPY_CELL + CELLS_PER_COPY, NO_SERVO_STATE);
     }
     store_rate(cells, restart.rate);
     cells.set(RESET_COUNT_CELL, restart.reset_count);
-    cells.set(STATE_CELL, RUNNING);
+    cells.set(PROGRAM_STATE_CELL, RUNNING);
     cells.set(MARK_CELL, POWERED_MARK);
     restart
 }
@@ -132,18 +133,18 @@ pub fn store_rate<C: Cells>(cells: &C, rate: BaudRate) {
 
 /// Marks the program as hung; called by the interrupt handler of the watchdog.
 pub fn mark_hung<C: Cells>(cells: &C) {
-    cells.set(STATE_CELL, HUNG);
+    cells.set(PROGRAM_STATE_CELL, HUNG);
 }
 
 /// Reads the valid copy, if any, into `restart`.
 #[inline(never)]
 fn read_servo_state<C: Cells>(cells: &C, restart: &mut Restart) {
     let mut copy = CopyCursor::new(cells, cells.get(VALID_COPY_CELL) & 1);
-    let state = copy.read_byte();
+    let first_byte = copy.read_byte();
     let suspected_brown_outs = copy.read_byte();
     let mut servo_state = ServoState {
-        is_resting: state & RESTING_FLAG != 0,
-        frames_awake: state & !RESTING_FLAG,
+        is_resting: first_byte & RESTING_FLAG != 0,
+        frames_awake: first_byte & !RESTING_FLAG,
         ..ServoState::RESTING
     };
     for sweep in &mut servo_state.pose.0 {
@@ -153,7 +154,7 @@ fn read_servo_state<C: Cells>(cells: &C, restart: &mut Restart) {
         width.0 = copy.read_word();
     }
     let checksum = !copy.sum;
-    if copy.read_byte() == checksum && state != EMPTY_STATE {
+    if copy.read_byte() == checksum && first_byte != NO_SERVO_STATE {
         restart.suspected_brown_outs = suspected_brown_outs;
         restart.servo_state_before = Some(servo_state);
     }

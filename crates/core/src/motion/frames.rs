@@ -20,14 +20,17 @@
 //! |---|---|---|
 //! | `Resting`: no pulses | a gait or a pose: queued, `Holding`, and the servos wake; `rest`, `stop`: - | - |
 //! | `Holding` a pose | a gait or a pose: queued | with a next target: `Moving` towards it |
-//! | `Moving` to a pose | a gait or a pose: queued; the gait to which the move leads: - | with a next target: brakes, then is `Moving` towards that target; without: on arrival `Holding`, or `Cycling` from phase 0 |
-//! | `Cycling` through a gait | another gait or a pose: queued; the same gait: - | with a next target: brakes, then is `Moving` towards that target |
-//! | any but `Resting` | `stop`: `Holding`, no next target; `rest`: `Resting`, no next target | if its pose is unsafe: `Holding` the last pose, no next target, and the hazard is kept |
+//! | `Moving` to a pose | a gait or a pose: queued; the gait to which the move leads: - | with a next target: brakes, then is `Moving` towards it; without: on arrival `Holding`, or `Cycling` from phase 0 |
+//! | `Cycling` through a gait | another gait or a pose: queued; the same gait: - | with a next target: brakes, then is `Moving` towards it |
+//! | any but `Resting` | `stop`: `Holding`, no next target; `rest`: `Resting`, no next target | if the new pose is unsafe: `Holding` the last pose, no next target, and the hazard is kept |
+//!
+//! The next target may also be a standstill, at the end of a counted gait or of a routine: the motion then brakes and
+//! is `Holding`.
 //!
 //! A new calibration changes the pulses of a pose. In every state, the pose then stays the same while the pulses
 //! settle, that is, change to their new widths at the slew limit. Then the motion accelerates again from a pace of 0.
 //!
-//! Invariants: every pose that leaves [`Motion::advance_frame`] has passed the guard. An unsafe pose is never sent;
+//! Invariants: [`Motion::advance_frame`] adopts only poses that have passed the guard. An unsafe pose is never sent;
 //! instead the last safe pose is held, and the hazard is stored for the console. The 50 Hz call of
 //! [`Motion::advance_frame`] is the only clock, so the pace does not depend on the processor's load.
 
@@ -83,7 +86,7 @@ pub struct Motion {
     servo_state: ServoState,
     /// The hazard that made the guard stop the robot; `None` once another motion has been ordered.
     hazard: Option<Hazard>,
-    /// Frames since power-on.
+    /// Frames since the program started.
     frame_count: u32,
 }
 
@@ -148,7 +151,7 @@ impl Motion {
         self.calibration = *calibration;
     }
 
-    /// Starts changing the pulses to the widths of a new calibration at the slew limit, during which the pose stays the
+    /// Starts to change the pulses, at the slew limit, to the widths of a new calibration. Meanwhile the pose stays the
     /// same.
     pub fn settle(&mut self) {
         if let State::Moving { pace, .. } | State::Cycling { pace, .. } = &mut self.state {
@@ -157,8 +160,8 @@ impl Motion {
         self.is_settling = true;
     }
 
-    /// True if the current pose, the end of the current move or the next target would exceed the travel of `servo` with
-    /// `calibration`.
+    /// True if the current pose, the end of the current move or the next pose would exceed the travel of `servo` with
+    /// `calibration`; the poses of gaits are not checked.
     pub fn exceeds_travel(&self, servo: Servo, calibration: &Calibration) -> bool {
         let is_beyond = |pose: &Pose| !calibration.reaches(*servo.pick(&pose.0));
         let is_target_beyond = match &self.state {
@@ -202,8 +205,8 @@ impl Motion {
         has_motion
     }
 
-    /// True if the robot came to a standstill in the last frame: a counted gait was complete, or
-    /// [`Motion::brake_to_standstill`] was called.
+    /// True if the robot came to a standstill in the last frame, after the last cycle of a counted gait or after
+    /// [`Motion::brake_to_standstill`].
     pub const fn has_come_to_standstill(&self) -> bool {
         self.has_come_to_standstill
     }
@@ -272,12 +275,12 @@ impl Motion {
         let mut wake_frame = WAKE_INTERVAL_FRAMES;
         for (index, pulse) in pulses.0.iter_mut().enumerate() {
             let calibration = &self.calibration[index];
-            let sent_width = &mut self.servo_state.sent_pulses.0[index];
+            let stored_width = &mut self.servo_state.sent_pulses.0[index];
             let is_asleep = self.servo_state.frames_awake < wake_frame;
             let mut width = calibration.width(self.servo_state.pose.0[index]);
-            if self.is_settling && sent_width.0 != 0 {
-                // A servo's first pulse repeats the last stored width, even a width from before a reset, which may have
-                // occurred while the pulses were settling, or before a stored width was sent.
+            if self.is_settling && stored_width.0 != 0 {
+                // A servo's first pulse repeats its stored width, even one from before a reset: the reset may have
+                // occurred while the pulses were settling, or before the stored width was sent.
                 let is_repeated = is_first_frame || frames_awake_before < wake_frame;
                 let max_change = if is_repeated {
                     0
@@ -286,11 +289,11 @@ impl Motion {
                 };
                 let target_width = width.0;
                 width.0 = target_width
-                    .max(sent_width.0.saturating_sub(max_change))
-                    .min(sent_width.0.saturating_add(max_change));
+                    .max(stored_width.0.saturating_sub(max_change))
+                    .min(stored_width.0.saturating_add(max_change));
                 is_still_settling |= width.0 != target_width;
             }
-            *sent_width = width;
+            *stored_width = width;
             if !is_asleep {
                 *pulse = width;
             }
@@ -316,7 +319,7 @@ impl Motion {
             (None, State::Moving { gait: None, .. }) => Activity::Pose,
             (None, State::Moving { gait: Some(id), .. })
             | (None | Some(Target::Standstill), State::Cycling { id, .. }) => Activity::Gait(id),
-            // A move that is braking to a standstill.
+            // A move that brakes to a standstill, or a held pose whose next target was cancelled.
             (Some(Target::Standstill), _) => Activity::Stop,
         }
     }

@@ -1,6 +1,7 @@
-//! The numbers of a robot: their units, types and integer arithmetic, and the section of flash that contains them.
+//! The numbers of a robot: their units, types and integer arithmetic, and the section of flash that contains them; also
+//! the firmware's mark and the baud rates.
 //!
-//! This is the lowest layer of the crate: every other layer uses it, but it uses no other layer.
+//! This is the lowest layer of the crate: every other layer uses it, and it uses none of them.
 
 pub mod calibration;
 pub mod cells;

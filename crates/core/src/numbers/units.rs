@@ -41,7 +41,7 @@ pub const ONE_Q14: i32 = 1 << 14;
 /// One gait cycle in steps of a phase.
 pub const CYCLE: u32 = 1 << 24;
 
-/// A gait cycle, as the argument of a waveform, see [`phase16`].
+/// One gait cycle in steps of [`phase16`], the argument of the waveforms.
 pub const CYCLE16: u32 = 1 << 16;
 
 /// An angle in the chassis frame, 1/65536 turn.
@@ -111,8 +111,8 @@ impl Angle {
         })
     }
 
-    /// Converts the angle to hundredths of a degree, 0..36000. Returns exactly the argument of
-    /// [`Angle::from_centideg`], because the step of an angle is finer than a hundredth of a degree.
+    /// Converts the angle to hundredths of a degree, 0..36000. For an angle from [`Angle::from_centideg`] the result is
+    /// exactly its argument, modulo a turn, because the step of an angle is finer than a hundredth of a degree.
     pub fn centideg(self) -> u16 {
         // The last step of a turn, 359.9945 deg, does not round to 360.
         ((mul_unsigned(self.0, CENTIDEG_PER_TURN as u16) + 0x8000) >> 16) as u16
@@ -151,7 +151,7 @@ impl Scale {
     }
 }
 
-/// Returns the highest sixteen bits of a phase, the argument of the waveforms, 1/65536 cycle.
+/// Returns the highest sixteen of a phase's 24 bits, the argument of the waveforms, 1/65536 cycle.
 pub const fn phase16(phase: u32) -> u16 {
     (phase >> 8) as u16
 }
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn every_length_converts_to_the_nearest_hundredth_of_a_millimetre() {
+    fn lengths_convert_to_the_nearest_hundredth_of_a_millimetre() {
         for bits in 0..=14 {
             let scale = Scale { bits };
             let lengths = (-65_535..=65_535).step_by(7);
@@ -234,11 +234,11 @@ mod tests {
     }
 
     #[test]
-    fn a_phase_converts_to_thousandths_rounded_down_below_a_whole_cycle() {
+    fn a_phase_converts_to_thousandths_rounded_down_and_always_below_a_whole_cycle() {
         for phase in (0..CYCLE).step_by(97).chain([CYCLE - 1]) {
             let exact = f64::from(phase) * 1000.0 / f64::from(CYCLE);
             let thousandths = thousandths_from_phase(phase);
-            // Waveforms and the console use only the highest sixteen bits.
+            // Waveforms and the console use only the highest sixteen of the 24 bits.
             let rounding_loss = exact - f64::from(thousandths);
             let allowed_loss = 0.0..1.0 + 1000.0 / 65536.0;
             assert!(allowed_loss.contains(&rounding_loss), "{phase}");

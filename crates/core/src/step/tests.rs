@@ -9,13 +9,13 @@ use crate::motion::{Activity, Motion};
 use crate::sample::Sample;
 use crate::virtual_board::{RunningRobot, Transmitter, VirtualBoard};
 
-/// Starts a robot's program at tick `ticks`, after the board has received `received`.
-fn start_robot(ticks: u8, received: &str) -> RunningRobot {
+/// Starts a robot's program after `ticks` ticks, when the board has received the bytes `input`.
+fn start_robot(ticks: u8, input: &str) -> RunningRobot {
     let mut board = VirtualBoard::default();
     for _ in 0..ticks {
         board.tick();
     }
-    board.send(received.as_bytes());
+    board.send(input.as_bytes());
     RunningRobot::with_flash(Sample::asymmetric().section(), board)
 }
 
@@ -68,8 +68,9 @@ fn a_tick_has_priority_over_output_and_output_over_input() {
 #[test]
 fn without_room_for_the_longest_line_nothing_is_written_but_frames_continue() {
     let mut robot = start_robot(0, "speed 50\r");
-    robot.board.transmitter = Transmitter::new(16_000, 255);
-    let queued_bytes = 255 - u64::from(MAX_OUTPUT_LINE_BYTES) + 1;
+    let capacity = 255;
+    robot.board.transmitter = Transmitter::new(16_000, capacity);
+    let queued_bytes = capacity - u64::from(MAX_OUTPUT_LINE_BYTES) + 1;
     robot.board.transmitter.queue_bytes(queued_bytes);
     assert_eq!(robot.main.step(&mut robot.board), StepResult::Idle(0));
     assert_eq!(count_written_lines_and_unread_bytes(&robot), (0, 9));
@@ -82,6 +83,16 @@ fn without_room_for_the_longest_line_nothing_is_written_but_frames_continue() {
     let text = &robot.board.transmitter.text;
     assert!(text.ends_with("\r\nok speed 50\r\n"), "{text}");
     assert_eq!(robot.motion().frame_count(), 1);
+}
+
+#[test]
+fn the_eeprom_is_written_even_while_a_line_waits_for_room() {
+    let mut robot = RunningRobot::power_on(*Sample::asymmetric());
+    robot.run_frames(100);
+    robot.board.send(b"rest\r");
+    robot.run_without_reader(10);
+    assert!(robot.has_output());
+    assert!(!robot.main.control().is_memory_in_use());
 }
 
 #[test]

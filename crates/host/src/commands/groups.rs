@@ -31,20 +31,20 @@ fn list_commands(command: &Command, known_commands: &[CommandEntry]) -> String {
     let width = name_lengths.max().unwrap_or(0);
     let mut text = String::new();
     for entries in known_commands.chunk_by(|entry, next| entry.group == next.group) {
-        let built_commands = entries
+        let commands_in_build = entries
             .iter()
             .filter_map(|entry| command.find_subcommand(entry.name()));
-        let built_commands: Vec<&Command> = built_commands.collect();
-        if built_commands.is_empty() {
+        let commands_in_build: Vec<&Command> = commands_in_build.collect();
+        if commands_in_build.is_empty() {
             continue;
         }
         let group = entries[0].group;
         _ = writeln!(text, "{}", format_heading(group));
         if group == DEVELOPMENT {
-            let names: Vec<&str> = built_commands.iter().map(|sub| sub.get_name()).collect();
+            let names: Vec<&str> = commands_in_build.iter().map(|sub| sub.get_name()).collect();
             _ = writeln!(text, "  {}", names.join(", "));
         } else {
-            for sub in built_commands {
+            for sub in commands_in_build {
                 text += &format_command(sub, width);
             }
         }

@@ -16,15 +16,16 @@ use crate::{Failure, commands::completions};
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
 use super::absent::{AbsentCommand, absent_command_failure, is_in_build};
 
-// The types in this file have no doc comments because clap would show them instead of the arguments' comments. A
-// `WithSubcommand` is a command that runs either with its own arguments or with a subcommand.
+// The types in this file have no doc comments because clap would show them instead of the arguments' comments.
+
+// A command that runs either with its own arguments or with a subcommand.
 #[derive(Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
-pub struct WithSubcommand<A: Args, B: Subcommand> {
+pub struct WithSubcommand<A: Args, S: Subcommand> {
     #[command(flatten)]
     arguments: A,
     #[command(subcommand)]
-    subcommand: Option<B>,
+    subcommand: Option<S>,
 }
 
 #[cfg(feature = "console")]
@@ -64,7 +65,7 @@ pub fn run_info(
 pub enum ConsoleSubcommand {
     #[cfg(feature = "simulator")]
     Replay(drive::console::replay::Args),
-    /// Draw a recorded session: missing, this program was built without the simulator
+    /// Draw a recorded session (missing: this program was built without the simulator)
     #[cfg(not(feature = "simulator"))]
     Replay(AbsentCommand),
 }
@@ -151,7 +152,7 @@ pub fn run_sim(args: WithSubcommand<simulate::sim::Args, SimSubcommand>) -> Resu
 pub enum DrawSubcommand {
     #[cfg(feature = "paper")]
     Charts(crate::paper::charts::Args),
-    /// Draw all charts: missing, this program was built without the commands that compute
+    /// Draw all charts (missing: this program was built without the commands that compute)
     #[cfg(not(feature = "paper"))]
     Charts(AbsentCommand),
 }

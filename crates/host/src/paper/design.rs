@@ -42,7 +42,7 @@ pub struct Args {
     /// Distance between the two servo shafts, mm [default: 20]
     #[arg(long, value_name = "MM", value_parser = parse_base)]
     l0: Option<f64>,
-    /// Crank; two or three of r1, r2, r3 are required [default: 0.3]
+    /// Crank; give two or three of r1, r2, r3, or none [default: 0.3]
     #[arg(long, value_parser = Quantity::PROPORTION.parser())]
     r1: Option<f64>,
     /// Coupler [default: 0.5]
@@ -54,13 +54,13 @@ pub struct Args {
     /// Print the performance charts over the whole design space, as CSV
     #[arg(long, group = "grid", conflicts_with_all = ["sweep", "shortest", "top"])]
     chart: bool,
-    /// Rank all designs that keep the servo travel and the margins
+    /// Rank all designs that stay within the servos' travel, the margins and the sliders' stroke
     #[arg(long, group = "grid")]
     search: bool,
     /// Grid step of --chart and --search
     #[arg(long, requires = "grid", default_value_t = 0.02, value_parser = range_parser(0.002, 0.2, ""))]
     step: f64,
-    /// Sweep of every servo that --search requires, degrees to either side
+    /// Sweep that --search requires of every servo, degrees to either side
     #[arg(long, requires = "search", default_value_t = 20.0, value_parser = range_parser(1.0, 60.0, " degrees"))]
     sweep: f64,
     /// Shortest link that --search allows, mm; two M3 joints need about this length
@@ -125,7 +125,7 @@ impl Args {
             (Some(r1), Some(r2), None) => Proportions::new(r1, r2, PROPORTION_SUM - r1 - r2),
             (Some(r1), None, Some(r3)) => Proportions::new(r1, PROPORTION_SUM - r1 - r3, r3),
             (None, Some(r2), Some(r3)) => Proportions::new(PROPORTION_SUM - r2 - r3, r2, r3),
-            _ => Err("two or three of --r1, --r2, --r3 are required".to_string()),
+            _ => Err("give two or three of --r1, --r2, --r3, or none".to_string()),
         }
     }
 }

@@ -71,7 +71,7 @@ impl Plot {
         (self.corner.0 + self.size.0, self.corner.1 + self.size.1)
     }
 
-    /// Adds a grid in the background.
+    /// Adds grid lines at the ticks of both axes.
     pub fn draw_grid(&self, mut group: Group, x_axis: &Axis, y_axis: &Axis) -> Group {
         let ((left, top), (right, bottom)) = (self.corner, self.lower_right_corner());
         for value in compute_ticks(self.x_range, x_axis.tick_step) {
@@ -120,31 +120,36 @@ impl Plot {
         cell_counts: (usize, usize),
         colour_at: impl Fn(f64, f64) -> Option<&'static str>,
     ) -> Group {
-        let width = (self.x_range.1 - self.x_range.0) / cell_counts.0 as f64;
-        let height = (self.y_range.1 - self.y_range.0) / cell_counts.1 as f64;
-        let mut outlines: BTreeMap<&str, String> = BTreeMap::new();
+        let cell_width = (self.x_range.1 - self.x_range.0) / cell_counts.0 as f64;
+        let cell_height = (self.y_range.1 - self.y_range.0) / cell_counts.1 as f64;
+        let mut path_data: BTreeMap<&str, String> = BTreeMap::new();
         for row in 0..cell_counts.1 {
-            let y = self.y_range.0 + row as f64 * height;
-            let column_left = |column: usize| self.x_range.0 + column as f64 * width;
-            let cell_colour =
-                |column: usize| colour_at(column_left(column) + width / 2.0, y + height / 2.0);
+            let row_bottom = self.y_range.0 + row as f64 * cell_height;
+            let column_left = |column: usize| self.x_range.0 + column as f64 * cell_width;
+            let cell_colour = |column: usize| {
+                colour_at(
+                    column_left(column) + cell_width / 2.0,
+                    row_bottom + cell_height / 2.0,
+                )
+            };
             let fills: Vec<_> = (0..cell_counts.0).map(cell_colour).collect();
             let mut first_column = 0;
             for equal_fills in fills.chunk_by(|fill, next_fill| fill == next_fill) {
                 let end_column = first_column + equal_fills.len();
                 if let Some(fill) = equal_fills[0] {
-                    let (left, top) = self.to_page_point(column_left(first_column), y + height);
-                    let (right, bottom) = self.to_page_point(column_left(end_column), y);
-                    let (band_width, band_height) = (right - left, bottom - top);
+                    let (left, top) =
+                        self.to_page_point(column_left(first_column), row_bottom + cell_height);
+                    let (right, bottom) = self.to_page_point(column_left(end_column), row_bottom);
+                    let (run_width, run_height) = (right - left, bottom - top);
                     let _ = write!(
-                        outlines.entry(fill).or_default(),
-                        "M{left:.1} {top:.1}h{band_width:.1}v{band_height:.1}h-{band_width:.1}z"
+                        path_data.entry(fill).or_default(),
+                        "M{left:.1} {top:.1}h{run_width:.1}v{run_height:.1}h-{run_width:.1}z"
                     );
                 }
                 first_column = end_column;
             }
         }
-        for (fill, outline) in outlines {
+        for (fill, outline) in path_data {
             let path = Path::new().set("d", outline).set("fill", fill);
             group = group.add(path.set("shape-rendering", "crispEdges"));
         }
@@ -180,6 +185,7 @@ fn compute_ticks(range: (f64, f64), step: f64) -> impl Iterator<Item = f64> {
 fn format_tick(value: f64, step: f64) -> String {
     let is_enough = |decimals: &i32| (step * 10f64.powi(*decimals)).fract().abs() < 1e-9;
     let decimals = (0..4).find(is_enough).unwrap_or(4) as usize;
+    // Adding 0.0 turns -0.0 into 0.0.
     format!("{:.decimals$}", value + 0.0)
 }
 
@@ -219,9 +225,9 @@ impl ColourScale {
         }
         for i in 0..=band_count {
             let value = self.min + (self.max - self.min) * i as f64 / band_count as f64;
-            let top = corner.1 + height - i as f64 * band_height;
+            let limit_y = corner.1 + height - i as f64 * band_height;
             let label = format!("{value:.decimals$}");
-            group = group.add(text_start(&label, (corner.0 + 30.0, top + 5.0), 14.0));
+            group = group.add(text_start(&label, (corner.0 + 30.0, limit_y + 5.0), 14.0));
         }
         group
             .add(rectangle(corner, (22.0, height), "none").set("stroke", DARK))
@@ -229,15 +235,22 @@ impl ColourScale {
     }
 }
 
-/// Adds an entry of a legend: a short line and the line's meaning.
+/// Adds an entry of a legend: a short line from `left_end`, and the line's meaning.
 pub fn draw_legend_entry(
     group: Group,
-    point: (f64, f64),
+    left_end: (f64, f64),
     colour: &str,
     dashes: &str,
     meaning: &str,
 ) -> Group {
     group
-        .add(line(point, (point.0 + 34.0, point.1), colour, 3.0).set("stroke-dasharray", dashes))
-        .add(text_start(meaning, (point.0 + 44.0, point.1 + 5.0), 15.0))
+        .add(
+            line(left_end, (left_end.0 + 34.0, left_end.1), colour, 3.0)
+                .set("stroke-dasharray", dashes),
+        )
+        .add(text_start(
+            meaning,
+            (left_end.0 + 44.0, left_end.1 + 5.0),
+            15.0,
+        ))
 }

@@ -62,7 +62,8 @@ impl RobotArgs {
     /// Returns the text of the robot file.
     ///
     /// # Errors
-    /// Fails if the file is missing or is not valid UTF-8, or if the current folder cannot be determined.
+    /// Fails if the file is missing or is not valid UTF-8, if `--robot` is a mistyped name, or if the current folder
+    /// cannot be determined.
     pub(crate) fn text(&self) -> Result<String, Failure> {
         match self.find_source()? {
             RobotSource::File(path) => files::read_text(&path),
@@ -78,7 +79,8 @@ impl RobotArgs {
     /// Reads and checks the robot.
     ///
     /// # Errors
-    /// Fails if the file is missing or invalid.
+    /// Fails if the file is missing or invalid, if `--robot` is a mistyped name, or if the current folder cannot be
+    /// determined.
     pub fn load(&self) -> Result<Robot, Failure> {
         Ok(match self.find_source()? {
             RobotSource::File(path) => Robot::load(record_input(&path))?,
@@ -164,7 +166,7 @@ pub(crate) fn find_moving_gait<'a>(
         Some(gait) if gait.has_movement() => Ok(gait),
         Some(_) => Err(Failure::Input(format!("the gait `{name}` moves no servo"))),
         None => {
-            let problem = format!("robot.toml has no gait `{name}`");
+            let problem = format!("the robot has no gait `{name}`");
             let moving_gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
             Err(unknown_gait_failure(&problem, name, moving_gaits))
         }
@@ -180,7 +182,7 @@ pub(crate) fn unknown_gait_failure<'a>(
 ) -> Failure {
     let names: Vec<&str> = allowed_gaits.map(CheckedGait::name).collect();
     if names.is_empty() {
-        return Failure::Input(format!("{problem}; no gait of robot.toml moves a servo"));
+        return Failure::Input(format!("{problem}; no gait of the robot moves a servo"));
     }
     let list = names.join(", ");
     let suggestion = format_suggestion(name, names);
@@ -194,7 +196,7 @@ mod tests {
     #[test]
     fn a_robot_without_moving_gaits_has_no_list_of_allowed_gaits() {
         let failure = unknown_gait_failure("unknown gait", "walk", std::iter::empty());
-        let message = "unknown gait; no gait of robot.toml moves a servo";
+        let message = "unknown gait; no gait of the robot moves a servo";
         assert_eq!(failure.to_string(), message);
     }
 

@@ -73,7 +73,7 @@ pub fn assert_contains(text: &str, expected: &str) {
     );
 }
 
-/// Reads a table of texts. Each line has an input and its expected message, separated by ` => `.
+/// Reads a table of cases. Each line has an input and its expected message, separated by ` => `.
 pub fn read_cases(table: &str) -> impl Iterator<Item = (&str, &str)> {
     let lines = table.trim().lines().map(str::trim_start);
     lines.map(|line| line.split_once(" => ").expect(line))
@@ -129,7 +129,7 @@ pub fn scratch_folder() -> &'static Path {
     Path::new(env!("CARGO_TARGET_TMPDIR"))
 }
 
-/// Returns the path of a file in robots/.
+/// Returns the path of a robot file in robots/; `name` has no extension.
 pub fn robot_path(name: &str) -> String {
     let path = repo_root().join("robots").join(name).with_extension("toml");
     path.display().to_string()
@@ -172,7 +172,7 @@ pub fn run_line(line: &str, input: impl AsRef<[u8]>) -> Outcome {
     run_in(&repo_root(), line, input)
 }
 
-/// Runs a command line in a folder without standard input.
+/// Runs a command line in a folder with empty standard input.
 pub fn run_line_in(folder: &Path, line: &str) -> Outcome {
     run_in(folder, line, "")
 }
@@ -184,7 +184,7 @@ fn run_in(folder: &Path, line: &str, input: impl AsRef<[u8]>) -> Outcome {
     run_command(&mut command, input)
 }
 
-/// Runs the program in the scratch folder without standard input.
+/// Runs the program in the scratch folder with empty standard input.
 pub fn run(arguments: &[&str]) -> Outcome {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
     run_command(command.args(arguments).current_dir(scratch_folder()), "")

@@ -32,7 +32,7 @@ fn standard_output_as_file_gets_only_the_model() {
 fn model_refuses_invalid_input_and_writes_no_file() {
     let folder = new_folder("model refusals");
     let cases = "
-        model a.xml --drive wolk => lizard: robot.toml has no gait `wolk`...; did you mean `walk`?
+        model a.xml --drive wolk => lizard: the robot has no gait `wolk`...; did you mean `walk`?
         model a.xml --drive stand => lizard: the gait `stand` moves no servo
         model a.xml --long-foot LF=5.1 => must be between -5 and 5 mm, but is 5.1 mm
         model a.xml --long-foot LF=1 --long-foot lf=0 => lizard: --long-foot LF is given twice

@@ -86,9 +86,19 @@ fn robots_with_grained_pads_walk_and_turn_as_fast_as_docs_state() {
 #[test]
 fn the_refusal_of_an_unknown_gait_lists_the_gaits() {
     run_line(&with_paper("twin --gait jump"), "").expect_refusal_with(
-        "lizard: robot.toml has no gait `jump`; allowed values: walk, trot, crawl, back, \
+        "lizard: the robot has no gait `jump`; allowed values: walk, trot, crawl, back, \
          left, right, arc-left, arc-right, look",
     );
     run_line(&with_paper("twin --gait stand"), "")
         .expect_refusal_with("lizard: the gait `stand` moves no servo");
+}
+
+#[test]
+fn a_table_has_rows_and_the_spread_needs_a_moving_gait_with_or_without_a_count() {
+    for (command, expected) in [("walk 2", "\nwalk    "), ("rest", "\nno spread: ")] {
+        let script = format!("100 {command}\n3000 stop");
+        let stdout = run_line(&with_paper("twin /dev/stdin --robust 2"), script).expect_success();
+        assert!(stdout.contains(expected), "{command}: {stdout}");
+        assert!(!stdout.contains("by ideal servos"), "{command}: {stdout}");
+    }
 }

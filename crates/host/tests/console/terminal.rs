@@ -1,15 +1,17 @@
 //! Tests of the program at a terminal: its modes, its end, and the texts that must not reach it.
 
 use std::fs::{self, File};
-use std::io::Read;
+use std::io::{Read, Write};
 use std::process::Child;
+use std::sync::mpsc;
 
 use lizard_time_limit::TIME_LIMIT;
 use rustix::process::Signal;
 use rustix::termios::{LocalModes, tcgetattr};
 
 use crate::fixture::{
-    TerminalSession, Uno, find_moving_gait, run, send_signal, spawn_in_terminal, wait_for_exit,
+    Device, TerminalSession, Uno, find_moving_gait, run, send_signal, spawn_in_terminal,
+    wait_for_exit,
 };
 
 /// Reads the state of a process, as `ps` prints it: S for sleeping, R for running, T for stopped.
@@ -90,6 +92,35 @@ fn sigterm_restores_the_terminal() {
         assert_eq!(code, Some(0), "{command}");
         assert!(is_cooked(&session.keys), "{command}");
     }
+}
+
+#[test]
+fn console_sends_the_robots_own_deadman_three_times_at_its_end_unless_it_is_confirmed() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    let (sender, own_deadman_lines) = mpsc::channel();
+    let mut received_text = String::new();
+    let device = Device::start(move |terminal| {
+        let mut bytes = [0; 64];
+        let count = terminal.read(&mut bytes).unwrap_or_default();
+        received_text += &String::from_utf8_lossy(&bytes[..count]);
+        while let Some((line, rest)) = received_text.split_once('\n') {
+            let answer = match line {
+                "status" => "ok gait=walk pose=1,2,3,4 fault=none",
+                "cal" => "# deadman 2000\nok cal",
+                "deadman 2000" if sender.send(()).is_ok() => "ok gait=walk late",
+                line => &format!("ok {line}"),
+            };
+            let _ = writeln!(terminal, "{answer}");
+            received_text = rest.to_owned();
+        }
+    });
+    let mut session = TerminalSession::start(&folder, &format!("console {}", device.port));
+    session.wait_for("not reset");
+    session.press_and_wait("walk\r", "ok walk");
+    session.press("\x04");
+    assert_eq!(session.wait_for_exit(), Some(0));
+    device.stop();
+    assert_eq!(own_deadman_lines.iter().count(), 3);
 }
 
 #[test]

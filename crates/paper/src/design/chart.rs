@@ -1,4 +1,4 @@
-//! The performance charts: the performance of every design in the triangle of [`Proportions`].
+//! The performance charts: the performance of designs at points of the triangle of [`Proportions`].
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -25,7 +25,7 @@ pub fn compute_chart_points(
     ring_count: usize,
     report_progress: &(dyn Fn() + Sync),
 ) -> Vec<ChartPoint> {
-    let compute = |proportions: Proportions| {
+    let compute_point = |proportions: Proportions| {
         let performance = Performance::compute(&proportions.five_bar(1.0), ring_count);
         report_progress();
         ChartPoint {
@@ -33,5 +33,5 @@ pub fn compute_chart_points(
             performance,
         }
     };
-    points.into_par_iter().map(compute).collect()
+    points.into_par_iter().map(compute_point).collect()
 }

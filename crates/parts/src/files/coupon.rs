@@ -1,8 +1,8 @@
 //! A fit coupon: a test piece, printed within an hour, that shows which `fit` a printer needs.
 //!
 //! Each column has its own fit, from 0.0 mm on the left to 0.4 mm on the right, marked by one to five dots. A column
-//! consists of an M3 hole, a horn's pocket, a servo's opening with the notch for its lead, and a piece of a sleeve. Use
-//! the first column into which all counterparts go by hand.
+//! consists of a screw's hole, a horn's pocket, a servo's opening with the notch for its lead, and a piece of a sleeve.
+//! Use the fit of the first column from the left into which all counterparts go by hand.
 
 use lizard_robot::Parts;
 
@@ -25,23 +25,24 @@ const FLOOR_THICKNESS: f64 = 1.8;
 /// Length of a piece of a sleeve, mm.
 const SLEEVE_LENGTH: f64 = 10.0;
 /// Length of the piece of rod to try in a sleeve, mm.
-const GAUGE_LENGTH: f64 = 30.0;
+const ROD_LENGTH: f64 = 30.0;
 
 /// Builds the coupon, and a piece of rod to try in its sleeves.
 pub fn build_coupon(parts: &Parts) -> [Part; 2] {
     let (servo, horn) = (&parts.servo, &parts.horn);
-    let pitch = servo.width + 2.0 * FIT_STEP * f64::from(COLUMN_COUNT) + 4.0;
+    // More than the largest fit.
+    let fit_allowance = FIT_STEP * f64::from(COLUMN_COUNT);
+    let pitch = servo.width + 2.0 * fit_allowance + 4.0;
     // Order from the lower edge up: opening, pocket, hole with dots, sleeve.
-    let max_fit = FIT_STEP * f64::from(COLUMN_COUNT);
-    let opening_y = 3.0 + LEAD_SECTION[1] + max_fit + servo.length / 2.0;
-    let pocket_y = opening_y + servo.length / 2.0 + max_fit + 3.0 + horn.hub / 2.0;
+    let opening_y = 3.0 + LEAD_SECTION[1] + fit_allowance + servo.length / 2.0;
+    let pocket_y = opening_y + servo.length / 2.0 + fit_allowance + 3.0 + horn.hub / 2.0;
     let hole_y = pocket_y + horn.arm + 5.0;
     let sleeve_y = hole_y + 6.0 + SLEEVE_LENGTH / 2.0;
     let top_y = sleeve_y + SLEEVE_LENGTH / 2.0 + 2.0;
     let width = pitch * f64::from(COLUMN_COUNT);
     let plate = Shape::rectangle(vector(width / 2.0, top_y / 2.0), vector(width, top_y), 2.0);
     let (mut floor_cuts, mut upper_cuts, mut walls, mut bores) = (vec![], vec![], vec![], vec![]);
-    let mut roof_heights = Vec::new();
+    let mut roof_zs = Vec::new();
     for column in 0..COLUMN_COUNT {
         let fit = FIT_STEP * f64::from(column);
         let x = pitch * (f64::from(column) + 0.5);
@@ -67,24 +68,24 @@ pub fn build_coupon(parts: &Parts) -> [Part; 2] {
         let bore_size = vector(bore_width, 2.0 * SLEEVE_LENGTH);
         walls.push(Shape::rectangle(middle, wall_size, 0.5));
         bores.push(Shape::rectangle(middle, bore_size, 0.0));
-        roof_heights.push(THICKNESS + parts.thickness + 2.0 * fit);
+        roof_zs.push(THICKNESS + parts.thickness + 2.0 * fit);
     }
     let mut prisms = vec![
         Prism::new([plate.clone()], floor_cuts, [0.0, FLOOR_THICKNESS]),
         Prism::new([plate], upper_cuts, [FLOOR_THICKNESS, THICKNESS]),
     ];
     // Since the fit grows from column to column, each sleeve's roof begins higher than the previous sleeve's. Each
-    // layer therefore has one bore less than the layer below it.
+    // layer therefore has one bore fewer than the layer below it.
     let mut low = THICKNESS;
-    for (column, roof_z) in roof_heights.into_iter().enumerate() {
+    for (column, roof_z) in roof_zs.into_iter().enumerate() {
         prisms.push(Prism::new(&*walls, &bores[column..], [low, roof_z]));
         low = roof_z;
     }
     prisms.push(Prism::solid(walls, [low, low + 1.3]));
-    let gauge = Shape::rectangle(vector(0.0, 0.0), vector(GAUGE_LENGTH, ROD_WIDTH), 1.0);
-    let gauge = Prism::solid([gauge], [0.0, parts.thickness]);
+    let rod = Shape::rectangle(vector(0.0, 0.0), vector(ROD_LENGTH, ROD_WIDTH), 1.0);
+    let rod = Prism::solid([rod], [0.0, parts.thickness]);
     [
         Part::single("coupon", prisms),
-        Part::single("coupon rod", vec![gauge]),
+        Part::single("coupon rod", vec![rod]),
     ]
 }

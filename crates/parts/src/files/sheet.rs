@@ -1,7 +1,7 @@
 //! Drawings of parts to cut from a sheet: outlines to cut through, pockets to mill.
 //!
-//! A part can be cut if all of its layers have the same outer outline. The layers of plate and deck differ, so each
-//! becomes a sheet of its own, and the sheets are glued together.
+//! A part can be cut if all of its layers have the same outer outline. Plate and deck are exceptions:
+//! each of their layers is cut as a sheet of its own, and the sheets are glued together.
 
 use lizard_kinematics::Vector;
 
@@ -46,12 +46,12 @@ pub fn draw_sheets(part: &Part) -> Vec<Sheet> {
     let low = part.prisms.first().map_or(0.0, |prism| prism.z[0]);
     let high = part.prisms.last().map_or(0.0, |prism| prism.z[1]);
     let first_loops = outer_loops(&outlines[0]);
-    let has_first_loops = |outline: &Outline| outer_loops(outline) == first_loops;
-    if outlines.iter().all(has_first_loops) {
+    let has_first_outline = |outline: &Outline| outer_loops(outline) == first_loops;
+    if outlines.iter().all(has_first_outline) {
         return vec![Sheet {
             name: part.name.clone(),
             thickness: high - low,
-            layers: draw_pocket_layers(&part.prisms, &outlines, [low, high]),
+            layers: draw_cut_and_pocket_layers(&part.prisms, &outlines, [low, high]),
         }];
     }
     if part.name != "plate" && part.name != "deck" {
@@ -66,15 +66,19 @@ pub fn draw_sheets(part: &Part) -> Vec<Sheet> {
     sheets.collect()
 }
 
-/// Draws outline, holes and pockets of a part whose layers all have the same outer outline.
-fn draw_pocket_layers(prisms: &[Prism], outlines: &[Outline], z: [f64; 2]) -> Vec<SheetLayer> {
+/// Draws the outline, the holes and the pockets of a part whose layers all have the same outer outline.
+fn draw_cut_and_pocket_layers(
+    prisms: &[Prism],
+    outlines: &[Outline],
+    z: [f64; 2],
+) -> Vec<SheetLayer> {
     let [low, high] = z;
     let outer_loops = outlines[0].islands.iter().filter_map(|loops| loops.first());
     let mut layers = vec![SheetLayer::cut(outer_loops.cloned().collect())];
     for (index, outline) in outlines.iter().enumerate() {
         let islands = outline.islands.iter();
         for hole in islands.flat_map(|loops| loops.iter().skip(1)) {
-            // The layers are visited from the lowest up, so a pocket that is already listed is deeper.
+            // The layers are visited from the lowest up, so a hole that is already listed has its full depth.
             if layers.iter().any(|layer| layer.loops.contains(hole)) {
                 continue;
             }
@@ -100,7 +104,7 @@ fn draw_pocket_layers(prisms: &[Prism], outlines: &[Outline], z: [f64; 2]) -> Ve
     layers
 }
 
-/// True if a layer has no material within a hole.
+/// True if a layer has no material at the corners and at the sides' midpoints of a hole.
 fn is_open(outline: &Outline, hole: &Loop) -> bool {
     let sides = hole.sides.iter();
     let sum = sides.fold(Vector::default(), |sum, side| sum + side.from);
@@ -112,7 +116,7 @@ fn is_open(outline: &Outline, hole: &Loop) -> bool {
     probes.all(|point| !outline.contains(shrink(point)))
 }
 
-/// Computes the smallest and the largest x and y of a sheet, mm; points along each arc replace the arc.
+/// Computes the smallest and the largest x and y of a sheet, mm; an arc counts as 17 points along it.
 pub fn compute_sheet_bounds(sheet: &Sheet) -> [Vector; 2] {
     let loops = sheet.layers.iter().flat_map(|layer| &layer.loops);
     let sides = loops.flat_map(Loop::sides_with_end_points);

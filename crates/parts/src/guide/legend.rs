@@ -34,7 +34,7 @@ pub fn format_name(body: &Body, parts: &[Part]) -> Option<String> {
         }
         Kind::Fitting(fitting) => fitting.spec().name.to_owned(),
         Kind::Printed => {
-            let part = parts.iter().find(|part| part.has_body(body))?;
+            let part = parts.iter().find(|part| part.prints_body(body))?;
             // The noun ends before the names of servos or legs, as in `link A1 A3`.
             let name = part.name.split(" A").next()?;
             let noun = name.split(['L', 'R']).next()?.trim();

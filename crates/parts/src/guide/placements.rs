@@ -107,7 +107,7 @@ pub fn format_placements(assembly: &Assembly, pose: &Solution) -> String {
     let steps = build_steps(assembly.robot().drive().strut().is_some());
     let to_placed_body = |body| {
         let (step, stage) = find_step_and_stage(&steps, body);
-        let part = parts.iter().find(|part| part.has_body(body));
+        let part = parts.iter().find(|part| part.prints_body(body));
         let placement = assembly.placement(body.mount, pose);
         PlacedBody {
             name: &body.name,
@@ -140,7 +140,7 @@ fn compute_print_placement(placement: &Placement, body: &Body, part: &Part) -> P
         x_axis: placement.x_axis * frame.x_axis.x
             + placement.x_axis.rotated_left() * frame.x_axis.y,
     };
-    let holes_to_drill = part.find_bridged_holes().into_iter().map(|hole| {
+    let holes_to_drill = part.find_bridged_hole_centres().into_iter().map(|hole| {
         let hole = match transform.is_flipped {
             true => hole.mirrored_in_x_axis(),
             false => hole,

@@ -8,8 +8,8 @@ use crate::layers::fitting::Fitting;
 use crate::layers::shape::Shape;
 use crate::layers::stack::Span;
 
-/// A layer of a body, which is a prism: a union of shapes minus some holes, between two heights. The walls are
-/// vertical, or slope by the difference of the insets.
+/// A layer of a body: a union of shapes minus some holes, between two heights. The walls are vertical, or slope by the
+/// difference of the insets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prism {
     /// Shapes whose union is filled, mount frame, mm.
@@ -108,7 +108,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// True for a printed body.
+    /// True for a body that is printed, pads included.
     pub fn is_printed(self) -> bool {
         matches!(self, Self::Printed | Self::Pad)
     }

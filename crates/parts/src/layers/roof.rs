@@ -12,7 +12,7 @@ use crate::layers::shape::Shape;
 
 /// Height of a printed layer, mm; one layer bridges a hole.
 pub const PRINT_LAYER_MM: f64 = 0.2;
-/// Distance from a hole's edge at which the layer below must support it, mm.
+/// Distance from a hole's edge at which material is sought in the layer below, mm.
 const SUPPORT_DISTANCE_MM: f64 = 0.3;
 /// Tolerance within which heights count as equal, mm.
 const SAME_HEIGHT_MM: f64 = 1e-6;
@@ -22,7 +22,7 @@ pub fn bridge_unsupported_holes(prisms: &[Prism]) -> (Vec<Prism>, usize) {
     let mut layers = prisms.to_vec();
     let unsupported_holes = find_unsupported_holes(prisms);
     for (hole, low) in &unsupported_holes {
-        let high = compute_layer_top(*low);
+        let high = compute_print_layer_top(*low);
         let split_layers = layers.iter().flat_map(|layer| split_at(layer, high));
         layers = split_layers.collect();
         for layer in &mut layers {
@@ -34,8 +34,8 @@ pub fn bridge_unsupported_holes(prisms: &[Prism]) -> (Vec<Prism>, usize) {
     (layers, unsupported_holes.len())
 }
 
-/// Computes the top of the first printed layer above a height. A slicer samples each layer in the layer's middle.
-fn compute_layer_top(low: f64) -> f64 {
+/// Computes the top of the first printed layer whose middle, where a slicer samples it, is above a height.
+fn compute_print_layer_top(low: f64) -> f64 {
     let layer_index =
         ((low - PRINT_LAYER_MM / 2.0 + SAME_HEIGHT_MM) / PRINT_LAYER_MM).floor() + 1.0;
     PRINT_LAYER_MM * (layer_index + 1.0)
@@ -67,13 +67,13 @@ pub fn find_unsupported_holes(prisms: &[Prism]) -> Vec<(&Shape, f64)> {
     unsupported_holes
 }
 
-/// True if material surrounds a hole in a layer with this outline, without material below it.
+/// True if, all around a hole, its layer has material and the layer below has none.
 fn begins_in_mid_air(hole: &Shape, outline: &Outline, outline_below: &Outline) -> bool {
     let widened_hole = hole.grown(SUPPORT_DISTANCE_MM);
-    let hole_surround = Outline::from_prism(&Prism::solid([widened_hole], [0.0, 1.0]));
-    let mut points = hole_surround.loops().flat_map(Loop::sides_with_end_points);
+    let surround = Outline::from_prism(&Prism::solid([widened_hole], [0.0, 1.0]));
+    let mut sides = surround.loops().flat_map(Loop::sides_with_end_points);
     let is_in_mid_air = |point: Vector| outline.contains(point) && !outline_below.contains(point);
-    points.all(|(side, to)| is_in_mid_air(side.from) && is_in_mid_air(side.midpoint(to)))
+    sides.all(|(side, to)| is_in_mid_air(side.from) && is_in_mid_air(side.midpoint(to)))
 }
 
 #[cfg(test)]
@@ -83,7 +83,7 @@ mod tests {
     #[test]
     fn a_bridging_layer_contains_exactly_one_sampled_height() {
         for low in [2.0, 4.1, 1.33, 3.0, 0.85] {
-            let high = compute_layer_top(low);
+            let high = compute_print_layer_top(low);
             // Slicers sample a part at 0.1, 0.3, 0.5 mm and so on.
             let sample_heights = (0..100).map(|i| 0.1 + PRINT_LAYER_MM * f64::from(i));
             let contained_heights = sample_heights.filter(|z| low + 1e-9 < *z && *z < high - 1e-9);

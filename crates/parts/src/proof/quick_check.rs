@@ -13,6 +13,8 @@ use crate::bodies::assembly::Assembly;
 
 /// Number of angles per servo on the coarse grid.
 const GRID_ANGLES_PER_SERVO: u32 = 6;
+/// Number of directions from neutral: three for each of four servos.
+const DIRECTION_COUNT: u32 = 3_u32.pow(4);
 /// Number of halvings in the search for a limit of the guard.
 const HALVING_COUNT: usize = 12;
 /// Largest number of tasks that the proof bounds if the quick check finds collisions.
@@ -24,14 +26,18 @@ pub fn find_worst_tasks(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>
     let robot = assembly.robot();
     let neutral_pose = robot.solve_if_allowed(robot.neutral_pose().into());
     let mut poses = Vec::from_iter(neutral_pose);
-    poses.extend((0..81).filter_map(|direction| find_last_accepted_pose(robot, direction)));
+    poses.extend(
+        (0..DIRECTION_COUNT).filter_map(|direction| find_last_accepted_pose(robot, direction)),
+    );
     poses.extend(assembly.grid_poses(GRID_ANGLES_PER_SERVO));
-    let find_min_distance = |task: &Task| {
-        let distance_at = |pose| compute_min_distance(assembly, task, pose);
+    let find_smallest_distance = |task: &Task| {
+        let distance_at = |pose| measure_distance(assembly, task, pose);
         poses.iter().map(distance_at).fold(f64::INFINITY, f64::min)
     };
-    let measured_tasks = tasks.iter().map(|task| (find_min_distance(task), task));
-    let worst_tasks = measured_tasks.filter(|(mm, task)| *mm < task.min_distance());
+    let measured_tasks = tasks
+        .iter()
+        .map(|task| (find_smallest_distance(task), task));
+    let worst_tasks = measured_tasks.filter(|(distance, task)| *distance < task.min_distance());
     let mut worst_tasks: Vec<_> = worst_tasks.collect();
     worst_tasks.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     worst_tasks.truncate(MAX_WORST_TASKS);
@@ -41,7 +47,7 @@ pub fn find_worst_tasks(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>
 
 /// Computes the smallest distance between a task's parts at a pose, mm; infinite if they are certainly far enough
 /// apart.
-fn compute_min_distance(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
+fn measure_distance(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
     let [a, b] = task.mounts.map(|mount| assembly.placement(mount, pose));
     let placement = b.relative_to(&a);
     let shape_pairs = task.shape_pairs.iter();
@@ -51,8 +57,8 @@ fn compute_min_distance(assembly: &Assembly, task: &Task, pose: &Solution) -> f6
     distances.fold(f64::INFINITY, f64::min)
 }
 
-/// Finds the last accepted pose on the line from neutral in one of 81 directions: each servo turns towards one limit of
-/// its travel, towards the other limit, or not at all. `None` if the guard refuses neutral.
+/// Finds the last accepted pose on the line from neutral in one of [`DIRECTION_COUNT`] directions: each servo turns
+/// towards one limit of its travel, towards the other limit, or not at all. `None` if the guard refuses neutral.
 fn find_last_accepted_pose(robot: &Robot, direction: u32) -> Option<Solution> {
     let neutral: [f64; 4] = robot.neutral_pose().into();
     let end_offsets = [0, 1, 2, 3].map(|servo| {

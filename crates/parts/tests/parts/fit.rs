@@ -99,7 +99,10 @@ fn a_robot_that_does_not_fit_is_refused_with_its_reason() {
         (near_pivot, ["overlap by", "at pose"]),
         ("[parts]\nbar = 6.0", [bar_message, ""]),
         ("[parts]\nheight = 15.0", [height_message, ""]),
-        ("[parts.spring]\nlength = 40.0", [spring_message, ""]),
+        (
+            "force = 4.0\n[parts.spring]\nlength = 40.0",
+            [spring_message, ""],
+        ),
         ("[parts]\nthickness = 15.0", ["do not form one body", ""]),
         (
             "[parts]\nthickness = 3.0",

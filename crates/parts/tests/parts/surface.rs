@@ -1,11 +1,11 @@
-//! Tests that every printed part has a closed surface and the correct volume.
+//! Tests that every printed part has a closed surface that encloses the volume of its solid.
 
 use lizard_parts::{Mesh, Solid};
 
 use crate::{GRAIN_ROBOT, build_assembly};
 
 #[test]
-fn every_printed_part_has_a_closed_surface_and_the_correct_volume() {
+fn every_printed_part_has_a_closed_surface_that_encloses_the_volume_of_its_solid() {
     for name in ["paper", "large", "unequal", GRAIN_ROBOT] {
         let assembly = build_assembly(name, "");
         let mut printed_count = 0;

@@ -1,6 +1,7 @@
-//! The check of every sample of a gait, as the firmware will send it. Forward kinematics computes the pose of head,
-//! tail, sides and legs, which is checked against all limits in floating point. The firmware's own guard then checks
-//! the same sample, because the guard would stop a gait that is closer to a limit than its integers resolve.
+//! The check of a gait as the firmware will play it, at every sample of its tables and between the samples. Forward
+//! kinematics computes the pose of head, tail, sides and legs, which is checked against all limits in floating point.
+//! The firmware's own guard then checks the same sample, because the guard would stop a gait that is closer to a limit
+//! than its integers resolve.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::{Hazard, Margin};
@@ -116,9 +117,9 @@ impl MinMargin {
 /// Checks a gait against the limits of its robot.
 ///
 /// # Errors
-/// Returns the first error that exists, in this order: the first sample that is outside a servo's travel or does not
-/// close its loops; the worst violation of the limit that is violated first; the first pose at which the firmware's
-/// guard would stop the gait; a servo speed that is too high; a table that is too coarse.
+/// Returns the first error that exists, in this order: the first phase at which an angle is outside a servo's
+/// travel or the linkage does not close; the worst violation of the limit that is violated first; the first pose at
+/// which the firmware's guard would stop the gait; a servo speed that is too high; a table that is too coarse.
 pub(crate) fn check_gait(
     gait: &Gait,
     index: usize,
@@ -126,7 +127,7 @@ pub(crate) fn check_gait(
     config: &RobotConfig,
     core_robot: &lizard_core::numbers::robot::Robot<'_>,
 ) -> ReadResult<Audit> {
-    let violation_error =
+    let gait_error =
         |consequence: String, problem: String| Error::in_gait(&gait.name, &consequence, problem);
     let mut audit = Audit {
         peak_speed: find_peak_speed(gait),
@@ -142,12 +143,12 @@ pub(crate) fn check_gait(
         let phase = f64::from(phase) / PHASES_PER_CYCLE;
         check_travels(gait, config, angles, phase)?;
         if let Some(hazard) = Clearance::measure(core_robot, &sweeps).first_hazard(core_robot) {
-            guard_stop.get_or_insert((phase, corresponding_check(&hazard)));
+            guard_stop.get_or_insert((phase, check_of_hazard(&hazard)));
         }
         let solution = config.lizard.solve(&angles.into());
         let solution = solution.map_err(|infeasible| {
             let problem = format!("{infeasible} {}", at_phase(phase));
-            violation_error(describe_open_loop(infeasible.mechanism), problem)
+            gait_error(describe_open_loop(infeasible.mechanism), problem)
         })?;
         for violation in config.limits.violations(&solution) {
             if worst_violation.is_none_or(|(_, earlier)| is_worse_violation(violation, earlier)) {
@@ -158,23 +159,20 @@ pub(crate) fn check_gait(
     }
     if let Some((phase, violation)) = worst_violation {
         let problem = format!("{violation} {}", at_phase(phase));
-        return Err(violation_error(
-            describe_violation(violation.check),
-            problem,
-        ));
+        return Err(gait_error(describe_violation(violation.check), problem));
     }
     if let Some((phase, stopping_check)) = guard_stop {
         let problem = format!(
             "margin or travel {stopping_check} is so close to its limit {} that the firmware's integers place it beyond the limit; leave more room",
             at_phase(phase)
         );
-        return Err(violation_error(describe_violation(stopping_check), problem));
+        return Err(gait_error(describe_violation(stopping_check), problem));
     }
     let peak = audit.peak_speed;
     let limit = config.speed_limits.gait_slew;
     if peak.speed > limit {
         let name = SERVO_NAMES[peak.servo];
-        return Err(violation_error(
+        return Err(gait_error(
             format!("servo {name} would have to turn too fast"),
             format!(
                 "{:.1} deg/s {}; limits.gait_slew is {limit:.1} deg/s",
@@ -186,7 +184,7 @@ pub(crate) fn check_gait(
     let error = accuracy::compute_table_error(gait, index, tables, CHECKED_PHASE_COUNT);
     if error.max > MAX_TABLE_ERROR_DEG {
         let name = SERVO_NAMES[error.servo];
-        return Err(violation_error(
+        return Err(gait_error(
             format!("servo {name} would have to turn too sharply"),
             format!(
                 "the firmware's table of {SAMPLES_PER_WAVE} samples is {:.3} deg off {}; at most {MAX_TABLE_ERROR_DEG:.2} deg is allowed",
@@ -199,7 +197,7 @@ pub(crate) fn check_gait(
 }
 
 /// Returns the floating-point check that corresponds to a hazard of the firmware's guard.
-fn corresponding_check(hazard: &Hazard) -> Check {
+fn check_of_hazard(hazard: &Hazard) -> Check {
     match *hazard {
         Hazard::Margin { margin, .. } => match margin {
             Margin::Type2(end) => Check::TYPE2[end as usize],

@@ -11,6 +11,8 @@ use crate::checks::checked_gait::CheckedGait;
 
 /// Duration of a simulation step, s.
 const STEP_SECONDS: f64 = 0.0025;
+/// Largest number of steps before the measured cycle, in which pads and springs forget the start.
+const MAX_LEAD_IN_STEPS: usize = 1600;
 /// Utilisation above which a servo has little reserve: play, cold gears or a thin wire may use up the reserve.
 pub const HIGH_UTILISATION: f64 = 0.9;
 /// Factor that raises a motor's torque and speed so that the servo follows every gait exactly.
@@ -58,9 +60,10 @@ impl Effort {
         let step_count = (gait.period() / STEP_SECONDS).round();
         let step_seconds = gait.period() / step_count;
         let sweeps_at = |step: f64| gait.sweeps(gait.phase_at(step * step_seconds));
-        let mut walker = Walker::new(*ground, sweeps_at(0.0));
         let step_count = step_count as usize;
-        for step in 1..=2 * step_count {
+        let start_step = step_count.saturating_sub(MAX_LEAD_IN_STEPS);
+        let mut walker = Walker::new(*ground, sweeps_at(start_step as f64));
+        for step in start_step + 1..=2 * step_count {
             let previous_sweeps = walker.servo_sweeps();
             let target = sweeps_at(step as f64);
             walker.drive(target.map(Some), step_seconds, &strong_motors);

@@ -44,9 +44,12 @@ impl Coil {
         self.force_at_stress(231.0 * (-0.105 * ratio).exp())
     }
 
-    /// Force at a length between the insides of the hooks (mm), N.
+    /// Force at a length between the insides of the hooks (mm), N; 0 if the spring is slack.
     pub fn force(&self, length: f64) -> f64 {
-        self.initial_tension() + self.rate() * (length - self.free_length).max(0.0)
+        match length - self.free_length {
+            ..0.0 => 0.0,
+            extension => self.initial_tension() + self.rate() * extension,
+        }
     }
 
     /// Force at a shear stress of the wire (N/mm^2), N.
@@ -76,6 +79,7 @@ mod tests {
         assert_near(initial_stress, 80.8, 0.1);
         let force_change = coil.force(coil.free_length + 4.0) - coil.force(coil.free_length);
         assert_near(force_change, 4.0 * 0.495_625, 1e-9);
-        assert_eq!(coil.force(0.0), coil.initial_tension());
+        assert_eq!(coil.force(coil.free_length), coil.initial_tension());
+        assert_eq!(coil.force(coil.free_length - 0.1), 0.0);
     }
 }

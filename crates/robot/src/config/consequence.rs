@@ -24,7 +24,7 @@ pub(crate) fn describe_violation(check: Check) -> String {
     description.to_string()
 }
 
-/// Describes what a pose in which this mechanism does not close would do to the robot.
+/// Describes the consequence of a pose in which this mechanism does not close.
 pub(crate) fn describe_open_loop(mechanism: Mechanism) -> String {
     match mechanism {
         Mechanism::End(end) => format!("the links of the {end} would not reach each other"),
@@ -37,7 +37,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_description_names_the_affected_part() {
+    fn descriptions_name_the_affected_part() {
         for (check, expected) in [
             (Check::Type2Tail, "nothing would hold the tail"),
             (Check::Type1A1, "the left elbow of the head could flip over"),

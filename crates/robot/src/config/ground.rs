@@ -5,7 +5,7 @@ use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, GroundContact, Stance}
 use crate::config::servo::LEG_NAMES;
 use crate::file::{ReadResult, Table};
 
-/// Reads `[ground]`, `[body]` and `[feet]`; `feet` and `drive` come from other tables.
+/// Reads `[ground]`, `[body]` and `[feet]`. The geometry of the feet, `feet`, and `drive` come from other tables.
 pub(crate) fn read(root: &Table, feet: Feet, drive: Drive) -> ReadResult<GroundContact> {
     const RATIO_KEY: &str = "friction_back_over_forward";
     let table = root.table("ground", &[RATIO_KEY, "friction"])?;

@@ -22,8 +22,8 @@ pub const ARM_TURN_SIGN: [f64; 4] = {
 
 /// Range of the pulse widths that a hobby servo tolerates, us. Each width fits into a slot of 4 ms.
 const PULSE_RANGE_US: (f64, f64) = (500.0, 2500.0);
-/// Range of a gain's magnitude; the firmware's i16 cannot represent a larger gain.
-const GAIN_RANGE_US_PER_DEGREE: (f64, f64) = (1.0, 22.0);
+/// Range of a gain's magnitude: that of the console's `scale`, so that every backup can be restored.
+const GAIN_RANGE_US_PER_DEGREE: (f64, f64) = (5.0, 20.0);
 
 /// For each servo, the index of its mirror image on the other side of the robot.
 pub const OPPOSITE_SERVO: [usize; 4] = [1, 0, 3, 2];
@@ -170,7 +170,7 @@ fn read_servo(table: &Table) -> ReadResult<Servo> {
     let (min, max) = GAIN_RANGE_US_PER_DEGREE;
     if !(min..=max).contains(&us_per_degree.abs()) {
         let message = format!(
-            "is {}; it must be between 1 and 22 us, or between -22 and -1 us if a longer pulse turns the horn clockwise",
+            "is {}; it must be between {min} and {max} us, or between -{max} and -{min} us if a longer pulse turns the horn clockwise",
             format_number(us_per_degree)
         );
         return Err(table.error("us_per_degree", message));

@@ -61,8 +61,10 @@ pub struct Rail {
 }
 
 /// Smallest distance of a derived `slow` threshold from `stop`, which is lower, and from the servos' supply, which is
-/// higher, V. It exceeds the hysteresis of 0.15 V, by which a supply must recover before gaits return to full pace.
+/// higher, V. It exceeds [`HYSTERESIS`].
 const MIN_THRESHOLD_GAP: f64 = 0.25;
+/// The voltage above `slow` to which a supply must recover before gaits return to full pace, V.
+const HYSTERESIS: f64 = 0.15;
 
 /// The pace limit at a low supply voltage if the servos' rail is not measured, percent.
 const DEFAULT_SLOW_PACE_PERCENT: u8 = 50;
@@ -107,7 +109,7 @@ impl Supplies {
     }
 
     /// Rejects a divider that passes on more of `servo_volts`, the servos' supply, than the rail's pin can measure.
-    /// Also rejects a threshold so high that this supply would always be below `slow`.
+    /// Also rejects a threshold so high that this supply would never recover from `slow`.
     pub(crate) fn check_rail(&self, servo_volts: f64) -> ReadResult<()> {
         let Some(rail) = &self.rail else {
             return Ok(());
@@ -127,13 +129,13 @@ impl Supplies {
         let (key, volts, bound) = match rail.has_derived_slow_threshold {
             // The derived threshold needs a gap on both sides.
             true => ("stop", stop, servo_volts - 2.0 * MIN_THRESHOLD_GAP),
-            false => ("slow", slow, servo_volts),
+            false => ("slow", slow, servo_volts - HYSTERESIS),
         };
         if volts < bound {
             return Ok(());
         }
         let message = format!(
-            "is {volts}; for servo.volts = {servo_volts} it must be less than {bound:.2}, or the robot would never walk at full pace"
+            "is {volts}; for servo.volts = {servo_volts} it must be less than {bound:.2}, or the robot would never return to full pace after a dip"
         );
         Err(Error::new(format!("supply.rail.{key}"), message))
     }
@@ -331,7 +333,7 @@ mod tests {
         );
         // The same holds with an explicit threshold. A robot that stops at a higher voltage may walk faster.
         let [explicit_threshold_pace, expected_pace] =
-            find_slow_paces("", "slow = 4.7\nstop = 4.5", "0.9");
+            find_slow_paces("", "slow = 4.6\nstop = 4.4", "0.9");
         assert_eq!(explicit_threshold_pace, expected_pace);
         assert!(
             explicit_threshold_pace > rough_pace,

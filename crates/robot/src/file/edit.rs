@@ -224,14 +224,22 @@ pub fn read_routines(text: &str) -> Vec<WrittenRoutine> {
     entries.into_iter().filter_map(read_routine).collect()
 }
 
-/// Sets the steps of a routine. A missing routine is added at the end of the text. The routine's other lines, such as
-/// `repeat`, stay unchanged.
+/// Sets the steps of a routine, which are added below its header if they are missing. A missing routine is added at the
+/// end of the text. The routine's other lines, such as `repeat`, stay unchanged.
 pub fn with_steps(text: &str, name: &str, steps: &[String]) -> String {
     let steps: Vec<_> = steps.iter().map(|step| format!("{step:?}")).collect();
     let steps = format!("[{}]", steps.join(", "));
+    let mut new_text = text.to_string();
     if let Ok(Some(span)) = find_span(text, &format!("routine.{name}.steps")) {
-        let mut new_text = text.to_string();
         new_text.replace_range(span, &steps);
+        return new_text;
+    }
+    // A table in lines of its own begins with its header.
+    if let Ok(Some(span)) = find_span(text, &format!("routine.{name}"))
+        && text[span.start..].starts_with('[')
+    {
+        let end = find_line_end(text, span.start);
+        new_text.insert_str(end, &format!("\nsteps = {steps}"));
         return new_text;
     }
     let key = to_key(name);
@@ -422,6 +430,16 @@ mod tests {
         assert!(changed.starts_with(&ROUTINES[..start]));
         let end = ROUTINES.find("\nrepeat").expect("the routine is repeated");
         assert!(changed.ends_with(&ROUTINES[end..]));
+    }
+
+    #[test]
+    fn missing_steps_are_added_below_the_header() {
+        let text = format!("{ROUTINES}[routine.empty] # new\nrepeat = 2\n[ground]\n");
+        let expected = text.replace("# new\n", "# new\nsteps = [\"rest\"]\n");
+        assert_eq!(with_steps(&text, "empty", &to_strings(&["rest"])), expected);
+        let text = "[routine.empty]";
+        let added = with_steps(text, "empty", &to_strings(&["rest"]));
+        assert_eq!(added, "[routine.empty]\nsteps = [\"rest\"]");
     }
 
     #[test]

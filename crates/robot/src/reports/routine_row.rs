@@ -43,7 +43,7 @@ impl RoutineRow {
         let rigid_ground = robot.ground().with_rigid_drive();
         let prediction = rigid_ground.predict(sweeps.iter().copied());
         let movement_with_servos = prediction.keep_determined(drive_servos(robot, &sweeps));
-        let movement = prediction.keep_determined(robot.ground().travel(sweeps));
+        let movement = prediction.keep_determined(robot.ground().compute_travel(sweeps));
         Self {
             name: routine.name().to_string(),
             step_count: routine.step_count(),

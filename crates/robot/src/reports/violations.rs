@@ -5,7 +5,7 @@ use lizard_kinematics::{Solution, wrap};
 use crate::config::servo::SERVO_NAMES;
 use crate::robot::Robot;
 
-/// Describes each violation by a solved pose in a message; an empty list if the pose is safe.
+/// Returns a message for each limit or servo travel that a solved pose violates; none if the pose is safe.
 pub fn describe_pose_violations(robot: &Robot, solution: &Solution) -> Vec<String> {
     let limit_violations = robot.limits().violations(solution);
     let angles = <[f64; 4]>::from(solution.pose);
@@ -16,16 +16,16 @@ pub fn describe_pose_violations(robot: &Robot, solution: &Solution) -> Vec<Strin
         .collect()
 }
 
-/// Describes in a message that the servo with this index cannot reach an angle (deg, chassis frame); `None` if it can.
-pub fn describe_travel_violation(robot: &Robot, index: usize, angle: f64) -> Option<String> {
-    let servo = &robot.servos()[index];
+/// Returns the message that a servo cannot reach an angle (deg, chassis frame); `None` if it can.
+pub fn describe_travel_violation(robot: &Robot, servo_index: usize, angle: f64) -> Option<String> {
+    let servo = &robot.servos()[servo_index];
     (!servo.reaches(angle)).then(|| {
         let neutral = servo.neutral;
         let (min, max) = servo.travel();
         let sweep = wrap(angle - neutral);
         format!(
             "servo {} would turn {sweep:+.1} deg from neutral to {:.1} deg; its travel is {:.1} to {:.1} deg",
-            SERVO_NAMES[index],
+            SERVO_NAMES[servo_index],
             neutral + sweep,
             neutral + min,
             neutral + max,

@@ -116,8 +116,8 @@ fn values_at_the_ends_of_their_ranges_are_allowed() {
         ("min_us = 600.0", "min_us = 500.0"),
         ("max_us = 2400.0", "max_us = 2500"),
         ("us_per_degree = 10.0", "us_per_degree = -10.0"),
-        ("us_per_degree = 10.0", "us_per_degree = 22"),
-        ("us_per_degree = 10.0", "us_per_degree = -22"),
+        ("us_per_degree = 10.0", "us_per_degree = 20"),
+        ("us_per_degree = 10.0", "us_per_degree = -20"),
         ("pin = \"D3\"", "pin = \"A5\""),
         ("pin = \"D3\"", "pin = \"D12\""),
         (

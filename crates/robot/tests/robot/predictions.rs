@@ -85,7 +85,7 @@ fn a_reversed_gait_undoes_its_movement() {
     let arc = gait(robot, "arc-left");
     let cycle: Vec<[f64; 4]> = (0..=500).map(|i| arc.sweeps(i as f64 / 500.0)).collect();
     let retraced_cycle = cycle.iter().chain(cycle.iter().rev()).copied();
-    let travel = robot.ground().travel(retraced_cycle);
+    let travel = robot.ground().compute_travel(retraced_cycle);
     assert_near("arc-left", travel.forward.hypot(travel.left), 0.0, 1e-5);
     assert_near("arc-left", travel.turn, 0.0, 1e-6);
 }
@@ -107,7 +107,7 @@ fn a_sinusoidal_trot_does_not_move_the_robot() {
         let sweep = 20.0 * (f64::from(i) * std::f64::consts::TAU / 400.0).sin();
         [sweep, -sweep, sweep, -sweep]
     };
-    let travel = robot.ground().travel((0..=400).map(sweeps_at));
+    let travel = robot.ground().compute_travel((0..=400).map(sweeps_at));
     for component in [travel.forward, travel.left, travel.turn] {
         assert!(component.abs() < 1e-5, "{travel:?}");
     }
@@ -120,7 +120,7 @@ fn doubling_the_samples_changes_predictions_by_less_than_0_01() {
         let [coarse, fine] = [1000, 2000].map(|count: i32| {
             let seconds_at = |i: i32| gait.period() * f64::from(i) / f64::from(count);
             let sweeps_at = |i| gait.sweeps(gait.phase_at(seconds_at(i)));
-            robot.ground().travel((0..=count).map(sweeps_at))
+            robot.ground().compute_travel((0..=count).map(sweeps_at))
         });
         let error = (coarse.forward - fine.forward).hypot(coarse.left - fine.left);
         assert_near(gait.name(), error, 0.0, 0.01);
@@ -167,7 +167,7 @@ proptest! {
         path in prop::collection::vec(prop::array::uniform4(-20.0f64..20.0), 2..6),
     ) {
         let robot = paper();
-        let travel = robot.ground().travel(path.iter().chain(path.iter().rev()).copied());
+        let travel = robot.ground().compute_travel(path.iter().chain(path.iter().rev()).copied());
         prop_assert!(travel.forward.abs() < 1e-4 && travel.left.abs() < 1e-4 && travel.turn.abs() < 1e-4, "{:?}", travel);
     }
 }

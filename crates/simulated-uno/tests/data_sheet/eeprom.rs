@@ -1,4 +1,4 @@
-//! Tests of the simulated EEPROM against the data sheet, chapters 8.4 and 8.6.
+//! Tests of the simulated EEPROM against the data sheet, sections 8.4 to 8.6.
 
 use super::*;
 
@@ -7,10 +7,10 @@ use super::*;
 pub const ATOMIC_CYCLES: u64 = 3400 * CYCLES_PER_US;
 /// Cycles of an operation that only erases or only writes, according to table 8-1: "Erase Only" and "Write Only",
 /// 1.8 ms.
-const SINGLE_CYCLES: u64 = 1800 * CYCLES_PER_US;
+const ERASE_OR_WRITE_CYCLES: u64 = 1800 * CYCLES_PER_US;
 
-/// Returns a UNO that has run for a number of cycles: first these instructions, then an endless loop.
-fn run(source: &str, cycles: u64) -> Uno {
+/// Returns a UNO that has run_assembly for a number of cycles: first these instructions, then an endless loop.
+fn run_assembly(source: &str, cycles: u64) -> Uno {
     uno_after(cycles, assemble_loop(source))
 }
 
@@ -32,15 +32,15 @@ pub fn program(body: &str) -> Image {
     ))
 }
 
-/// Returns a UNO that has run for a number of milliseconds and whose main program runs these statements once.
-fn run_once(body: &str, ms: u64) -> Uno {
+/// Returns a UNO that has run_assembly for a number of milliseconds and whose main program runs these statements once.
+fn run_c(body: &str, ms: u64) -> Uno {
     let image = program(&format!("int main(void) {{ {body} for (;;) {{}} }}"));
     uno_after_ms(ms, image)
 }
 
 #[test]
 fn a_new_eeprom_is_erased_and_its_1024_bytes_can_be_set() {
-    let mut uno = run_once("GPIOR0 = get(0); GPIOR0 = get(1023); GPIOR0 = get(512);", 1);
+    let mut uno = run_c("GPIOR0 = get(0); GPIOR0 = get(1023); GPIOR0 = get(512);", 1);
     assert_eq!(mark_values(&uno), [0xff, 0xff, 0xff]);
     let mut contents = [0; EEPROM_SIZE];
     (contents[0], contents[1023], contents[512]) = (1, 2, 3);
@@ -85,7 +85,7 @@ fn register_values_match_the_data_sheet() {
             &[0x77, 0x42],
         ),
     ] {
-        let uno = run_once(body, 10);
+        let uno = run_c(body, 10);
         assert_eq!(mark_values(&uno), expected, "{message}");
         assert!(uno.eeprom_operations().len() <= 1, "{message}");
     }
@@ -101,7 +101,7 @@ fn set_eempe_then_eepe(nop_count: usize) -> Uno {
          {nops}
          sbi EECR, EEPE"
     );
-    run(&source, ATOMIC_CYCLES + 100)
+    run_assembly(&source, ATOMIC_CYCLES + 100)
 }
 
 #[test]
@@ -109,10 +109,10 @@ fn eepe_must_be_set_within_four_cycles_after_eempe() {
     // "When EEMPE is set, setting EEPE within four clock cycles will write data to
     // the EEPROM at the selected address. If EEMPE is zero, setting EEPE will have
     // no effect" (8.6.3).
-    for (nops, is_written) in [(0, true), (1, true), (2, true), (3, false), (9, false)] {
-        let uno = set_eempe_then_eepe(nops);
+    for (nop_count, is_written) in [(0, true), (1, true), (2, true), (3, false), (9, false)] {
+        let uno = set_eempe_then_eepe(nop_count);
         let expected = if is_written { 0x5a } else { 0xff };
-        assert_eq!(uno.eeprom()[0], expected, "{nops} nops");
+        assert_eq!(uno.eeprom()[0], expected, "{nop_count} nops");
         assert_eq!(uno.eeprom_operations().len(), usize::from(is_written));
     }
 }
@@ -121,7 +121,7 @@ fn eepe_must_be_set_within_four_cycles_after_eempe() {
 fn hardware_clears_eempe_after_four_cycles() {
     // "When EEMPE has been written to one by software, hardware clears the bit to zero after four clock cycles"
     // (8.6.3). The bit is set at the end of the `sbi`; the n-th `in` after the `sbi` reads in the n-th cycle.
-    let uno = run(
+    let uno = run_assembly(
         "sbi EECR, EEMPE
          in r16, EECR $ in r17, EECR $ in r18, EECR $ in r19, EECR $ in r20, EECR
          out GPIOR0, r16 $ out GPIOR0, r17 $ out GPIOR0, r18
@@ -146,7 +146,7 @@ fn the_eeprom_is_not_written_without_the_timed_sequence() {
             "sbi EECR, EEMPE $ cbi EECR, EERIE $ nop $ sbi EECR, EEPE",
         ),
     ] {
-        let uno = run(source, ATOMIC_CYCLES + 100);
+        let uno = run_assembly(source, ATOMIC_CYCLES + 100);
         assert!(uno.eeprom_operations().is_empty(), "{message}");
     }
 }
@@ -156,11 +156,11 @@ fn eepe_is_one_for_the_duration_in_table_8_1() {
     // EEPM1:0 is 00 for erase and write (3.4 ms), 01 for erase only (1.8 ms), 10 for write only (1.8 ms).
     for (mode, duration, expected_mode) in [
         (0, ATOMIC_CYCLES, EepromMode::EraseAndWrite),
-        (1, SINGLE_CYCLES, EepromMode::EraseOnly),
-        (2, SINGLE_CYCLES, EepromMode::WriteOnly),
+        (1, ERASE_OR_WRITE_CYCLES, EepromMode::EraseOnly),
+        (2, ERASE_OR_WRITE_CYCLES, EepromMode::WriteOnly),
     ] {
         let body = format!("set(7, 0x33, {mode}); while (busy()) {{}} GPIOR0 = 1;");
-        let uno = run_once(&body, 5);
+        let uno = run_c(&body, 5);
         let operation = uno.eeprom_operations()[0];
         assert_eq!((operation.address, operation.mode), (7, expected_mode));
         let busy_cycles = uno.marks()[0].cycle - operation.cycle;
@@ -173,7 +173,7 @@ fn erase_only_sets_all_bits_and_write_only_clears_bits() {
     let body = "set(0, 0x0f, 2); set(0, 0xf5, 2);
         set(1, 0x0f, 0); set(1, 0x55, 1);
         set(2, 0x0f, 0); set(2, 0xf0, 0);";
-    let uno = run_once(body, 30);
+    let uno = run_c(body, 30);
     assert_eq!(uno.eeprom()[..4], [0x05, 0xff, 0xf0, 0xff]);
     let operations = uno.eeprom_operations();
     let old_values = operations.iter().map(|operation| operation.old_value);
@@ -198,7 +198,7 @@ fn the_cpu_halts_four_cycles_to_read_and_two_to_write() {
     // "When the EEPROM is read, the CPU is halted for four clock cycles before the
     // next instruction is executed"; "When EEPE has been set, the CPU is halted for
     // two cycles before the next instruction is executed" (8.6.3).
-    let uno = run(
+    let uno = run_assembly(
         "sbi DDRB, 5
          sbi PORTB, 5
          sbi EECR, EERE
@@ -261,7 +261,7 @@ fn the_ready_interrupt_is_requested_while_eepe_is_zero() {
 
 #[test]
 fn the_ready_interrupt_fires_at_once_and_again_after_one_instruction() {
-    let uno = run(
+    let uno = run_assembly(
         "jmp start
          .org 0x58                  ; EE_READY
          sbi GPIOR0, 0
@@ -289,7 +289,7 @@ fn a_reset_does_not_end_a_write_or_change_its_mode() {
     // operation will be completed provided that the power supply voltage is
     // sufficient" (8.4.2); "During reset, the EEPMn bits will be reset to 0b00
     // unless the EEPROM is busy programming" (8.6.3).
-    let mut uno = run_once(
+    let mut uno = run_c(
         "GPIOR0 = EECR;
         if (!busy()) set(3, 0x42, 2);
         while (busy()) {}
@@ -302,7 +302,7 @@ fn a_reset_does_not_end_a_write_or_change_its_mode() {
     uno.run_ms(5);
     assert_eq!(uno.eeprom()[3], 0x42);
     let duration = uno.marks()[2].cycle - uno.eeprom_operations()[0].cycle;
-    assert_within(SINGLE_CYCLES..SINGLE_CYCLES + 20, duration);
+    assert_within(ERASE_OR_WRITE_CYCLES..ERASE_OR_WRITE_CYCLES + 20, duration);
     uno.reset();
     uno.run_cycles(100);
     let value = mark_values(&uno)[3];
@@ -311,8 +311,8 @@ fn a_reset_does_not_end_a_write_or_change_its_mode() {
 
 #[test]
 fn a_reset_disarms_eempe() {
-    // The run of five cycles ends with the `sbi` to EEMPE.
-    let mut uno = run("in r16, GPIOR1 $ sbi EECR, EEPE $ sbi EECR, EEMPE", 5);
+    // The run_assembly of five cycles ends with the `sbi` to EEMPE.
+    let mut uno = run_assembly("in r16, GPIOR1 $ sbi EECR, EEPE $ sbi EECR, EEMPE", 5);
     uno.reset();
     uno.run_cycles(100);
     assert!(uno.eeprom_operations().is_empty());

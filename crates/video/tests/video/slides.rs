@@ -92,8 +92,8 @@ fn a_robot_that_is_moved_by_hand_in_the_first_second_has_not_slid() {
     assert_matches!(result, Err(SlideError::NoSlide { distance, .. }) if distance < 1.0);
 }
 
-/// Run by `make measure-test`. The level board's tilt has a standard deviation of 0.3 deg, as with a spirit
-/// level.
+/// Run by `make measure-test`. The level board's tilt varies with a standard deviation of 0.3 deg, as after
+/// levelling with a spirit level.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
 fn in_at_least_14_of_16_videos_the_true_friction_lies_within_two_standard_errors() {

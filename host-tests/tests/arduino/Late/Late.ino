@@ -13,5 +13,5 @@ void loop() {
   delayMicroseconds(30);
   interrupts();
   delayMicroseconds(27);
-  digitalWrite(13, Servo::late() > 0);
+  digitalWrite(13, Servo::lateEdgeCount() > 0);
 }

@@ -32,21 +32,21 @@ export const signsStep: Step = {
 function makeQuestion(dialog: SetupDialog, turn: Turn): Node[] {
   const { servo, session } = dialog;
   const { pin } = session.robot.description.servos[servo];
-  const recordFault = (fault: 'other' | 'none') => () => {
+  const recordFault = (fault: 'otherServo' | 'noServo') => () => {
     turn.fault = fault;
     dialog.redraw();
   };
   const advice = {
-    other: `Two signal wires are swapped. Switch off the servo supply and connect the signal of the ${SERVO_POSITIONS[servo]} servo to pin D${pin}. Then turn the servo again.`,
-    none: `Check that the servo supply is on, that its ground is connected to the UNO's ground, and that the servo's plug is the right way round, with the signal (orange) on pin D${pin}. Then turn the servo again.`,
+    otherServo: `Two signal wires are swapped. Switch off the servo supply and connect the signal of the ${SERVO_POSITIONS[servo]} servo to pin D${pin}. Then turn the servo again.`,
+    noServo: `Check that the servo supply is on, that its ground is connected to the UNO's ground, and that the servo's plug is the right way round, with the signal (orange) on pin D${pin}. Then turn the servo again.`,
   };
   return [
     paragraph('Did the servo turn in the direction of the arrow?'),
     row(
       button('Yes', () => confirmSign(dialog), true),
       button('No, in the other direction', () => reverseSign(dialog)),
-      button('Another servo turned', recordFault('other')),
-      button('No servo turned', recordFault('none')),
+      button('Another servo turned', recordFault('otherServo')),
+      button('No servo turned', recordFault('noServo')),
     ),
     ...(turn.fault ? [paragraph(advice[turn.fault])] : []),
   ];

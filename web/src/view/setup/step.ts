@@ -9,7 +9,7 @@ export interface Turn {
   /** The commanded rotation, deg counter-clockwise; in the step Limits, the commanded angle. */
   commandedDegrees: number;
   /** The fault that the user observed in the step Signs: another servo turned, or no servo turned. */
-  fault?: 'other' | 'none';
+  fault?: 'otherServo' | 'noServo';
 }
 
 /** A step of the first connection. */

@@ -88,7 +88,7 @@ fn help_lists_every_gait_and_every_command_each_time() {
 }
 
 #[test]
-fn help_lists_all_gait_names_and_fills_each_line_before_the_next() {
+fn a_long_list_of_gaits_fills_each_line_of_help_before_the_next() {
     for (count, length) in [
         (4, 48),
         (40, 5),
@@ -139,8 +139,12 @@ fn each_hold_is_reported_once_and_status_shows_it_until_the_robot_moves_again() 
     let mut robot = run_until_held();
     let printed_lines = robot.read_lines();
     assert_line_starts(&printed_lines, &["# held in the last safe pose: "]);
-    let hazards = [" margin of ", " slider is at "];
-    assert!(hazards.iter().any(|text| printed_lines[0].contains(text)));
+    let hazard_texts = [" margin of ", " slider is at "];
+    assert!(
+        hazard_texts
+            .iter()
+            .any(|text| printed_lines[0].contains(text))
+    );
     assert!(robot.run_frames(100).is_empty());
     robot.expect_status(&[("guard", "held"), ("fault", "guard")]);
     robot.send_and_run("stand", 1);
@@ -181,8 +185,8 @@ fn pending_lines_are_written_in_the_order_banner_answer_notice_hold_reason_repor
         }
         printed_lines.push(core::mem::take(&mut robot.board.transmitter.text));
     }
-    // From here on the output is not read, while the guard holds the robot, a pulse edge is late and a report becomes
-    // pending.
+    // From here on the output is not read. Meanwhile the guard stops the robot, a pulse edge is late, and a report
+    // becomes pending.
     robot.run_without_reader(199);
     assert!(robot.motion().hazard().is_some());
     robot.board.late_edges = 1;

@@ -21,7 +21,8 @@ const SUPPLIES_WITH_RAIL: Supplies = Supplies {
     ..SUPPLIES
 };
 
-/// Computes the ADC reading at these voltages of the board and the servo rail.
+/// Computes the ADC's readings at these voltages of the board and of the servo rail, which is measured through a
+/// divider by two.
 fn compute_reading(board_volts: f64, rail_volts: f64) -> Reading {
     Reading {
         reference: (1.1 / board_volts * 1024.0) as u16,
@@ -89,14 +90,14 @@ fn a_falling_supply_reaches_each_level_after_six_frames() {
         let change = add_board_readings_until_change(&mut supply, volts);
         assert_eq!(change, Some((6, level)));
     }
+    // A fall through all levels also takes six frames.
     let mut supply = Supply::default();
     let change = add_board_readings_until_change(&mut supply, 3.9);
-    // A fall through all levels also takes six frames.
     assert_eq!(change, Some((6, Rest)));
 }
 
 #[test]
-fn six_low_readings_lower_the_level_only_as_far_as_the_highest_of_them() {
+fn six_low_readings_worsen_the_level_only_as_far_as_the_highest_of_them() {
     for (usual_volts, outlier_volts, level) in
         [(4.45, 3.5, Slow), (4.25, 3.5, Stop), (3.5, 4.45, Slow)]
     {
@@ -116,7 +117,7 @@ fn six_low_readings_lower_the_level_only_as_far_as_the_highest_of_them() {
 }
 
 #[test]
-fn fifty_high_readings_raise_the_level_only_as_far_as_the_lowest_of_them() {
+fn fifty_high_readings_improve_the_level_only_as_far_as_the_lowest_of_them() {
     for outlier_frame in 0..50 {
         let mut supply = Supply::default();
         add_board_readings_until_change(&mut supply, 4.2);
@@ -129,7 +130,7 @@ fn fifty_high_readings_raise_the_level_only_as_far_as_the_lowest_of_them() {
 }
 
 #[test]
-fn a_short_dip_does_not_change_the_level() {
+fn dips_of_five_frames_do_not_change_the_level() {
     let mut supply = Supply::default();
     for _ in 0..100 {
         for volts in [4.0, 4.0, 4.0, 4.0, 4.0, 5.0] {
@@ -167,7 +168,7 @@ fn a_supply_that_oscillates_around_a_threshold_changes_its_level_only_once() {
 }
 
 #[test]
-fn the_supply_with_the_lower_level_determines_the_level_and_is_reported() {
+fn the_supply_with_the_worse_level_determines_the_level_and_is_reported() {
     let supplies = SUPPLIES_WITH_RAIL;
     for (board_volts, rail_volts, level, limiting_volts) in [
         (5.0, 6.6, Good, 5.0),

@@ -56,25 +56,30 @@ impl Bounds {
 fn decide_safety(robot: &Sample, pose: &Pose) -> Option<bool> {
     let bounds = Bounds::compute(robot, pose);
     let Some(solution) = robot.solve(pose) else {
-        // For a loop that just fails to close, the guard may compute a margin up to the bound of the error.
+        // If a loop only just fails to close, the guard may compute a margin, but one no larger than its error bound.
         return (bounds.max_end_error(|end| end.type2) < robot.measurements.limits.type2)
             .then_some(false);
     };
     let exact_poses = [&solution.head, &solution.tail];
-    let may_be_crossed = |(exact_pose, bound): (&&kinematics::FiveBarPose, &MarginErrors)| {
-        exact_pose.gap.x.abs() <= bound.gap_x
-    };
-    if exact_poses.iter().zip(&bounds.ends).any(may_be_crossed) {
+    let may_have_crossed_tips =
+        |(exact_pose, bound): (&&kinematics::FiveBarPose, &MarginErrors)| {
+            exact_pose.gap.x.abs() <= bound.gap_x
+        };
+    if exact_poses
+        .iter()
+        .zip(&bounds.ends)
+        .any(may_have_crossed_tips)
+    {
         return None;
     }
     // Limits are rounded up to a step, and strokes are rounded inwards.
     let scales = robot.content.sliders.map(|slider| slider.scale);
     let [left, right] = scales.map(steps_per_mm);
-    let step = 1.0 / left.min(right);
+    let coarser_step_mm = 1.0 / left.min(right);
     let limits = robot.measurements.limits;
     let type2_error = bounds.max_end_error(|end| end.type2) + Q15_UNIT;
     let type1_error = bounds.max_end_error(MarginErrors::type1) + Q15_UNIT;
-    let stroke_error = bounds.sliders[0].max(bounds.sliders[1]) + step;
+    let stroke_error = bounds.sliders[0].max(bounds.sliders[1]) + coarser_step_mm;
     let shifted_limits = |sign: f64| kinematics::Limits {
         type2: limits.type2 + sign * type2_error,
         type1: limits.type1 + sign * type1_error,
@@ -107,12 +112,12 @@ fn check_errors(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
         let bound = &bounds.ends[end];
         let is_leg = index >= 6;
         let is_unknown = !is_leg && !bound.do_bounds_hold;
-        let may_be_crossed = index < 2 && five_bar_pose.gap.x.abs() <= bound.gap_x;
-        if is_unknown || may_be_crossed {
+        let may_have_crossed_tips = index < 2 && five_bar_pose.gap.x.abs() <= bound.gap_x;
+        if is_unknown || may_have_crossed_tips {
             continue;
         }
-        let is_crossed = index < 2 && five_bar_pose.gap.x < 0.0;
-        let exact = if is_crossed { -exact } else { exact };
+        let has_crossed_tips = index < 2 && five_bar_pose.gap.x < 0.0;
+        let exact = if has_crossed_tips { -exact } else { exact };
         let max_error = match index {
             0..2 => bound.type2,
             2 | 5 => bound.type1_left,
@@ -173,12 +178,12 @@ fn the_bounds_decide_nearly_every_pose_and_are_narrow_at_neutral() {
             .current();
         let is_decided = |pose: &&Pose| decide_safety(&robot, pose).is_some();
         decided_count += poses.iter().filter(is_decided).count();
-        let standing_bounds = Bounds::compute(&robot, &Pose::NEUTRAL);
-        let type2 = standing_bounds.max_end_error(|end| end.type2);
-        let type1 = standing_bounds.max_end_error(MarginErrors::type1);
+        let neutral_bounds = Bounds::compute(&robot, &Pose::NEUTRAL);
+        let type2 = neutral_bounds.max_end_error(|end| end.type2);
+        let type1 = neutral_bounds.max_end_error(MarginErrors::type1);
         assert!(type2 < 0.01, "type-2 {type2}, type-1 {type1}");
         assert!(type1 < 0.02, "type-2 {type2}, type-1 {type1}");
-        let sliders = standing_bounds.sliders;
+        let sliders = neutral_bounds.sliders;
         assert!(sliders.iter().all(|mm| *mm < 0.05), "{sliders:?}");
     }
     assert!(decided_count > 1900, "{decided_count} of 2000");

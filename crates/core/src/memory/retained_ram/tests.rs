@@ -182,7 +182,7 @@ proptest! {
         prop_assert_eq!(begin(&ram, Some(Cause::External)).servo_state_before, None);
         bytes[MARK_CELL] = POWERED_MARK;
         // Neither RUNNING nor HUNG.
-        bytes[STATE_CELL] = 0x5b;
+        bytes[PROGRAM_STATE_CELL] = 0x5b;
         prop_assert_eq!(begin(&Ram::with_bytes(bytes), reported_cause).servo_state_before, None);
     }
 

@@ -34,7 +34,7 @@ impl Motion {
         self.speed_percent
     }
 
-    /// Frames since power-on.
+    /// Frames since the program started.
     pub const fn frame_count(&self) -> u32 {
         self.frame_count
     }

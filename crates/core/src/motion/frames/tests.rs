@@ -162,7 +162,7 @@ fn from_a_held_pose_the_next_frame_begins_the_move_to_a_gait_or_a_pose() {
 // Moving.
 
 #[test]
-fn after_the_move_to_it_even_the_stopped_gait_starts_at_phase_0_and_accelerates() {
+fn after_the_move_to_it_a_gait_accelerates_from_phase_0_even_if_it_was_the_stopped_gait() {
     for name in GAIT_NAMES {
         for (stopped_name, held_frames) in [("swing", 0), ("sway", 5)] {
             let mut motion = Motion::in_gait(stopped_name, 90);
@@ -234,6 +234,7 @@ fn a_move_to_a_gait_continues_when_that_gait_is_commanded_again() {
 
 #[test]
 fn the_same_gait_commanded_again_continues_in_the_middle_of_its_cycle() {
+    // `stray` becomes unsafe in the middle of its cycle.
     for name in GAIT_NAMES.into_iter().filter(|name| *name != "stray") {
         let build_motion = || Motion::in_gait(name, 60);
         let mut repeated_motion = build_motion();

@@ -239,7 +239,7 @@ mod tests {
                 "--gait run: unknown gait; allowed values: walk, trot, crawl",
             ),
             ("--gait stand", "the gait `stand` does not move the robot"),
-            ("--gait look", "undecided"),
+            ("--gait look", "undetermined"),
             ("--gait arc-left", "walks along a curve"),
             (
                 "--rate 900",

@@ -36,8 +36,10 @@ pub(super) struct Deadman {
     /// The robot's own setting before it was read again, ms. It still applies if the robot reports the value for
     /// driving: a `stop` has dropped the line that restores the setting, or the link has lost this line.
     own_ms_before_read: Option<u16>,
-    /// True while `deadman` has its value for driving, or is about to get it.
+    /// True while `deadman` has its value for driving, is about to get it, or may have it.
     pub(super) is_overridden: bool,
+    /// True if the robot has not confirmed a line, and `deadman` may have either value.
+    is_unconfirmed: bool,
     /// True from the start of a gait or a routine to its end. A routine may rest in between; the robot then wakes by
     /// itself.
     pub(super) is_under_way: bool,
@@ -69,10 +71,10 @@ impl Deadman {
             _ => {}
         }
         // Only a gait or a routine makes the robot walk; their names are not among the console's words.
-        if word == "stand" || Word::find(word.as_bytes()).is_some() || self.is_overridden {
+        if word == "stand" || Word::find(word.as_bytes()).is_some() || self.is_driving() {
             return (&[], &[]);
         }
-        self.is_overridden = true;
+        (self.is_overridden, self.is_unconfirmed) = (true, false);
         match self.own_ms {
             None => (&[DeadmanLine::Read, DeadmanLine::Set], &[]),
             Some(_) => (&[DeadmanLine::Set], &[]),
@@ -89,7 +91,8 @@ impl Deadman {
                 return Some("cal".to_owned());
             }
             DeadmanLine::Restore => self.is_overridden = false,
-            DeadmanLine::Set | DeadmanLine::RestoreForOneLine => {}
+            DeadmanLine::Set => self.is_unconfirmed = false,
+            DeadmanLine::RestoreForOneLine => {}
         }
         let ms = match (deadman_line, self.own_ms?) {
             (DeadmanLine::Set, 0) => DRIVING_DEADMAN_MS,
@@ -97,6 +100,17 @@ impl Deadman {
             (_, own_ms) => own_ms,
         };
         Some(format!("deadman {ms}"))
+    }
+
+    /// True while `deadman` has its value for driving, or is about to get it.
+    pub(super) fn is_driving(&self) -> bool {
+        self.is_overridden && !self.is_unconfirmed
+    }
+
+    /// Records that the robot has not confirmed a line. The value for driving replaces only a known setting.
+    pub(super) fn record_unconfirmed(&mut self) {
+        self.is_overridden = self.own_ms.or(self.own_ms_before_read).is_some();
+        self.is_unconfirmed = true;
     }
 
     /// True if the robot has not reported its own setting, or if the line with the setting was lost.

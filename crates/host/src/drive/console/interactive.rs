@@ -221,7 +221,10 @@ impl Dialogue {
         let has_quit = fatal_failure.is_none();
         if has_quit && let (Some(board), Some(line)) = (&mut board, self.session.restore_deadman())
         {
-            let _ = board.link.ask(&line);
+            // A radio may lose a line, and an answer to an earlier line may come first.
+            let answer = format!("ok {line}");
+            let mut replies = (0..3).map(|_| board.link.ask(&line));
+            let _ = replies.any(|reply| reply.is_ok_and(|reply| reply.answer == answer));
         }
         drop(screen);
         history::save(prompt.history());

@@ -45,7 +45,7 @@ enum Request {
 /// An unanswered `stop`.
 #[derive(Debug)]
 struct UnansweredStop {
-    /// Time of the user's request.
+    /// Time of the user's request, or of the board's reconnection.
     request_time: Instant,
     /// Time of the next `stop` line.
     next_send_time: Instant,
@@ -53,6 +53,17 @@ struct UnansweredStop {
     sent_count: u32,
     /// True once the user has been informed of the missing answer.
     is_reported: bool,
+}
+
+impl UnansweredStop {
+    fn new(now: Instant) -> Self {
+        Self {
+            request_time: now,
+            next_send_time: now,
+            sent_count: 0,
+            is_reported: false,
+        }
+    }
 }
 
 /// The state of a dialogue with the robot.
@@ -150,7 +161,7 @@ impl Session {
 
     /// True while `deadman` is set because the robot walks or is about to walk.
     pub fn is_driven(&self) -> bool {
-        matches!(&self.deadman, Some(deadman) if deadman.is_overridden)
+        self.deadman.as_ref().is_some_and(Deadman::is_driving)
     }
 
     /// Stops the robot. Queued lines are dropped, because they could start it again. Lines about `deadman` stay: an
@@ -161,12 +172,7 @@ impl Session {
         });
         self.user_line_count += 1;
         self.events.push(Event::Sent("stop".to_owned()));
-        self.unanswered_stop.get_or_insert(UnansweredStop {
-            request_time: now,
-            next_send_time: now,
-            sent_count: 0,
-            is_reported: false,
-        });
+        self.unanswered_stop.get_or_insert(UnansweredStop::new(now));
     }
 
     /// Begins again with a board that was connected again. An unanswered `stop` is repeated. The user's other waiting
@@ -179,8 +185,10 @@ impl Session {
             _ => None,
         };
         let messages = requests.filter_map(to_message).collect();
+        let unanswered_stop = self.unanswered_stop.take();
         *self = Self {
-            unanswered_stop: self.unanswered_stop.take(),
+            // The board could not answer while it was unplugged.
+            unanswered_stop: unanswered_stop.map(|_| UnansweredStop::new(now)),
             events: self.take_events(),
             ..Self::new(now, self.polls_status, watches_poses)
         }
@@ -235,11 +243,13 @@ impl Session {
     }
 
     /// Handles a line about `deadman` that the robot has not confirmed; returns the message to the user.
-    /// [`DeadmanLine::Restore`] will be sent again. After any other line, drops the queued lines, because the robot
-    /// would keep walking out of range.
+    /// [`DeadmanLine::Restore`] will be sent once the robot does not walk. After any other line, drops the queued
+    /// lines, because the robot would keep walking out of range.
     fn handle_unconfirmed_deadman(&mut self, deadman_line: DeadmanLine) -> String {
-        if let (DeadmanLine::Restore, Some(deadman)) = (deadman_line, &mut self.deadman) {
-            deadman.is_overridden = true;
+        if let Some(deadman) = &mut self.deadman {
+            deadman.record_unconfirmed();
+        }
+        if deadman_line == DeadmanLine::Restore {
             return "(the robot has not confirmed its own `deadman` setting)".to_owned();
         }
         for request in std::mem::take(&mut self.queue) {
@@ -247,9 +257,6 @@ impl Session {
                 self.user_line_count += 1;
                 self.record_failure(line, "not sent");
             }
-        }
-        if let Some(deadman) = &mut self.deadman {
-            deadman.is_overridden = false;
         }
         "(not sent: the robot has not confirmed its `deadman` setting)".to_owned()
     }
@@ -262,6 +269,9 @@ impl Session {
         let is_resting = status.gait == "rest" && status.fault.is_none();
         deadman.is_under_way = status.is_walking() || deadman.is_under_way && is_resting;
         if deadman.is_overridden && !deadman.is_under_way && self.queue.is_empty() {
+            if deadman.is_unknown() {
+                self.queue.push_back(Request::Deadman(DeadmanLine::Read));
+            }
             self.queue.push_back(Request::Deadman(DeadmanLine::Restore));
         }
     }

@@ -31,8 +31,8 @@ pub enum ChoiceError {
         /// The subcommand, with the arguments before the port.
         command: &'static str,
     },
-    /// There is more than one port.
-    #[error("several boards found: {}. Select one: lizard {command} {}", join_names(.ports), .ports[0].name)]
+    /// More than one port may have the board.
+    #[error("several ports may have the board: {}. Select one: lizard {command} {}", join_names(.ports), .ports[0].name)]
     SeveralPorts {
         /// The subcommand, with the arguments before the port.
         command: &'static str,
@@ -65,7 +65,7 @@ fn to_usb_port(port: SerialPortInfo) -> Option<UsbPort> {
     })
 }
 
-/// Removes the ports with another chip than `chip`, unless this is `None`.
+/// Keeps only the ports with this chip; keeps all ports if `chip` is `None`.
 pub(super) fn retain_chip(ports: &mut Vec<UsbPort>, chip: Option<&[u16; 2]>) {
     ports.retain(|port| chip.is_none_or(|chip| port.chip == *chip));
 }
@@ -107,7 +107,7 @@ impl std::fmt::Display for UsbPort {
     }
 }
 
-/// Joins the ports' names with their products.
+/// Lists the ports, separated by commas, each with its product name.
 pub(super) fn join_names(ports: &[UsbPort]) -> String {
     let names: Vec<String> = ports.iter().map(ToString::to_string).collect();
     names.join(", ")
@@ -167,7 +167,7 @@ mod tests {
             ("ttyUSB0", 0x1a86),
             ("ttyUSB1", 0x0403),
         ];
-        let message = "several boards found: /dev/ttyACM0 (Arduino Uno), /dev/ttyUSB0. Select one: \
+        let message = "several ports may have the board: /dev/ttyACM0 (Arduino Uno), /dev/ttyUSB0. Select one: \
                        lizard console /dev/ttyACM0";
         assert_eq!(choose_from(&ports), Err(message.to_owned()));
         assert!(choose_from(&[("ttyUSB0", 1), ("ttyUSB1", 2)]).is_err());

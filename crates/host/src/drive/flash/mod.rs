@@ -261,7 +261,7 @@ mod tests {
         };
         assert!(choice_error(&[]).ends_with("lizard flash /dev/ttyACM0"));
         let ports = ["COM3", "COM4"].map(|name| port(name, 0x2341));
-        let message = "several boards found: COM3, COM4. Select one: lizard flash COM3";
+        let message = "several ports may have the board: COM3, COM4. Select one: lizard flash COM3";
         assert_eq!(choice_error(&ports), message);
     }
 }

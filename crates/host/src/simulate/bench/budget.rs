@@ -1,4 +1,4 @@
-//! A measurement with its budget and the value of the Arduino Servo library, and the budgets with a derivation.
+//! A measurement with its budget and the Arduino Servo library's value, and those budgets that need an explanation.
 
 use serde::Serialize;
 
@@ -26,12 +26,12 @@ pub struct BudgetRow {
     pub measured: Option<f64>,
     /// The measurement's budget.
     pub budget: Bound,
-    /// The same value for the Arduino Servo library, measured as in `SERVO_LIBRARY`; `None` if it is not known.
+    /// The same value for the Arduino Servo library, measured as in `SERVO_LIBRARY_SETUP`; `None` if it is not known.
     pub servo_library: Option<&'static str>,
     /// True if the value depends on the machine that runs the measurement.
     #[serde(rename = "wall_clock")]
     pub is_machine_dependent: bool,
-    /// True if the value is within its budget; a missing value passes.
+    /// False if the value was measured and is beyond its budget.
     #[serde(rename = "met")]
     pub is_within_budget: bool,
 }
@@ -63,13 +63,14 @@ impl BudgetRow {
 }
 
 /// The setup for measuring the Arduino Servo library.
-pub const SERVO_LIBRARY: &str = "Arduino Servo 1.3.0 (core 1.8.8, ATmega328P at 16 MHz) with four servos at a constant \
+pub const SERVO_LIBRARY_SETUP: &str = "Arduino Servo 1.3.0 (core 1.8.8, ATmega328P at 16 MHz) with four servos at a constant \
      1500 us; its float solve is theta2 and theta3 of head and tail";
 
 /// Cycles from the control tick to the end of its slot, where the interrupts take over the next frame.
 pub(super) const TICK_DEADLINE_CYCLES: f64 = 63_000.0;
-/// The fraction of all cycles that interrupts leave to main while the serial line is saturated in both directions.
-pub(super) const MAIN_FRACTION: f64 = 0.87;
+/// The smallest fraction of all cycles that interrupts leave to main: while the serial line is saturated in both
+/// directions.
+pub(super) const MIN_MAIN_FRACTION: f64 = 0.87;
 /// Budgets of the mean and longest control tick, cycles.
 pub(super) const TICK_BUDGET_CYCLES: [f64; 2] = [5_000.0, 10_000.0];
 /// Budgets of the mean and longest control tick, cycles, for a robot without maps of certified cells, so that the guard
@@ -79,7 +80,7 @@ pub(super) const TICK_BUDGET_WITHOUT_MAPS_CYCLES: [f64; 2] = [20_000.0, 20_000.0
 /// 60 cycles before they read the timer.
 pub(super) const MAX_OTHER_INTERRUPT_CYCLES: f64 = 160.0;
 /// Longest wall time for ten simulated minutes, s.
-pub(super) const MAX_WALL_S: f64 = 60.0;
+pub(super) const MAX_LONG_RUN_WALL_S: f64 = 60.0;
 
 #[cfg(test)]
 mod tests {

@@ -9,8 +9,8 @@ use lizard_robot::{CheckedGait, Robot, to_command};
 use simulated_uno::{Call, Fidelity, Pin};
 
 use super::budget::{
-    Bound, BudgetRow, MAIN_FRACTION, MAX_OTHER_INTERRUPT_CYCLES, MAX_WALL_S, TICK_BUDGET_CYCLES,
-    TICK_BUDGET_WITHOUT_MAPS_CYCLES, TICK_DEADLINE_CYCLES,
+    Bound, BudgetRow, MAX_LONG_RUN_WALL_S, MAX_OTHER_INTERRUPT_CYCLES, MIN_MAIN_FRACTION,
+    TICK_BUDGET_CYCLES, TICK_BUDGET_WITHOUT_MAPS_CYCLES, TICK_DEADLINE_CYCLES,
 };
 use super::exactness::Exactness;
 use super::stack::StackDepth;
@@ -65,11 +65,11 @@ const INTERRUPT_ENTRY_CYCLES: u64 = 7;
 /// Simulated time of the long run, ms: ten minutes.
 const LONG_RUN_MS: u64 = 600_000;
 
-/// Measures the firmware in an ELF with `robot`, and returns each measurement with its budget. A value that could not be
-/// measured is `None`: the values of a gait if the robot has no moving gait, and the width errors if the firmware was
-/// built from another source, because its commanded widths are then not known. `patrol_robot` is the same robot with
-/// the routine [`PATROL`]; without it, no routine is measured. `report_progress` receives each measurement's name before
-/// the measurement.
+/// Measures the firmware in an ELF with `robot`, and returns each measurement with its budget. A value that could not
+/// be measured is `None`: the values of a gait if the robot has no moving gait, and the width errors if the firmware
+/// was built from another source, because its commanded widths are then not known. `patrol_robot` is the same robot
+/// with the routine [`PATROL`]; without it, no routine is measured. `report_progress` receives each measurement's name
+/// before the measurement.
 ///
 /// A cycle is 62.5 ns. The cycles of a control tick, of the guard and of a step exclude interrupts; the cycles from a
 /// tick to its frame include them. The longest serial interrupt is also the longest delay of a servo interrupt.
@@ -156,7 +156,7 @@ pub fn measure(
     } else {
         TICK_BUDGET_WITHOUT_MAPS_CYCLES
     };
-    let step_budget = MAIN_FRACTION * TICK_DEADLINE_CYCLES - max_tick_budget;
+    let step_budget = MIN_MAIN_FRACTION * TICK_DEADLINE_CYCLES - max_tick_budget;
     let row = BudgetRow::new;
     let wall_row = |name, unit, measured, budget| BudgetRow {
         is_machine_dependent: true,
@@ -188,7 +188,7 @@ pub fn measure(
         row("static RAM", "bytes", Some(image.static_ram().into()), AtMost(900.0), Some("365")),
         row("between stack and static RAM", "bytes", Some(session_spare.min(saturated_spare).into()), AtLeast(400.0), None),
         row("  with the deepest stack", "bytes", Some(stack.margin().into()), AtLeast(400.0), None),
-        wall_row("ten simulated minutes", "s", wall_s, AtMost(MAX_WALL_S)),
+        wall_row("ten simulated minutes", "s", wall_s, AtMost(MAX_LONG_RUN_WALL_S)),
         wall_row("  times faster than a board", "", LONG_RUN_MS as f64 / 1000.0 / wall_s, Bound::None),
     ];
     Ok(rows)

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::budget::{Bound, BudgetRow, SERVO_LIBRARY};
+use super::budget::{Bound, BudgetRow, SERVO_LIBRARY_SETUP};
 use crate::shared::number::group_digits;
 
 /// Prints a row for each measurement, then notes about the measured `gait` and missing values.
@@ -52,7 +52,10 @@ pub fn print(rows: &[BudgetRow], gait: Option<&str>, out: &mut impl Write) -> io
              its widths were not compared."
         )?;
     }
-    writeln!(out, "\nA cycle is 62.5 ns. {gait_note} {SERVO_LIBRARY}.")
+    writeln!(
+        out,
+        "\nA cycle is 62.5 ns. {gait_note} {SERVO_LIBRARY_SETUP}."
+    )
 }
 
 #[cfg(test)]

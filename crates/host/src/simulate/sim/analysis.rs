@@ -311,7 +311,7 @@ fn compute_frame_travel(
     }
     let servo_frames = run.servo_frames_in(index..index + 2);
     let sweeps = servo_frames.filter_map(|servo_frame| servo_frame.sweeps);
-    let travel = run.robot.ground().with_rigid_drive().travel(sweeps);
+    let travel = run.robot.ground().with_rigid_drive().compute_travel(sweeps);
     if cache.len() < MAX_CACHED_PAIRS {
         cache.insert(pair, travel);
     }

@@ -303,7 +303,7 @@ fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     if let Some(gait) = &args.gait
         && robot.gait(gait).is_none()
     {
-        let problem = format!("robot.toml has no gait `{gait}`");
+        let problem = format!("the robot has no gait `{gait}`");
         return Err(unknown_gait_failure(&problem, gait, robot.gaits().iter()));
     }
     let ms = duration_ms.unwrap_or(12_000);

@@ -94,7 +94,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let changes_speed = steps.any(|step| step.command.starts_with("speed"));
     let spinner = create_spinner("simulating every frame");
     let replay = Replay::simulate(&robot, recording.frames, spans, model);
-    let rows = report::compute_rows(&robot, &replay, model, changes_speed);
+    let rows = report::compute_reports(&robot, &replay, model, changes_speed);
     drop(spinner);
 
     let mut out = io::stdout().lock();
@@ -103,7 +103,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
             json::write_line(&mut out, row)?;
         }
     } else {
-        report::print(&rows, &mut out)?;
+        report::print_table(&rows, &mut out)?;
         if has_inputs {
             write!(out, "\n{OPEN_INPUTS_NOTE}")?;
         }

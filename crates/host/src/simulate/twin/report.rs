@@ -23,8 +23,8 @@ pub struct CommandReport {
     pub displacement: Displacement,
     /// The gait's last complete cycle, and its prediction.
     pub cycle: Option<Cycle>,
-    /// Displacement that `lizard gaits` predicts for one round of a routine with these servos; null for a routine with
-    /// inputs, for other commands, and if the script changes the speed.
+    /// Displacement that `lizard gaits` predicts for one round of a routine with this run's servo model; null for a
+    /// routine with inputs, for other commands, and if the script changes the speed.
     pub round: Option<Displacement>,
     /// Distance that each foot slid over the floor, in servo order, mm. This field and the fields below cover the cycle
     /// in `cycle`, or all frames of the command if `cycle` is null.
@@ -74,15 +74,15 @@ fn predict_round(
     Some((round, prediction))
 }
 
-/// Summarises a replay in one row for each command, in order of time. If `changes_speed` is true, the script changes the
-/// speed of the gaits, and cycles and predicted rounds are omitted.
-pub fn compute_rows(
+/// Summarises a replay in one report for each command, in order of time. If `changes_speed` is true, the script changes
+/// the speed of the gaits, and cycles and predicted rounds are omitted.
+pub fn compute_reports(
     robot: &Robot,
     replay: &Replay,
     model: ServoModel,
     changes_speed: bool,
 ) -> Vec<CommandReport> {
-    let compute_row = |span: &Span| {
+    let compute_report = |span: &Span| {
         let frames = replay.frames(span);
         let span_totals = replay.compute_totals(frames.clone());
         let cycle = replay.find_last_cycle(span).filter(|_| !changes_speed);
@@ -141,14 +141,14 @@ pub fn compute_rows(
     };
     let spans = replay.spans.iter();
     let spans = spans.filter(|span| !replay.frames(span).is_empty());
-    spans.map(compute_row).collect()
+    spans.map(compute_report).collect()
 }
 
 /// Prints a table of the gaits' cycles, and a line for each other command that moved the body.
 ///
 /// # Errors
 /// Fails if writing fails.
-pub fn print(rows: &[CommandReport], out: &mut impl Write) -> io::Result<()> {
+pub fn print_table(rows: &[CommandReport], out: &mut impl Write) -> io::Result<()> {
     let has_springs = rows.iter().any(|row| row.lag > 0.0);
     let name_lengths = rows.iter().map(|row| row.command.len());
     let name_width = name_lengths.fold(10, usize::max);
@@ -157,16 +157,18 @@ pub fn print(rows: &[CommandReport], out: &mut impl Write) -> io::Result<()> {
     } else {
         ("", "")
     };
-    writeln!(
-        out,
-        "{:name_width$}   one cycle, mm and deg        by ideal servos            speed  feet slid  least margin       slider, mm   servos{spring_heading}",
-        ""
-    )?;
-    writeln!(
-        out,
-        "{:name_width$}     ahead    left    turn    ahead    left    turn     mm/s  mm a foot                     least  most   deg/s{spring_units}",
-        "gait"
-    )?;
+    if rows.iter().any(|row| row.cycle.is_some()) {
+        writeln!(
+            out,
+            "{:name_width$}   one cycle, mm and deg        by ideal servos            speed  feet slid  least margin       slider, mm   servos{spring_heading}",
+            ""
+        )?;
+        writeln!(
+            out,
+            "{:name_width$}     ahead    left    turn    ahead    left    turn     mm/s  mm a foot                     least  most   deg/s{spring_units}",
+            "gait"
+        )?;
+    }
     for row in rows {
         let Some(cycle) = &row.cycle else { continue };
         write!(out, "{:name_width$}  ", row.command)?;

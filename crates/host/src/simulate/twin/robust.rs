@@ -83,7 +83,7 @@ pub fn run(
     out: &mut impl Write,
 ) -> Result<(), Failure> {
     let gaits = replay.spans.iter();
-    let gaits = gaits.filter_map(|span| robot.gait(&span.command));
+    let gaits = gaits.filter_map(|span| robot.find_gait_in_line(&span.command));
     let gaits: Vec<&CheckedGait> = gaits.filter(|gait| gait.has_movement()).collect();
     let bar = create_progress_bar(
         variation_count as usize * gaits.len(),
@@ -124,8 +124,11 @@ pub fn run(
     Ok(())
 }
 
-/// Prints a table of the spreads and a table of the utilisation.
+/// Prints a table of the spreads and a table of the utilisation, or a message if there is no gait.
 fn print_tables(spreads: &[Spread], variation_count: u32, out: &mut impl Write) -> io::Result<()> {
+    let Some(first_spread) = spreads.first() else {
+        return writeln!(out, "\nno spread: no command starts a moving gait");
+    };
     writeln!(
         out,
         "\n{variation_count} robots and floors: {SPREAD_TEXT}, {PLAY_SPREAD_TEXT}; a cycle, mm and deg:\n"
@@ -148,9 +151,6 @@ fn print_tables(spreads: &[Spread], variation_count: u32, out: &mut impl Write) 
         "\nThe highest utilisation of a servo's torque-speed line, on the robot's own floor and with the most friction.\n\
          Above {HIGH_UTILISATION}, marked with !, little is left; above 1 a servo falls behind: `lizard gaits --servos`\n"
     )?;
-    let Some(first_spread) = spreads.first() else {
-        return Ok(());
-    };
     write!(out, "{:<12}", "gait")?;
     for Utilisation { pace, volts, .. } in &first_spread.utilisations {
         write!(out, "{:>18}", format!("{pace:.0} %, {volts:.2} V"))?;

@@ -90,7 +90,7 @@ fn the_refusal_of_invalid_arguments_states_the_reason() {
         pose --omega1 5 => the servos' rates and accelerations require --show rates
         pose --head 5 120 --alpha5 -5 => the servos' rates and accelerations require --show rates
         prove --one-in 4 --offset 4 => --offset is 4, but must be less than --one-in, which is 4
-        design --r1 0.3 => two or three of --r1, --r2, --r3 are required
+        design --r1 0.3 => give two or three of --r1, --r2, --r3, or none
         design --r1 0.3 --r2 0.3 --r3 0.1 => but must be 0.9; the same shape has r1 0.385714
         design --r1 0.1 --r2 0.2 --r3 0.6 => r3 is 0.6, but must be greater than 0 and less than 0.45
         design --l0 -5 => must be at least 0.001 mm

@@ -104,7 +104,7 @@ fn each_hazard_corresponds_to_the_check_of_the_same_condition() {
         (stroke_hazard(CoreSide::Left), "stroke_left"),
         (stroke_hazard(CoreSide::Right), "stroke_right"),
     ] {
-        assert_eq!(super::corresponding_check(&hazard).name(), name);
+        assert_eq!(super::check_of_hazard(&hazard).name(), name);
     }
 }
 

@@ -16,7 +16,7 @@ fn run_until_held() -> Motion {
 }
 
 #[test]
-fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held() {
+fn an_unsafe_pose_is_never_sent_and_the_last_safe_pose_is_held() {
     let mut motion = Motion::standing();
     motion.start("stray");
     let mut last_safe_pose = *motion.pose();
@@ -70,14 +70,14 @@ fn the_hazard_is_kept_after_stop_and_a_refused_pose_until_it_is_cleared() {
 #[test]
 fn a_refused_pose_changes_nothing_and_returns_its_hazard() {
     for name in GAIT_NAMES {
-        for frames in [0, 3, 20, 70] {
-            let mut motion = Motion::in_gait(name, frames);
+        for frame_count in [0, 3, 20, 70] {
+            let mut motion = Motion::in_gait(name, frame_count);
             let pose = Pose([Sweep(12_000), Sweep(0), Sweep(0), Sweep(0)]);
             let expected_hazard =
                 Clearance::measure(&motion.robot, &pose).first_hazard(&motion.robot);
             assert_eq!(motion.go_to(&pose).err(), expected_hazard);
             assert!(expected_hazard.is_some());
-            assert_same_motion(motion, Motion::in_gait(name, frames));
+            assert_same_motion(motion, Motion::in_gait(name, frame_count));
         }
     }
 }

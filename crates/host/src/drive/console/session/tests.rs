@@ -142,6 +142,18 @@ fn stop_is_repeated_until_answered_and_late_answers_are_ignored() {
 }
 
 #[test]
+fn a_stop_of_an_unplugged_robot_is_repeated_and_its_silence_counts_from_the_reconnection() {
+    let (now, mut session) = start(false, false);
+    session.stop(now);
+    let later = now + SILENCE_TIMEOUT;
+    session.restart(later, false);
+    assert_sends(&mut session, later, Some("stop"));
+    assert_eq!(session.time_out_request(later), None);
+    let message = session.time_out_request(later + SILENCE_TIMEOUT);
+    assert!(message.is_some_and(|message| message.contains("may still move")));
+}
+
+#[test]
 fn only_a_complete_refusal_of_stop_without_pulses_ends_the_repetition() {
     for (refusal, next_line) in [
         ("err 7 the servos are resting; send stand first", "stand"),

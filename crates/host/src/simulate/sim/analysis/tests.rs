@@ -76,7 +76,7 @@ fn displacements_of_two_commands_compose_to_that_of_the_run() {
         let spans = [Span::new(gait, 0.0, 3.0), Span::new(gait, 3.0, 20.0)];
         let displacements = compute_command_displacements(run, &spans);
         let sweeps = run.servo_frames().filter_map(|frame| frame.sweeps);
-        let total_travel = robot.ground().travel(sweeps);
+        let total_travel = robot.ground().compute_travel(sweeps);
         let [first, second, total] = &displacements[..] else {
             panic!("expected rows of two commands and of the run: {displacements:?}")
         };

@@ -168,6 +168,16 @@ fn a_reset_is_reported_and_the_lost_trim_is_no_longer_shown() {
     let view = guide.view();
     assert!(view.message.starts_with("The board was reset"), "{view:?}");
     assert_eq!(guide.robot.calibration().servos[0].trim, 0.0);
+
+    // `save` stores the shown settings, not those that the board has loaded.
+    press_keys(&mut guide, &[Key::Back, Key::LeftRight(0.5)]);
+    press_keys(&mut guide, &[Key::Next; 6]);
+    assert_title(&guide, "save");
+    guide.robot.console().port().reset();
+    press_keys(&mut guide, &[Key::Next]);
+    assert!(guide.is_saved(), "{:?}", guide.view());
+    link.command("load").expect("the calibration was saved");
+    assert_eq!(read_calibration(&mut link).servos[0].trim, 0.5);
 }
 
 /// Returns the keys from the first step to the scale of A1.

@@ -1,5 +1,7 @@
 //! Tests of the `deadman` setting while a person drives.
 
+use std::cell::Cell;
+
 use super::*;
 
 /// Starts a session of a person who drives; also returns its start.
@@ -246,6 +248,51 @@ fn deadman_is_restored_again_if_the_robot_has_not_confirmed_it() {
     assert_sends(&mut session, now, Some("status"));
     session.receive(&WALKING_STATUS.replace("gait=walk", "gait=stop"));
     assert_sends(&mut session, now, Some("deadman 700"));
+    now += ANSWER_TIMEOUT;
+    assert!(session.time_out_request(now).is_some());
+    // The robot may have its own setting again.
+    session.queue("walk");
+    let lines = run_session(&mut session, &mut now, answer_as_robot);
+    assert_eq!(lines, "deadman 700, walk");
+    assert!(session.is_driven());
+}
+
+#[test]
+fn the_value_for_driving_does_not_stay_if_a_line_about_it_or_its_answer_is_lost() {
+    // `load` sends `deadman 2000`, `load`, `cal` and `deadman 901`; `stop` drops the first two.
+    for (is_stopped, damaged_line, answer, expected) in [
+        (false, "deadman 2000", "err 1", "deadman 2000, deadman 2000"),
+        (
+            true,
+            "deadman 901",
+            "err 1",
+            "stop, cal, deadman 901, deadman 2000",
+        ),
+        (
+            true,
+            "cal",
+            "# boot stand\nok cal",
+            "stop, cal, cal, deadman 2000",
+        ),
+    ] {
+        let (mut now, mut session) = start_driving(true);
+        session.queue("walk");
+        let answer_with_own_deadman = |line: &str| answer_as_robot(line).replace("700", "2000");
+        run_session(&mut session, &mut now, answer_with_own_deadman);
+        session.queue("load");
+        if is_stopped {
+            session.stop(now);
+        }
+        let damage_count = Cell::new(0);
+        let answer_with_damage = |line: &str| match line {
+            "status" => WALKING_STATUS.replace("gait=walk", "gait=stop"),
+            line if line == damaged_line && damage_count.replace(1) == 0 => answer.to_owned(),
+            line => answer_as_robot(line).replace("700", "901"),
+        };
+        let lines = run_session(&mut session, &mut now, answer_with_damage);
+        assert_eq!(lines, expected);
+        assert!(!session.is_driven());
+    }
 }
 
 #[test]
