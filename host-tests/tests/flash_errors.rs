@@ -130,7 +130,7 @@ fn without_permission_the_message_names_the_group_to_join() {
         // Only root can run the script as another user. A port that its owner may not open has the same effect.
         fs::set_permissions(&port, Permissions::from_mode(0o000)).expect("the test owns the file");
         let error_output = check_ports(port_folder.path()).expect_err("the port may not be opened");
-        assert_contains(&error_output, "may not open");
+        assert_contains(&error_output, "has no permission to open");
         return;
     }
     let mut chgrp = Command::new("chgrp");
@@ -140,7 +140,7 @@ fn without_permission_the_message_names_the_group_to_join() {
     assert!(is_changed, "the group dialout does not exist");
     let error_output = check_ports_as(&NOBODY_COMMAND, port_folder.path(), None)
         .expect_err("nobody may not open the port");
-    assert_contains(&error_output, "nobody may not open");
+    assert_contains(&error_output, "nobody has no permission to open");
     assert_contains(&error_output, "usermod -aG dialout nobody");
 }
 

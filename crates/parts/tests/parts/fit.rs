@@ -19,7 +19,11 @@ fn a_wrong_dimension_makes_parts_overlap() {
     let large_head_toml = "[parts.screw]\nhead = 14.0\nhead_height = 3.0";
     for (toml, first, second) in [
         ("[parts]\nbar = 24.0", "follower", "follower"),
-        ("[parts]\npivot = [6.25, -4.0]", "plate", "crank"),
+        (
+            "force = 4.0\n[parts]\npivot = [6.25, -4.0]",
+            "plate",
+            "crank",
+        ),
         ("[parts.servo]\nboss = 20.0", "link", "strut"),
         ("[parts]\nbattery = [90.0, 90.0, 30.0]", "battery", "sleeve"),
         ("[parts]\nanchor = [12.0, 5.0]", "servo", "strut"),
