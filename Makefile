@@ -11,7 +11,7 @@ LIZARD := crates/target/release/lizard
 ROBOT ?= $(LIZARD_ROBOT)
 ifneq ($(ROBOT),)
 # make's own functions would split a path at a space.
-ROBOT_FILE := $(shell cd "$$(dirname '$(ROBOT)')" 2> /dev/null && ls -d "$$PWD/$$(basename '$(ROBOT)')" 2> /dev/null)
+ROBOT_FILE := $(shell CDPATH= cd "$$(dirname '$(ROBOT)')" 2> /dev/null && ls -d "$$PWD/$$(basename '$(ROBOT)')" 2> /dev/null)
 ifeq ($(ROBOT_FILE),)
 $(error ROBOT=$(ROBOT) does not exist; give a file such as robots/paper.toml)
 endif

@@ -32,9 +32,9 @@ fn main() {
     println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_start={START_ADDRESS:#x}");
     let end_address = START_ADDRESS + REGION_BYTES;
     println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_end={end_address:#x}");
-    // No instruction refers to the robot's section, to the mark of the firmware (src/mark.rs) or to the note for simavr
-    // (src/simavr.rs). Without this option, the linker would discard them.
-    for name in ["ROBOT", "MARK", "SIMAVR"] {
+    // No instruction refers to the robot's section, to the mark of the firmware (src/mark.rs) or to the section for
+    // simavr (src/simavr.rs). Without this option, the linker would discard them.
+    for name in ["ROBOT", "MARK", "MMCU"] {
         println!("cargo::rustc-link-arg-bins=-Wl,--undefined={name}");
     }
     // OUT_DIR is build/<package>/out in the folder of the firmware.

@@ -30,7 +30,7 @@ async function loadVerifiedFile(path, hash) {
 async function install() {
   const files = await Promise.all(FILES.map(async ([path, hash]) => [path, await loadVerifiedFile(path, hash)]));
   const cache = await caches.open(CACHE_NAME);
-  // A browser shows no stored page that came from a redirected request, such as one from /index.html to /.
+  // A browser refuses to show a stored page whose response was redirected. Some servers redirect /index.html to /.
   for (const [path, response] of files) await cache.put(toUrl(path), response.redirected ? new Response(response.body, response) : response);
 }
 self.addEventListener('install', (event) => event.waitUntil(install()));

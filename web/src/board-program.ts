@@ -60,7 +60,7 @@ export class BoardProgram {
   }
 
   /**
-   * Identifies the program of a board that was just connected; returns true if the board is connected at the end, and
+   * Identifies the program of a board that was just connected, or to which a write has failed; returns true if the board is connected at the end, and
    * false if the user disconnects it or writes to it meanwhile.
    */
   async identify(): Promise<boolean> {
@@ -119,7 +119,7 @@ export class BoardProgram {
     }).catch((error: unknown) => {
       const { banner, dialogue } = this.board;
       // The board may still run its previous program.
-      if (this.board.link === link && !dialogue.isClosed && banner === undefined) void this.identify();
+      if (this.board.isReal && this.board.link === link && !dialogue.isClosed && banner === undefined) void this.identify();
       throw error;
     });
   }

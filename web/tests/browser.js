@@ -108,7 +108,7 @@ async function serve(folder, requestedPaths = [], headers = {}) {
     const path = request.url.split('?')[0].replace(BASE_PATH, '/');
     requestedPaths.push(path);
     for (const [name, value] of Object.entries(headers)) response.setHeader(name, value);
-    // As some servers do.
+    // Redirects, as some servers do.
     if (path === '/index.html') return void response.writeHead(301, { location: './' }).end();
     const file = join(folder, normalize(path === '/' ? '/index.html' : path));
     try {

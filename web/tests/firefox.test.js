@@ -19,7 +19,7 @@ testPage('the image walks as predicted, and Esc stops it', openStanding, async (
   await assertStops(page);
 });
 
-testPage('the button Connect a board is disabled only in a Firefox without Web Serial', openStanding, async (page) => {
+testPage('the button Connect a board is disabled if this Firefox has no Web Serial, and only then', openStanding, async (page) => {
   const { hasSerial, note, isConnectDisabled } = await page.evaluate(() => ({
     hasSerial: typeof navigator.serial?.requestPort === 'function',
     note: document.querySelector('#no-serial').hidden ? '' : document.querySelector('#no-serial').textContent,

@@ -140,7 +140,7 @@ testPage('"stop" is repeated for the simulated UNO, too', openStanding, async (p
   assert.equal(await readText(page, '#doing'), 'stop');
 });
 
-/** Records the arrivalTimesMs between the lines that the board receives, ms of page time. */
+/** Records the times between the lines that the board receives, ms of page time. */
 const recordLineGaps = (page) =>
   page.evaluate(() => {
     const arrivalTimesMs = [];

@@ -140,12 +140,17 @@ impl<C: Console> Session<C> {
         Ok(pose[servo])
     }
 
-    /// Reverses a servo's sign, and also the trim, so that the neutral pulse width stays the same.
+    /// Reverses a servo's sign, and also the trim, so that the neutral pulse width stays the same. Changes nothing after
+    /// a reset, see [`Session::take_reset`].
     ///
     /// # Errors
     /// Fails if the robot cannot stand.
     pub async fn reverse_sign(&mut self, servo: usize) -> Result<(), C> {
         self.stand().await?;
+        // The user chose the change for settings that the reset has undone.
+        if self.was_reset {
+            return Ok(());
+        }
         self.refresh().await?;
         let new = self.active.servos[servo].reversed();
         let format_line = |settings: ServoSettings| format!("dir {} {}", servo + 1, settings.dir);
@@ -179,7 +184,7 @@ impl<C: Console> Session<C> {
     }
 
     /// Makes the robot stand, and sets a servo's scale from a commanded and a measured turn; returns the scale, us per
-    /// degree.
+    /// degree. Changes nothing after a reset, see [`Session::take_reset`].
     ///
     /// # Errors
     /// Fails if the robot refuses the scale or the converted trim.
@@ -190,6 +195,9 @@ impl<C: Console> Session<C> {
         measured_deg: f64,
     ) -> Result<f64, C> {
         self.stand().await?;
+        if self.was_reset {
+            return Ok(self.active.servos[servo].scale);
+        }
         self.refresh().await?;
         let scale = self.active.servos[servo].scale * (commanded_deg / measured_deg).abs();
         self.set_scale(servo, scale).await?;
@@ -233,7 +241,8 @@ impl<C: Console> Session<C> {
     /// Saves the active settings on the board. If the board has lost them by a reset, first sends them again.
     ///
     /// # Errors
-    /// Fails if the robot cannot save now, or refuses a setting.
+    /// Fails if the robot cannot save now, or refuses a setting. After an error while the settings are sent, the robot may
+    /// have only some of them; another `save` sends them again.
     pub async fn save(&mut self) -> Result<(), C> {
         self.refresh().await?;
         // Only a wait for the end of a movement notices a reset.

@@ -50,7 +50,7 @@ impl Part {
         }
     }
 
-    /// Number of pieces of this part in a robot.
+    /// Number of pieces to print.
     pub fn count(&self) -> usize {
         self.body_names.len()
     }

@@ -48,12 +48,15 @@ impl Robot {
     /// Fails if the file cannot be read, is longer than [`crate::MAX_FILE_BYTES`], is not UTF-8 text, or is invalid.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
-        let text = file::read_text(path).map_err(|problem| Error::new("", problem));
-        text.and_then(|text| Self::parse(&text))
-            .map_err(|error| Error {
-                file: path.display().to_string(),
-                ..error
-            })
+        Self::parse(&Self::read_text(path)?).map_err(|error| error.in_file(path))
+    }
+
+    /// Reads the text of a robot.toml.
+    ///
+    /// # Errors
+    /// Fails if the file cannot be read, is longer than [`crate::MAX_FILE_BYTES`], or is not UTF-8 text.
+    pub fn read_text(path: &Path) -> Result<String, Error> {
+        file::read_text(path).map_err(|problem| Error::new("", problem).in_file(path))
     }
 
     /// Reads and checks the text of a robot.toml. Skips a byte order mark at the start.

@@ -17,7 +17,7 @@ pub struct Status {
     pub pose: Option<[f64; 4]>,
     /// Pace of the gaits, percent, `speed` in the answer; `None` if the flash contains no robot.
     pub pace: Option<f64>,
-    /// Number of frames since power-on.
+    /// Number of frames since the program started.
     pub frames: u64,
     /// The smallest of the guard's margins, the sine of an angle; `None` if the flash contains no robot.
     pub margin: Option<f64>,

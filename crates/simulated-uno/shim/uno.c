@@ -91,7 +91,8 @@ struct uno *uno_new(bool follows_data_sheet, double baud)
 		abort(); /* out of memory, or a libsimavr without the UNO's chip */
 	avr->custom.data = uno;
 	avr_init(avr);
-	disable_level_polling(avr); /* its first poll would never be freed */
+	/* Also before the first reset, which would drop the timer of a poll and so never free the poll. */
+	disable_level_polling(avr);
 	widen_data_space(avr);
 	avr->frequency = CHIP_FREQUENCY;
 	avr->vcc = avr->avcc = avr->aref = 5000;

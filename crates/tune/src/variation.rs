@@ -121,7 +121,8 @@ impl Variation {
         };
         let first_cycle: Vec<[f64; 4]> =
             gait.frames().map(|(_, phase)| move_servos(phase)).collect();
-        // If the legs are rigid, only the servos carry over from the first cycle, so the walker starts at its end.
+        // If the legs are rigid, only the servos' state carries over from the first cycle, so the walker starts at
+        // the end of that cycle.
         let can_legs_lag = self.ground.drive.can_lag();
         let start_sweeps = match can_legs_lag {
             true => first_cycle.first(),

@@ -21,7 +21,7 @@ const SAMPLE_SPACING: f64 = 0.5;
 const MIN_CONTRAST: f64 = 25.0;
 /// Largest root-mean-square distance of an edge's points from the fitted line, px.
 const MAX_RMS_DEVIATION: f64 = 0.7;
-/// Largest length of an edge, px; no frame is larger.
+/// Largest length of an edge, px: longer than any edge in a video, but finite.
 const MAX_EDGE_LENGTH: f64 = 1e4;
 /// Number of iterations; each fits the lines again, starting from the improved corners.
 const ITERATION_COUNT: usize = 3;

@@ -20,7 +20,7 @@ const OTHER_VERSION_NOTE: &str =
     "# fault: the robot in the flash is for another version; write it again";
 const DAMAGED_ROBOT_NOTE: &str = "# fault: the robot in the flash is damaged; write it again";
 
-/// A missing, incomplete or damaged section in flash, and the line that reports it.
+/// Bytes in flash in place of a valid section, and the line that reports them.
 struct DamagedSection {
     description: String,
     section: Vec<u8>,
@@ -58,8 +58,8 @@ fn damage_numbers(description: &str, offset: usize, bytes: &[u8]) -> DamagedSect
     })
 }
 
-/// Returns sections that are missing, truncated or for another version.
-fn build_incomplete_or_outdated_sections() -> Vec<DamagedSection> {
+/// Returns sections that are missing, truncated, random or for another version.
+fn build_unusable_sections() -> Vec<DamagedSection> {
     let mut sections = vec![
         damage_section("erased flash", MISSING_ROBOT_NOTE, Vec::clear),
         damage_section("zeros", MISSING_ROBOT_NOTE, |section| {
@@ -206,10 +206,7 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
 
 #[test]
 fn without_a_complete_robot_there_is_no_pulse_and_the_console_names_the_reason() {
-    for_each_in_parallel(
-        &build_incomplete_or_outdated_sections(),
-        assert_finds_no_robot,
-    );
+    for_each_in_parallel(&build_unusable_sections(), assert_finds_no_robot);
 }
 
 #[test]
@@ -242,7 +239,7 @@ fn every_robots_section_is_checked_within_a_frame() {
 #[test]
 fn without_a_robot_the_led_flashes_eight_times_and_pauses() {
     run_in_both_simulations(|fidelity| {
-        let bench = &mut boot_damaged_board(&build_incomplete_or_outdated_sections()[0], fidelity);
+        let bench = &mut boot_damaged_board(&build_unusable_sections()[0], fidelity);
         bench.run_ms(8_000);
         let led_edges = led_edges(bench);
         // For each interval, true if the LED was on, and the interval's length in frames.

@@ -47,6 +47,8 @@ pub struct World {
     now: Time,
     /// True while the supply is weak: three awake servos then cause a brown-out.
     is_supply_weak: bool,
+    /// The time of the last late edge.
+    late_edge_at: Time,
     /// True if main was late for the last frame.
     was_main_late: bool,
     /// The last line that was sent, until its answer has been checked, which may be before it is printed; then `None`.
@@ -67,6 +69,7 @@ impl World {
             observer: Observer::new(checks::observer_limits(&robot)),
             now: 0,
             is_supply_weak: false,
+            late_edge_at: Time::MIN / 2,
             was_main_late: false,
             unchecked_line: None,
             sender_rate: BaudRate::Fastest,
@@ -132,8 +135,10 @@ impl World {
                     && !self.running_robot.board.are_pulses_ended()
             }
             Action::MainStep => {
-                self.running_robot.has_output()
-                    || self.running_robot.main.control().is_memory_in_use()
+                let has_task = self.running_robot.has_output()
+                    || self.running_robot.main.control().is_memory_in_use();
+                // The watchdog's interrupt, which ends the pulses, does not return to main.
+                has_task && !board.are_pulses_ended()
             }
             Action::Frames(_)
             | Action::Stall(_)
@@ -156,6 +161,7 @@ impl World {
     /// Returns the first violation that the action causes.
     pub fn apply(&mut self, action: Action) -> Verdict {
         let must_keep_rest_pose = self.observer.must_rest() && self.is_rest_pose_saved();
+        let rest_pose = *self.running_robot.motion().pose();
         match action {
             Action::Line(_) | Action::GarbledLine
                 if self.sender_rate != self.running_robot.board.rate =>
@@ -182,6 +188,7 @@ impl World {
             Action::WeakSupply(is_weak) => self.is_supply_weak = is_weak,
             Action::LateEdge => {
                 self.running_robot.board.late_edges += 1;
+                self.late_edge_at = self.now;
                 self.observe(Event::Fault);
                 self.run_frame()?;
             }
@@ -198,8 +205,10 @@ impl World {
             Action::Contact(pin, is_closed) => self.set_contact(pin, is_closed)?,
             Action::HeldOutput(is_held) => self.running_robot.board.transmitter.is_held = is_held,
         }
-        let is_resting = self.running_robot.motion().is_resting();
-        if must_keep_rest_pose && is_resting && !self.is_rest_pose_saved() {
+        // `boot` may have moved the robot to another pose meanwhile.
+        let motion = self.running_robot.motion();
+        let has_rest_pose = motion.is_resting() && *motion.pose() == rest_pose;
+        if must_keep_rest_pose && has_rest_pose && !self.is_rest_pose_saved() {
             return violation(Rule::RestPoseKept, action.to_string());
         }
         self.check_writes()?;
@@ -234,9 +243,11 @@ impl World {
         let start = self.now;
         let (code_before, stop_time_before) = (self.fault_code(), self.observer.stop_time());
         let mut led_changes = Vec::new();
+        let mut is_code_unchanged = true;
         for _ in 0..count {
             let was_lit = self.running_robot.board.is_lit();
             self.run_frame()?;
+            is_code_unchanged &= self.fault_code() == code_before;
             let is_lit = self.running_robot.board.is_lit();
             if is_lit != was_lit {
                 led_changes.push((self.now, is_lit));
@@ -248,8 +259,7 @@ impl World {
         if self.observer.has_unanswered_lines() {
             return violation(Rule::AnswersAgain, "no answer within 100 frames");
         }
-        let is_stop_unchanged =
-            self.fault_code() == code_before && self.observer.stop_time() == stop_time_before;
+        let is_stop_unchanged = is_code_unchanged && self.observer.stop_time() == stop_time_before;
         if is_stop_unchanged && self.observer.time_since_start() > self.now - start {
             led::check_pattern(&led_changes, start + 3 * FRAME, self.now, code_before)
                 .map_err(|message| Violation::new(Rule::LedShowsFault, message))?;

@@ -22,8 +22,10 @@ const program = `
     sei
     rjmp stop`;
 
-// Without the correction interrupt-after-enable.js, no instruction runs between SEI and the interrupt.
-/** Returns the number of cycles of the interrupt response: those between the two readings without LDS (2) and SEI (1). */
+/**
+ * Returns the cycles of the interrupt response: those between the two readings, minus those of LDS (2) and SEI (1).
+ * Without the correction interrupt-after-enable.js, no instruction runs between SEI and the interrupt.
+ */
 function measureEntryCycles(corrections) {
   const { data } = runProgram(corrections, program, 100).cpu;
   return data[17] - data[16] - 3;

@@ -98,6 +98,8 @@ pub struct Observer {
     /// True if the last motion is one that `deadman` ends: a gait other than `stand`, or a routine.
     pub(crate) is_gait_or_routine: bool,
     pub(crate) has_unsaved_settings: bool,
+    /// The time of the last change of the servos' settings.
+    pub(crate) recalibrated_at: Time,
     /// The number of motions begun since the last reset, minus the number of motions reported as done.
     pub(crate) unfinished_motion_count: i32,
     pub(crate) permission: Permission,
@@ -147,6 +149,7 @@ impl Observer {
             last_command_read_at: NEVER,
             is_gait_or_routine: false,
             has_unsaved_settings: false,
+            recalibrated_at: NEVER,
             unfinished_motion_count: 0,
             permission: Permission::default(),
             servos: [ServoHistory::UNKNOWN; 4],
@@ -264,6 +267,11 @@ impl Observer {
             || self.supply.time_below(rest_mv, since - 400 * MS, self.now) > 0
     }
 
+    /// True if no stall has delayed main since a time. After a stall, main is late for about a frame.
+    pub(crate) fn was_main_punctual_since(&self, time: Time) -> bool {
+        self.disturbed_until + 25 * MS <= time
+    }
+
     /// Records an event and checks it against the rules.
     pub fn observe(&mut self, time: Time, event: Event<'_>) {
         self.advance(time);
@@ -300,6 +308,7 @@ impl Observer {
             Event::CalibrationChanged { is_saved } => {
                 self.has_unsaved_settings = !is_saved;
                 if !is_saved {
+                    self.recalibrated_at = time;
                     for servo in &mut self.servos {
                         servo.is_recalibrated = true;
                     }

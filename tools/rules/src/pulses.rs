@@ -13,6 +13,9 @@ const MAX_PULSE_GAP: Time = 30 * MS;
 /// Longest time for which a gait may continue after the `deadman` time.
 const MAX_DEADMAN_DELAY: Time = 40 * MS;
 
+/// Longest time in which the pulses change to new settings of the servos.
+const MAX_SETTLING_TIME: Time = 1_000 * MS;
+
 /// Largest width difference between consecutive pulses of a servo that stands still, cycles.
 const MAX_STEADY_CHANGE: u32 = 16;
 
@@ -242,11 +245,12 @@ impl Observer {
     /// Checks a pulse that moves a servo: the last command must not be older than `deadman` allows.
     fn check_deadman(&mut self, servo: usize) {
         let silence = self.now - self.last_command_read_at;
-        // Main is late for about a frame after a stall.
-        let is_undisturbed = self.disturbed_until + 25 * MS <= self.last_command_read_at;
+        // New settings move a servo even while the robot stands still.
+        let may_settle = self.now - self.recalibrated_at < MAX_SETTLING_TIME;
         if self.is_gait_or_routine
             && self.deadman_time > 0
-            && is_undisturbed
+            && !may_settle
+            && self.was_main_punctual_since(self.last_command_read_at)
             && silence > self.deadman_time + MAX_DEADMAN_DELAY
         {
             let (silence_ms, deadman_ms) = (silence / MS, self.deadman_time / MS);

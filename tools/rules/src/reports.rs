@@ -73,7 +73,11 @@ impl Observer {
                     self.reports.record_stop(self.now);
                 }
                 let silence = first_byte_at - self.last_command_at;
-                if (self.limits.max_queue_time..self.deadman_time).contains(&silence) {
+                // If main was late, the command may have arrived after the stop, but before the report.
+                let was_punctual = self.was_main_punctual_since(self.last_command_at);
+                if was_punctual
+                    && (self.limits.max_queue_time..self.deadman_time).contains(&silence)
+                {
                     let (silence_ms, deadman_ms) = (silence / MS, self.deadman_time / MS);
                     let observation =
                         format!("deadman {deadman_ms}, but stopped after {silence_ms} ms");

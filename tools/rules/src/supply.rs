@@ -8,6 +8,9 @@ use crate::rule::Rule;
 /// reading and up to one after the last.
 const MIN_LOW_TIME: Time = 80 * MS;
 
+/// Longest time from the end of a low supply to the report of a better level.
+const MAX_RECOVERY_TIME: Time = 1_200 * MS;
+
 /// Time within which the robot must detect a low supply: six frames and two readings.
 const MAX_LOW_DETECTION_TIME: Time = 220 * MS;
 
@@ -86,7 +89,10 @@ impl Observer {
         };
         let (from, level_mv) = (self.now - 500 * MS, level_mv + self.limits.supply_error_mv);
         let low_time = self.supply.time_below(level_mv, from, self.now);
-        if low_time < MIN_LOW_TIME {
+        // When a supply that was too low for pulses recovers, the hysteresis still forbids motions.
+        let recovery_start = self.now - MAX_RECOVERY_TIME;
+        let resting_time = self.supply.time_below(rest_mv, recovery_start, self.now);
+        if low_time.max(resting_time) < MIN_LOW_TIME {
             let ms = low_time / MS;
             let observation = format!("{report:?}, but the supply was low for only {ms} ms");
             self.record_violation(Rule::LowForSixFrames, observation);

@@ -20,7 +20,7 @@ interface Pulse {
   widthCycles: number;
 }
 
-/** Returns the label that the board prints beside a pin, from the pin's Arduino number. */
+/** Returns the name of a pin, such as D3 or A1, from its Arduino number. */
 const formatPin = (pin: number) => (pin >= 14 ? `A${pin - 14}` : `D${pin}`);
 
 export class ScopeView {

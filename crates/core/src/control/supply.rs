@@ -71,7 +71,7 @@ const FRAMES_TO_WORSEN: u8 = 6;
 const FRAMES_TO_IMPROVE: u8 = 50;
 
 /// The hysteresis: the voltage by which a better level's threshold must be exceeded before that level counts, mV.
-const HYSTERESIS_MV: u16 = 150;
+pub const HYSTERESIS_MV: u16 = 150;
 
 impl Voltage {
     /// Returns the voltage of the chip's supply.

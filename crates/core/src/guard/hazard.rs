@@ -5,8 +5,8 @@ use crate::numbers::units::Sine;
 
 /// One of the ten margins of a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-// Discriminants start at 3: 0 remains for the absence of a hazard, so that `Main::new` consists of zeros, 1 and 2 for
-// the other hazards.
+// Discriminants start at 3: the compiler then stores the other two hazards as 1 and 2, and the absence of a hazard as
+// 0, so that all bits of `Main::new` are zero.
 #[repr(u8)]
 pub enum Margin {
     /// The margin between the two couplers of an end.

@@ -1,11 +1,10 @@
 //! The state that survives a reset of the processor, in a few bytes of RAM that the start-up code does not clear.
 //!
 //! RAM keeps its contents while there is power. The boot loader of the UNO clears the register with the cause of the
-//! reset and does not pass its value on. Therefore these bytes have a mark, the state of the program and
-//! checksums, from which the next run determines whether power was lost and whether the program hung, and restores the
-//! servo state. Random bytes seem to
-//! have survived a reset (a correct mark and a valid program state) with a probability of 1 in 32 768, and then have a
-//! seemingly valid servo state with a probability of 1 in 256.
+//! reset and does not pass its value on. Therefore these bytes contain a mark, the state of the program and checksums,
+//! from which the next run determines whether power was lost and whether the program hung, and restores the servo
+//! state. Random bytes seem to have survived a reset (a correct mark and a valid program state) with a probability of
+//! 1 in 32 768, and then have a seemingly valid servo state with a probability of 1 in 256.
 //!
 //! Two copies of the servo state are written alternately, so a reset between any two stores does not lose it. One byte,
 //! which is stored last, selects the complete copy.

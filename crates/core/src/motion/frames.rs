@@ -24,8 +24,8 @@
 //! | `Cycling` through a gait | another gait or a pose: queued; the same gait: - | with a next target: brakes, then is `Moving` towards it |
 //! | any but `Resting` | `stop`: `Holding`, no next target; `rest`: `Resting`, no next target | if the new pose is unsafe: `Holding` the last pose, no next target, and the hazard is kept |
 //!
-//! The next target may also be a standstill, at the end of a counted gait or of a routine: the motion then brakes and
-//! is `Holding`.
+//! The next target may also be a standstill: at the end of a counted gait or of a routine, or while a routine waits.
+//! The motion then brakes and is `Holding`.
 //!
 //! A new calibration changes the pulses of a pose. In every state, the pose then stays the same while the pulses
 //! settle, that is, change to their new widths at the slew limit. Then the motion accelerates again from a pace of 0.

@@ -84,7 +84,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         return Ok(io::stdout().lock().write_all(csv.as_bytes())?);
     }
     let walks = gaits.measure_walks(&videos).map_err(Failure::Input)?;
-    let report = Report::compute(&args.robot.text()?, setup, &videos, &gaits, &walks);
+    let report = Report::compute(args.robot.text()?, setup, &videos, &gaits, &walks);
     drop(spinner);
     if let Some(path) = args.picture {
         files::write(&path, picture::draw(&report).as_bytes())?;

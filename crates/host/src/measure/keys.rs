@@ -79,12 +79,12 @@ struct Component {
 /// would replace an input or a user's robot, or if it cannot be written.
 pub fn identify_keys(args: KeysArgs) -> Result<(), Failure> {
     let old_text = args.robot.text()?;
-    let robot = args.robot.parse(&old_text)?;
+    let robot = args.robot.load()?;
     let mut movements = Vec::new();
     for path in &args.paths {
         movements.append(&mut read_movements(path, &robot)?);
     }
-    files::check_replaceable_robot(&args.output, |text| is_earlier_output(text, &old_text))?;
+    files::check_replaceable_robot(&args.output, |text| is_earlier_output(text, old_text))?;
     let spinner = create_spinner("simulating the gaits");
     let to_failure = |error: IdentifyError| Failure::Input(error.to_string());
     let identified = identify(&robot, &movements, &|count, walk| {
@@ -94,7 +94,7 @@ pub fn identify_keys(args: KeysArgs) -> Result<(), Failure> {
     drop(spinner);
     let has_changes = identified.changed_keys().next().is_some();
     if has_changes {
-        let new_text = identified.updated_robot_toml(&old_text);
+        let new_text = identified.updated_robot_toml(old_text);
         let new_text = new_text.map_err(to_failure)?;
         files::write_checked(&args.output, new_text.as_bytes())?;
     }

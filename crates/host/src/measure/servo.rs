@@ -113,10 +113,10 @@ struct Report {
 /// Fails if a video cannot be read or does not show the servo's steps, or if the output cannot be written.
 pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
     let robot_toml = args.robot.text()?;
-    let robot = args.robot.parse(&robot_toml)?;
+    let robot = args.robot.load()?;
     if let Some(output) = &args.output {
         files::check_replaceable_robot(output, |text| {
-            measured_key::is_earlier_output(text, &robot_toml)
+            measured_key::is_earlier_output(text, robot_toml)
         })?;
     }
     let jig = Jig {
@@ -145,7 +145,7 @@ pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
     drop(spinner);
     let report = Report::new(&robot, &args, &analysis, &free_servo, stall_torque);
     if let Some(output) = &args.output {
-        let updated_toml = report.update_robot_toml(&robot_toml)?;
+        let updated_toml = report.update_robot_toml(robot_toml)?;
         files::write_checked(output, updated_toml.as_bytes())?;
     }
     json::print_json_or_text(args.json, &report, || report.format_text())

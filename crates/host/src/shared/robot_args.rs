@@ -1,11 +1,12 @@
 //! The robot that a command uses.
 
 use std::path::PathBuf;
+use std::sync::OnceLock;
 
 use lizard_robot::{CheckedGait, Robot};
 
 use crate::Failure;
-use crate::shared::files::{self, record_input};
+use crate::shared::files::record_input;
 use crate::shared::suggestion::format_suggestion;
 
 /// The text of the source tree's robot.toml, the default if no robot.toml is found.
@@ -48,14 +49,17 @@ pub struct RobotArgs {
     /// The robot's text, if it does not come from a file.
     #[arg(skip)]
     text: Option<String>,
+    /// The text that was read, because a pipe can be read only once.
+    #[arg(skip)]
+    read_text: OnceLock<String>,
 }
 
 impl RobotArgs {
     /// Selects the robot with this text.
     pub(crate) fn from_text(text: String) -> Self {
         Self {
-            path: None,
             text: Some(text),
+            ..Self::default()
         }
     }
 
@@ -64,16 +68,23 @@ impl RobotArgs {
     /// # Errors
     /// Fails if the file is missing or is not valid UTF-8, if `--robot` is a mistyped name, or if the current folder
     /// cannot be determined.
-    pub(crate) fn text(&self) -> Result<String, Failure> {
-        match self.find_source()? {
-            RobotSource::File(path) => files::read_text(&path),
-            RobotSource::Text(text) => Ok(text.to_owned()),
+    pub(crate) fn text(&self) -> Result<&str, Failure> {
+        if let Some(text) = self.read_text.get() {
+            return Ok(text);
         }
+        let text = match self.find_source()? {
+            RobotSource::File(path) => Robot::read_text(record_input(&path))?,
+            RobotSource::Text(text) => text.to_owned(),
+        };
+        Ok(self.read_text.get_or_init(|| text))
     }
 
     /// Selects the robot in the file at this path. With `None`, [`RobotArgs::load`] searches for robot.toml.
     pub fn from_path(path: Option<PathBuf>) -> Self {
-        Self { path, text: None }
+        Self {
+            path,
+            ..Self::default()
+        }
     }
 
     /// Reads and checks the robot.
@@ -82,24 +93,11 @@ impl RobotArgs {
     /// Fails if the file is missing or invalid, if `--robot` is a mistyped name, or if the current folder cannot be
     /// determined.
     pub fn load(&self) -> Result<Robot, Failure> {
-        Ok(match self.find_source()? {
-            RobotSource::File(path) => Robot::load(record_input(&path))?,
-            RobotSource::Text(text) => Robot::parse(text)?,
-        })
-    }
-
-    /// Checks a text that [`RobotArgs::text`] has returned, so that a pipe is read only once.
-    ///
-    /// # Errors
-    /// Fails if the text is invalid.
-    pub(crate) fn parse(&self, text: &str) -> Result<Robot, Failure> {
-        let robot = Robot::parse(text).map_err(|mut error| {
-            if let Ok(RobotSource::File(path)) = self.find_source() {
-                error.file = path.display().to_string();
-            }
-            error
-        });
-        Ok(robot?)
+        let robot = Robot::parse(self.text()?);
+        Ok(robot.map_err(|error| match self.find_source() {
+            Ok(RobotSource::File(path)) => error.in_file(&path),
+            _ => error,
+        })?)
     }
 
     /// Returns the name of the robot's source, for messages; not for a text from `from_text`.

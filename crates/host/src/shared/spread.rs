@@ -86,7 +86,7 @@ impl Part {
         piece_count: usize,
         mut compute_piece: impl FnMut(usize) -> T,
     ) -> Result<(), Failure> {
-        let robot = robot.text()?;
+        let robot = robot.text()?.to_owned();
         let mut results = BTreeMap::new();
         for index in (0..piece_count).filter(|index| self.has_piece(*index)) {
             results.insert(index, serde_json::to_value(compute_piece(index))?);

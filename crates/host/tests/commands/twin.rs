@@ -94,7 +94,7 @@ fn the_refusal_of_an_unknown_gait_lists_the_gaits() {
 }
 
 #[test]
-fn a_table_has_rows_and_the_spread_needs_a_moving_gait_with_or_without_a_count() {
+fn the_spread_covers_a_gait_with_a_count_and_a_table_without_rows_is_not_printed() {
     for (command, expected) in [("walk 2", "\nwalk    "), ("rest", "\nno spread: ")] {
         let script = format!("100 {command}\n3000 stop");
         let stdout = run_line(&with_paper("twin /dev/stdin --robust 2"), script).expect_success();

@@ -18,7 +18,7 @@ fn compute_travels(values: &Values) -> Vec<Travel> {
         let mut component = 0.0;
         for (value, key) in values.iter().zip(&KEYS) {
             let x = value / key.prior_error();
-            component += random_deviate(&mut rng) * (x + 0.1 * x * x);
+            component += random_normal(&mut rng) * (x + 0.1 * x * x);
         }
         component
     };
@@ -31,7 +31,7 @@ fn compute_travels(values: &Values) -> Vec<Travel> {
 }
 
 /// Returns an approximately normal deviate: the sum of twelve uniform deviates.
-fn random_deviate(rng: &mut Rng) -> f64 {
+fn random_normal(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64() - 0.5).sum()
 }
 
@@ -55,13 +55,13 @@ fn measure_exactly(travels: Vec<Travel>, card: CardPose) -> Vec<MeasuredMovement
 fn measure_robot(values: &Values, card: CardPose, rng: &mut Rng) -> Vec<MeasuredMovement> {
     let mut movements = measure_exactly(compute_travels(values), card);
     for mean in movements.iter_mut().flat_map(|movement| &mut movement.mean) {
-        *mean += STANDARD_ERROR.hypot(MODEL_ERROR) * random_deviate(rng);
+        *mean += STANDARD_ERROR.hypot(MODEL_ERROR) * random_normal(rng);
     }
     movements
 }
 
 fn random_card(rng: &mut Rng) -> CardPose {
-    let errors = CardPose::PRIOR_ERRORS.map(|prior_error| prior_error * random_deviate(rng));
+    let errors = CardPose::PRIOR_ERRORS.map(|prior_error| prior_error * random_normal(rng));
     errors.into()
 }
 
@@ -86,7 +86,7 @@ fn altered_keys_are_found_within_two_standard_errors_in_95_percent_and_unaltered
         for i in (0..KEY_COUNT).filter(|&i| is_altered[i]) {
             let deviate = match i {
                 PLAY_INDEX => rng.f64(),
-                _ => random_deviate(&mut rng).max(-1.5).abs(),
+                _ => random_normal(&mut rng).max(-1.5).abs(),
             };
             true_values[i] += KEYS[i].prior_error() * deviate;
         }

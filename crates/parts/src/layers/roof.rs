@@ -12,7 +12,7 @@ use crate::layers::shape::Shape;
 
 /// Height of a printed layer, mm; one layer bridges a hole.
 pub const PRINT_LAYER_MM: f64 = 0.2;
-/// Distance from a hole's edge at which material is sought in the layer below, mm.
+/// Distance from a hole's edge at which material is sought, in the hole's layer and in the layer below, mm.
 const SUPPORT_DISTANCE_MM: f64 = 0.3;
 /// Tolerance within which heights count as equal, mm.
 const SAME_HEIGHT_MM: f64 = 1e-6;

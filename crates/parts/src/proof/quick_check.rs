@@ -13,7 +13,7 @@ use crate::bodies::assembly::Assembly;
 
 /// Number of angles per servo on the coarse grid.
 const GRID_ANGLES_PER_SERVO: u32 = 6;
-/// Number of directions from neutral: three for each of four servos.
+/// Number of directions from neutral: each of the four servos turns in one of three ways.
 const DIRECTION_COUNT: u32 = 3_u32.pow(4);
 /// Number of halvings in the search for a limit of the guard.
 const HALVING_COUNT: usize = 12;

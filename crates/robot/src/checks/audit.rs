@@ -1,6 +1,6 @@
 //! The check of a gait as the firmware will play it, at every sample of its tables and between the samples. Forward
 //! kinematics computes the pose of head, tail, sides and legs, which is checked against all limits in floating point.
-//! The firmware's own guard then checks the same sample, because the guard would stop a gait that is closer to a limit
+//! The firmware's own guard then checks the same poses, because the guard would stop a gait that is closer to a limit
 //! than its integers resolve.
 
 use lizard_core::guard::clearance::Clearance;

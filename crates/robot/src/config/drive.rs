@@ -44,8 +44,12 @@ pub(crate) fn read(
                 if table.has_key(name) || (min..=max).contains(&derived) {
                     return table.number_or(name, derived, (min, max), unit);
                 }
+                let cause = match derived {
+                    0.0 => "parts.spring is too long for its strut, which makes it",
+                    _ => "parts.spring makes it",
+                };
                 let message = format!(
-                    "is left out; parts.spring makes it {derived:.2} {unit}, but it must be between {min} and {max} {unit}"
+                    "is left out; {cause} {derived:.2} {unit}, but it must be between {min} and {max} {unit}"
                 );
                 Err(table.error(name, message))
             };

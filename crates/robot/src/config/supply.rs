@@ -1,6 +1,7 @@
 //! The supply voltages of the board and of the servos: their measurement, and the thresholds at which the robot slows
 //! down, stops and rests.
 
+use lizard_core::control::supply::HYSTERESIS_MV;
 use lizard_core::numbers::supplies::{Supplies as CoreSupplies, Thresholds};
 
 use crate::config::servo::{UsedPins, claim_pin, parse_pin};
@@ -61,10 +62,8 @@ pub struct Rail {
 }
 
 /// Smallest distance of a derived `slow` threshold from `stop`, which is lower, and from the servos' supply, which is
-/// higher, V. It exceeds [`HYSTERESIS`].
+/// higher, V. It exceeds [`HYSTERESIS_MV`].
 const MIN_THRESHOLD_GAP: f64 = 0.25;
-/// The voltage above `slow` to which a supply must recover before gaits return to full pace, V.
-const HYSTERESIS: f64 = 0.15;
 
 /// The pace limit at a low supply voltage if the servos' rail is not measured, percent.
 const DEFAULT_SLOW_PACE_PERCENT: u8 = 50;
@@ -109,7 +108,8 @@ impl Supplies {
     }
 
     /// Rejects a divider that passes on more of `servo_volts`, the servos' supply, than the rail's pin can measure.
-    /// Also rejects a threshold so high that this supply would never recover from `slow`.
+    /// Also rejects thresholds so high that this supply would never recover from `slow`, or that leave no room for a
+    /// derived `slow`.
     pub(crate) fn check_rail(&self, servo_volts: f64) -> ReadResult<()> {
         let Some(rail) = &self.rail else {
             return Ok(());
@@ -126,16 +126,28 @@ impl Supplies {
             return Err(Error::new("supply.rail.ratio", message));
         }
         let [slow, stop, _] = rail.thresholds;
-        let (key, volts, bound) = match rail.has_derived_slow_threshold {
+        let (key, volts, bound, reason) = match rail.has_derived_slow_threshold {
             // The derived threshold needs a gap on both sides.
-            true => ("stop", stop, servo_volts - 2.0 * MIN_THRESHOLD_GAP),
-            false => ("slow", slow, servo_volts - HYSTERESIS),
+            true => {
+                let bound = servo_volts - 2.0 * MIN_THRESHOLD_GAP;
+                (
+                    "stop",
+                    stop,
+                    bound,
+                    "there is no room for `slow` between them",
+                )
+            }
+            false => {
+                let bound = servo_volts - f64::from(HYSTERESIS_MV) / 1000.0;
+                let reason = "the robot would never return to full pace after a dip";
+                ("slow", slow, bound, reason)
+            }
         };
         if volts < bound {
             return Ok(());
         }
         let message = format!(
-            "is {volts}; for servo.volts = {servo_volts} it must be less than {bound:.2}, or the robot would never return to full pace after a dip"
+            "is {volts}; for servo.volts = {servo_volts} it must be less than {bound:.2}, or {reason}"
         );
         Err(Error::new(format!("supply.rail.{key}"), message))
     }

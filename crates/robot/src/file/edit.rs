@@ -234,11 +234,14 @@ pub fn with_steps(text: &str, name: &str, steps: &[String]) -> String {
         new_text.replace_range(span, &steps);
         return new_text;
     }
-    // A table in lines of its own begins with its header.
-    if let Ok(Some(span)) = find_span(text, &format!("routine.{name}"))
-        && text[span.start..].starts_with('[')
+    let document = DeTable::parse(text);
+    let root = document.as_ref().ok().map(Spanned::get_ref);
+    // A table that is not inline begins with its header.
+    if let Some(table) = root.and_then(|root| find_value(root, &format!("routine.{name}")))
+        && table.get_ref().is_table()
+        && text[table.span().start..].starts_with('[')
     {
-        let end = find_line_end(text, span.start);
+        let end = find_line_end(text, table.span().start);
         new_text.insert_str(end, &format!("\nsteps = {steps}"));
         return new_text;
     }

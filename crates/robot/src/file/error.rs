@@ -1,6 +1,7 @@
 //! Errors in robot.toml: the message for the author, and the location in the file.
 
 use std::fmt;
+use std::path::Path;
 
 /// An error in robot.toml, with its file, line and key.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,6 +18,15 @@ pub struct Error {
     pub problem: String,
     /// True if `problem` has its own subject, false if the key is the subject.
     pub(crate) has_own_subject: bool,
+}
+
+impl Error {
+    /// Sets the file's name.
+    #[must_use]
+    pub fn in_file(mut self, path: &Path) -> Self {
+        self.file = path.display().to_string();
+        self
+    }
 }
 
 impl fmt::Display for Error {

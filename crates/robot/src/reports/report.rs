@@ -90,7 +90,7 @@ const LONG_SEARCH_NOTE: &str = "many gaits: `cal` or a command with a gait's nam
      fewer gaits or shorter names avoid the delay\n";
 
 /// The note that explains a dash in place of a prediction.
-pub const UNDETERMINED_NOTE: &str = "- undecided: two feet pull against the other two, so tiny differences between the pads decide\n";
+pub const UNDETERMINED_NOTE: &str = "- undetermined: two feet pull against the other two, so tiny differences between the pads decide\n";
 
 /// A gait counts as slow if its fastest servo stays below this speed. At an edge of 2 mm in MuJoCo, `walk` and similar
 /// gaits keep nine tenths of their distance, but slow gaits lose up to a third.

@@ -73,7 +73,7 @@ fn the_displacement_of_a_head_gesture_is_undetermined() {
     // The distance with ideal servos, and with the robot's own servos.
     let [ideal_cell, real_cell] = [6, 2].map(|from_end| cells[cells.len() - from_end]);
     assert_eq!((ideal_cell, real_cell), ("-", "-"), "{cells:?}");
-    assert!(report.contains("\n- undecided: two feet pull against the other two"));
+    assert!(report.contains("\n- undetermined: two feet pull against the other two"));
 }
 
 #[test]

@@ -9,7 +9,7 @@ pub const ATOMIC_CYCLES: u64 = 3400 * CYCLES_PER_US;
 /// 1.8 ms.
 const ERASE_OR_WRITE_CYCLES: u64 = 1800 * CYCLES_PER_US;
 
-/// Returns a UNO that has run_assembly for a number of cycles: first these instructions, then an endless loop.
+/// Returns a UNO that has run for a number of cycles: first these instructions, then an endless loop.
 fn run_assembly(source: &str, cycles: u64) -> Uno {
     uno_after(cycles, assemble_loop(source))
 }
@@ -32,7 +32,7 @@ pub fn program(body: &str) -> Image {
     ))
 }
 
-/// Returns a UNO that has run_assembly for a number of milliseconds and whose main program runs these statements once.
+/// Returns a UNO that has run for a number of milliseconds and whose main program runs these statements once.
 fn run_c(body: &str, ms: u64) -> Uno {
     let image = program(&format!("int main(void) {{ {body} for (;;) {{}} }}"));
     uno_after_ms(ms, image)
@@ -311,7 +311,7 @@ fn a_reset_does_not_end_a_write_or_change_its_mode() {
 
 #[test]
 fn a_reset_disarms_eempe() {
-    // The run_assembly of five cycles ends with the `sbi` to EEMPE.
+    // The run of five cycles ends with the `sbi` to EEMPE.
     let mut uno = run_assembly("in r16, GPIOR1 $ sbi EECR, EEPE $ sbi EECR, EEMPE", 5);
     uno.reset();
     uno.run_cycles(100);

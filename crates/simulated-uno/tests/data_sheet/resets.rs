@@ -267,21 +267,3 @@ fn a_board_starts_in_its_boot_loader_after_every_reset() {
     assert_eq!(uno.flash()[0], 0xff);
     assert_eq!(uno.flash()[0x7e00..0x7e02], [0x07, 0xe0]);
 }
-
-#[test]
-fn dropped_unos_leave_no_memory_behind() {
-    let resident_kib = || {
-        let status = std::fs::read_to_string("/proc/self/status").expect("Linux has this file");
-        let (_, rest) = status.split_once("VmRSS:").expect("the size is listed");
-        let kib = rest.split_whitespace().next().map(str::parse::<u64>);
-        kib.expect("a number follows").expect("a number follows")
-    };
-    let image = assemble_loop("nop");
-    let kib_before = resident_kib();
-    for _ in 0..2_000 {
-        unos_after(100, &image);
-    }
-    // libsimavr alone would lose 6 KiB per UNO. Other tests run in parallel.
-    let lost_kib = resident_kib().saturating_sub(kib_before);
-    assert!(lost_kib < 12_000, "{lost_kib} KiB");
-}

@@ -3,6 +3,7 @@
 
 use lizard_core::console::command::effect;
 use lizard_core::console::word::Effect;
+use lizard_core::control::fault::Fault;
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::memory::copies;
 use lizard_core::motion::Activity;
@@ -53,10 +54,7 @@ impl World {
     pub(super) fn check_answer(&mut self, line: &str, answer: &str) -> Verdict {
         let effect = effect(line, &self.robot());
         let is_accepted = answer.starts_with("ok ");
-        // Main notices a late edge only after the pulses of its last frame. The edge then stops the robot after the
-        // command.
-        let has_unnoticed_edge =
-            self.observer.is_stop_unreported() && self.running_robot.board.late_edges > 0;
+        let has_unnoticed_edge = self.has_unnoticed_edge();
         self.observer
             .observe_command(self.now, effect, Some(is_accepted));
         if is_accepted && effect == Effect::CalibrationChange {
@@ -99,6 +97,19 @@ impl World {
             }
         }
         self.observer.take_verdict()
+    }
+
+    /// True if main has not noticed a late edge yet. Main notices an edge only after the pulses of its last frame, so
+    /// the edge may stop the robot after a command.
+    fn has_unnoticed_edge(&self) -> bool {
+        let notices_in_next_frame = || {
+            let mut future_robot = self.running_robot.clone();
+            future_robot.run_without_reader(1);
+            future_robot.main.control().fault() == Some(Fault::LateEdge)
+        };
+        self.running_robot.board.late_edges > 0
+            && (self.observer.is_stop_unreported()
+                || self.now - self.late_edge_at <= FRAME && notices_in_next_frame())
     }
 
     /// Checks the promises in the answers by running a clone until all promises are due.

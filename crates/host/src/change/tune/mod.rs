@@ -82,14 +82,14 @@ impl Spreadable for Args {
 /// finds no gait within the limits, or if the output cannot be written. Also fails, after the output, if robot.toml
 /// has no room for the new gait.
 pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.spread.robot.load()?;
     // The output may be appended to the file, so the text is read before.
     let robot_toml = args.spread.robot.text()?;
-    let robot = args.spread.robot.parse(&robot_toml)?;
     let Some(comparison) = tune(&robot, &args)? else {
         return Ok(());
     };
     json::print_json_or_text(args.json, &comparison, || report::format(&comparison))?;
-    check_room(&robot_toml, &comparison.fragment)
+    check_room(robot_toml, &comparison.fragment)
 }
 
 /// Refuses the table of a new gait with which robot.toml would be invalid, for example too large for the board.

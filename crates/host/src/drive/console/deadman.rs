@@ -57,7 +57,12 @@ impl Deadman {
             // `cal` shows the setting and `save` stores it; both therefore need the robot's own value. The driving
             // value is set again afterwards, because the robot may have started to walk since its last status.
             "cal" | "save" if self.is_overridden => {
-                return (&[DeadmanLine::RestoreForOneLine], &[DeadmanLine::Set]);
+                // The answer that would have reported the robot's own value may be lost.
+                let before: &[_] = match self.own_ms.is_none() && self.is_unconfirmed {
+                    true => &[DeadmanLine::Read, DeadmanLine::RestoreForOneLine],
+                    false => &[DeadmanLine::RestoreForOneLine],
+                };
+                return (before, &[DeadmanLine::Set]);
             }
             // These lines replace the value for driving. If `load` is refused, the robot keeps its own value.
             "deadman" if self.is_overridden => return (&[], &[DeadmanLine::Set]),
@@ -81,9 +86,9 @@ impl Deadman {
         }
     }
 
-    /// Returns the text of the line to send; [`DeadmanLine::Restore`] also marks the setting as restored. `None` if the
-    /// robot's own setting is unknown, because the program ends, or the user stops the robot, before the robot has
-    /// reported it: the setting has not been replaced then.
+    /// Returns the text of the line to send. [`DeadmanLine::Restore`] also marks the setting as restored, and
+    /// [`DeadmanLine::Set`] marks it as replaced. `None` if the robot's own setting is unknown: the program ends, or the
+    /// user stops the robot, before the robot has reported it, or the answer to `cal` was lost.
     pub(super) fn apply_line(&mut self, deadman_line: DeadmanLine) -> Option<String> {
         match deadman_line {
             DeadmanLine::Read => {

@@ -173,11 +173,24 @@ impl Dialogue {
         }
         if self.session.is_driven() {
             writeln!(out, "(no more lines: the robot now stops by itself)")?;
+        } else {
+            self.restore_deadman(&mut board);
         }
         if let Some(recorder) = &mut self.recorder {
             recorder.flush()?;
         }
         self.session.check_all_accepted()
+    }
+
+    /// Sends the robot's own `deadman` if it was replaced; returns false if the robot does not confirm it.
+    fn restore_deadman(&mut self, board: &mut Connection) -> bool {
+        let Some(line) = self.session.restore_deadman() else {
+            return true;
+        };
+        // A radio may lose a line, and an answer to an earlier line may come first.
+        let answer = format!("ok {line}");
+        let mut replies = (0..3).map(|_| board.link.ask(&line));
+        replies.any(|reply| reply.is_ok_and(|reply| reply.answer == answer))
     }
 
     fn run_terminal(
@@ -219,19 +232,23 @@ impl Dialogue {
         }
         // After a failure, the `deadman` for driving stays set, so that the robot stops by itself.
         let has_quit = fatal_failure.is_none();
-        if has_quit && let (Some(board), Some(line)) = (&mut board, self.session.restore_deadman())
-        {
-            // A radio may lose a line, and an answer to an earlier line may come first.
-            let answer = format!("ok {line}");
-            let mut replies = (0..3).map(|_| board.link.ask(&line));
-            let _ = replies.any(|reply| reply.is_ok_and(|reply| reply.answer == answer));
+        let mut is_restored = true;
+        if has_quit && let Some(board) = &mut board {
+            screen.draw("waiting for the robot", &prompt)?;
+            is_restored = self.restore_deadman(board);
         }
         drop(screen);
         history::save(prompt.history());
         let is_walking = self.session.status().is_some_and(Status::is_walking);
         if has_quit && is_walking && board.is_some() && !finder.is_simulated() {
+            let message = match is_restored {
+                true => "the robot continues its gait",
+                false => {
+                    "(the robot has not confirmed its `deadman` setting: it may stop by itself)"
+                }
+            };
             // The terminal may be closed; a failed message is not an error.
-            let _ = writeln!(io::stdout(), "the robot continues its gait");
+            let _ = writeln!(io::stdout(), "{message}");
         }
         if let Some(recorder) = &mut self.recorder {
             recorder.flush()?;

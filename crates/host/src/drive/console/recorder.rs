@@ -49,7 +49,7 @@ pub enum Event {
     Status(String),
     /// A pose that the robot reports after `watch`.
     Pose {
-        /// Frames since power-on, 50 per second.
+        /// Frames since the board's program started, 50 per second.
         frame: u64,
         /// Servo angles A1 to A4 in the chassis frame, degrees.
         angles: [f64; 4],

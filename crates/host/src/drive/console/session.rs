@@ -215,7 +215,8 @@ impl Session {
         } else if let Some(request) = self.queue.pop_front() {
             request
         } else if self.polls_status && now >= self.next_status_time {
-            let interval = match self.is_driven() {
+            let deadman = self.deadman.as_ref();
+            let interval = match deadman.is_some_and(|deadman| deadman.is_overridden) {
                 true => deadman::LINE_INTERVAL,
                 false => STATUS_INTERVAL,
             };
@@ -249,16 +250,20 @@ impl Session {
         if let Some(deadman) = &mut self.deadman {
             deadman.record_unconfirmed();
         }
-        if deadman_line == DeadmanLine::Restore {
-            return "(the robot has not confirmed its own `deadman` setting)".to_owned();
-        }
-        for request in std::mem::take(&mut self.queue) {
-            if let Request::Line(line) = request {
-                self.user_line_count += 1;
-                self.record_failure(line, "not sent");
+        let failure_count = self.failures.len();
+        if deadman_line != DeadmanLine::Restore {
+            for request in std::mem::take(&mut self.queue) {
+                if let Request::Line(line) = request {
+                    self.user_line_count += 1;
+                    self.record_failure(line, "not sent");
+                }
             }
         }
-        "(not sent: the robot has not confirmed its `deadman` setting)".to_owned()
+        let start = match self.failures.len() > failure_count {
+            true => "not sent: ",
+            false => "",
+        };
+        format!("({start}the robot has not confirmed its `deadman` setting)")
     }
 
     /// Queues the line that restores the robot's own `deadman` if the robot neither walks nor is about to walk.
@@ -315,7 +320,13 @@ impl Session {
         self.is_silent = false;
         let status = Status::parse(line);
         self.status = status.clone().or(self.status.take());
-        let is_answered = |pending: &mut (_, String, _)| can_answer(line, &pending.1);
+        let is_answered = |(request, sent_line, _): &mut (Request, String, _)| match request {
+            // A late answer may belong to an earlier line with the other value.
+            Request::Deadman(_) => line
+                .strip_prefix("ok ")
+                .is_none_or(|rest| rest == sent_line),
+            _ => can_answer(line, sent_line),
+        };
         match self.pending_request.take_if(is_answered) {
             Some((Request::Status, ..)) if status.is_some() => {
                 self.events.push(Event::Status(line.to_owned()));

@@ -68,8 +68,8 @@ pub const SERVO_LIBRARY_SETUP: &str = "Arduino Servo 1.3.0 (core 1.8.8, ATmega32
 
 /// Cycles from the control tick to the end of its slot, where the interrupts take over the next frame.
 pub(super) const TICK_DEADLINE_CYCLES: f64 = 63_000.0;
-/// The smallest fraction of all cycles that interrupts leave to main: while the serial line is saturated in both
-/// directions.
+/// The fraction of all cycles that interrupts leave to main in the worst case, in which the serial line is saturated in
+/// both directions.
 pub(super) const MIN_MAIN_FRACTION: f64 = 0.87;
 /// Budgets of the mean and longest control tick, cycles.
 pub(super) const TICK_BUDGET_CYCLES: [f64; 2] = [5_000.0, 10_000.0];

@@ -60,7 +60,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         )));
     }
     firmware::check_robot(&image, &name, &args.robot, &robot, "")?;
-    let patrol_robot = add_patrol(&args.robot.text()?, &[]).ok();
+    let patrol_robot = add_patrol(args.robot.text()?, &[]).ok();
     let spinner = create_spinner("");
     let show_measurement = |measurement: &'static str| spinner.set_message(measurement);
     let rows = measure(&elf, &robot, patrol_robot.as_ref(), show_measurement)?;

@@ -55,7 +55,8 @@ impl Replay {
     }
 
     /// Returns a command's gait and the frame indices of the gait's last complete cycle, whose length is rounded to
-    /// whole frames. `None` unless the command is a moving gait that ran for at least two cycles.
+    /// whole frames. `None` unless the command is a moving gait, without a count, that ran for at least two cycles: a
+    /// gait with a count brakes in its last cycle.
     pub fn find_last_cycle(&self, span: &Span) -> Option<(&CheckedGait, Range<usize>)> {
         let gait = self.robot.gait(&span.command);
         let gait = gait.filter(|gait| gait.has_movement())?;

@@ -127,7 +127,7 @@ pub fn run(
 /// Prints a table of the spreads and a table of the utilisation, or a message if there is no gait.
 fn print_tables(spreads: &[Spread], variation_count: u32, out: &mut impl Write) -> io::Result<()> {
     let Some(first_spread) = spreads.first() else {
-        return writeln!(out, "\nno spread: no command starts a moving gait");
+        return writeln!(out, "\nno spread: no command is a gait that moves");
     };
     writeln!(
         out,

@@ -160,7 +160,14 @@ fn a_refused_trim_is_shown_and_changes_nothing() {
 fn a_reset_is_reported_and_the_lost_trim_is_no_longer_shown() {
     let mut link = connect_paper_robot();
     let mut guide = Guide::new(&mut link).expect("the robot answers");
-    press_keys(&mut guide, &[Key::Next, Key::Next]);
+    press_keys(&mut guide, &[Key::Next, Key::Next, Key::Act]);
+    let old_settings = guide.robot.calibration().servos[0];
+    guide.robot.console().port().reset();
+    press_keys(&mut guide, &[Key::No]);
+    let view = guide.view();
+    assert!(view.message.starts_with("The board was reset"), "{view:?}");
+    assert_eq!(guide.robot.calibration().servos[0], old_settings);
+
     press_keys(&mut guide, &CONFIRM_SIGN_KEYS.repeat(4));
     press_keys(&mut guide, &[Key::LeftRight(0.5)]);
     guide.robot.console().port().reset();

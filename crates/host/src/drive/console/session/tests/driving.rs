@@ -258,7 +258,7 @@ fn deadman_is_restored_again_if_the_robot_has_not_confirmed_it() {
 }
 
 #[test]
-fn the_value_for_driving_does_not_stay_if_a_line_about_it_or_its_answer_is_lost() {
+fn the_value_for_driving_does_not_stay_if_a_line_about_it_is_refused_or_its_answer_is_incomplete() {
     // `load` sends `deadman 2000`, `load`, `cal` and `deadman 901`; `stop` drops the first two.
     for (is_stopped, damaged_line, answer, expected) in [
         (false, "deadman 2000", "err 1", "deadman 2000, deadman 2000"),
@@ -293,6 +293,27 @@ fn the_value_for_driving_does_not_stay_if_a_line_about_it_or_its_answer_is_lost(
         assert_eq!(lines, expected);
         assert!(!session.is_driven());
     }
+}
+
+#[test]
+fn save_stores_the_robots_own_deadman_even_if_the_robot_has_not_reported_it() {
+    let (mut now, mut session) = start_driving(true);
+    session.queue("walk");
+    run_session(&mut session, &mut now, answer_as_robot);
+    session.queue("load");
+    let answer_with_driving_value = |line: &str| match line {
+        "cal" => "# deadman 901\nok cal".to_owned(),
+        line => answer_as_robot(line),
+    };
+    for line in ["deadman 700", "load"] {
+        assert_sends(&mut session, now, Some(line));
+        session.receive(&answer_as_robot(line));
+    }
+    assert_sends(&mut session, now, Some("cal"));
+    session.receive("ok cal"); // the link has lost the line with the setting
+    session.queue("save");
+    let lines = run_session(&mut session, &mut now, answer_with_driving_value);
+    assert_eq!(lines, "cal, deadman 700, save, deadman 700");
 }
 
 #[test]
