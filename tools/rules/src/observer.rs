@@ -418,6 +418,10 @@ impl Observer {
                 self.record_violation(Rule::NoNeedlessReset, observation);
             }
         }
+        if cause == Cause::Power {
+            // The robot's count of brown-outs is lost, too.
+            self.brown_out_times = [NEVER; 5];
+        }
         if cause == Cause::BrownOut {
             let first_brown_out = self.brown_out_times[0];
             if first_brown_out > now - 4_000 * MS && self.last_motion_command_at < first_brown_out {

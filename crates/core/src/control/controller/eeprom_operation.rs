@@ -57,6 +57,14 @@ impl Controller {
         }
         let may_write = self.safety.allows_writing_now();
         if may_write && let Some(record_write) = &mut self.rest_pose_write {
+            // Removing the mark of an equal record would lose the pose for two writes.
+            let is_saved = self.motion.is_resting()
+                && copies::read_rest_pose(self.motion.robot(), memory).as_ref()
+                    == Some(self.motion.pose());
+            if is_saved {
+                self.rest_pose_write = None;
+                return None;
+            }
             let rest_settings = Settings::for_pose(self.motion.pose(), self.motion.robot());
             match record_write.advance(rest_settings.bytes(), memory) {
                 Progress::InProgress => return None,

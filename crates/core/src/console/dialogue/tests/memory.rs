@@ -96,6 +96,17 @@ fn after_power_on_servos_wake_one_by_one_in_the_rest_pose_before_the_robot_stand
 }
 
 #[test]
+fn a_rest_before_the_first_pulse_after_power_on_leaves_the_saved_rest_pose_untouched() {
+    let mut robot = wake_and_run("pose 140 50 311 224.5", 150);
+    robot.send_and_run("rest", 2);
+    let mut restarted_robot = robot.power_on_copy();
+    let write_count = restarted_robot.board.memory.log.len();
+    restarted_robot.send_and_run("rest", 50);
+    assert_eq!(rest_pose_mark(&restarted_robot), 0xa5);
+    assert_eq!(restarted_robot.board.memory.log.len(), write_count);
+}
+
+#[test]
 fn the_rest_pose_is_invalidated_before_the_first_pulse() {
     let mut robot = wake_and_send(&["rest"]);
     assert_eq!(rest_pose_mark(&robot), 0xa5);
