@@ -60,8 +60,8 @@ export class BoardProgram {
   }
 
   /**
-   * Identifies the program of a board that was just connected, or to which a write has failed; returns true if the board is connected at the end, and
-   * false if the user disconnects it or writes to it meanwhile.
+   * Identifies the program of a board that was just connected, or to which a write has failed. Returns true if the
+   * board is connected at the end, and false if the user disconnects it or writes to it meanwhile.
    */
   async identify(): Promise<boolean> {
     const { board } = this;
@@ -118,7 +118,7 @@ export class BoardProgram {
       await upload(line, bytes, isRobotAlone, board, reportProgress);
     }).catch((error: unknown) => {
       const { banner, dialogue } = this.board;
-      // The board may still run its previous program.
+      // A real board may still run its previous program. A simulated board has nothing to identify.
       if (this.board.isReal && this.board.link === link && !dialogue.isClosed && banner === undefined) void this.identify();
       throw error;
     });

@@ -161,7 +161,7 @@ impl World {
     /// Returns the first violation that the action causes.
     pub fn apply(&mut self, action: Action) -> Verdict {
         let must_keep_rest_pose = self.observer.must_rest() && self.is_rest_pose_saved();
-        let rest_pose = *self.running_robot.motion().pose();
+        let (start, rest_pose) = (self.now, *self.running_robot.motion().pose());
         match action {
             Action::Line(_) | Action::GarbledLine
                 if self.sender_rate != self.running_robot.board.rate =>
@@ -207,8 +207,8 @@ impl World {
         }
         // `boot` may have moved the robot to another pose meanwhile.
         let motion = self.running_robot.motion();
-        let has_rest_pose = motion.is_resting() && *motion.pose() == rest_pose;
-        if must_keep_rest_pose && has_rest_pose && !self.is_rest_pose_saved() {
+        let has_moved = *motion.pose() != rest_pose && self.observer.has_pulsed_since(start);
+        if must_keep_rest_pose && motion.is_resting() && !has_moved && !self.is_rest_pose_saved() {
             return violation(Rule::RestPoseKept, action.to_string());
         }
         self.check_writes()?;

@@ -91,6 +91,8 @@ pub struct Observer {
     pub(crate) boot_rest_at: Time,
     pub(crate) unanswered_line_count: i32,
     pub(crate) last_command_at: Time,
+    /// True if main was late when the last command arrived.
+    pub(crate) was_command_delayed: bool,
     /// The `deadman` time; 0 if it is off or not known.
     pub(crate) deadman_time: Time,
     /// The latest time at which the last command may have been read.
@@ -145,6 +147,7 @@ impl Observer {
             boot_rest_at: NEVER,
             unanswered_line_count: 0,
             last_command_at: NEVER,
+            was_command_delayed: false,
             deadman_time: 0,
             last_command_read_at: NEVER,
             is_gait_or_routine: false,
@@ -267,6 +270,11 @@ impl Observer {
             || self.supply.time_below(rest_mv, since - 400 * MS, self.now) > 0
     }
 
+    /// True if a pulse has begun since a time.
+    pub fn has_pulsed_since(&self, time: Time) -> bool {
+        self.servos.iter().any(|servo| servo.last_start >= time)
+    }
+
     /// True if no stall has delayed main since a time. After a stall, main is late for about a frame.
     pub(crate) fn was_main_punctual_since(&self, time: Time) -> bool {
         self.disturbed_until + 25 * MS <= time
@@ -297,6 +305,7 @@ impl Observer {
             Event::LineReceived { is_command } => {
                 self.unanswered_line_count += 1;
                 if is_command {
+                    self.was_command_delayed = !self.was_main_punctual_since(time);
                     self.last_command_at = time;
                     self.last_command_read_at = time;
                 }
@@ -385,6 +394,7 @@ impl Observer {
         self.start_cause = cause;
         self.unanswered_line_count = 0;
         self.last_command_at = now;
+        self.was_command_delayed = false;
         self.deadman_time = 0;
         self.is_gait_or_routine = false;
         self.first_rest_at = NEVER;

@@ -74,8 +74,7 @@ impl Observer {
                 }
                 let silence = first_byte_at - self.last_command_at;
                 // If main was late, the command may have arrived after the stop, but before the report.
-                let was_punctual = self.was_main_punctual_since(self.last_command_at);
-                if was_punctual
+                if !self.was_command_delayed
                     && (self.limits.max_queue_time..self.deadman_time).contains(&silence)
                 {
                     let (silence_ms, deadman_ms) = (silence / MS, self.deadman_time / MS);

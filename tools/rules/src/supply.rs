@@ -90,8 +90,14 @@ impl Observer {
         let (from, level_mv) = (self.now - 500 * MS, level_mv + self.limits.supply_error_mv);
         let low_time = self.supply.time_below(level_mv, from, self.now);
         // When a supply that was too low for pulses recovers, the hysteresis still forbids motions.
-        let recovery_start = self.now - MAX_RECOVERY_TIME;
-        let resting_time = self.supply.time_below(rest_mv, recovery_start, self.now);
+        let resting_time = match report.ends_with("stopped") {
+            true => {
+                let recovery_start = self.now - MAX_RECOVERY_TIME;
+                let rest_mv = rest_mv + self.limits.supply_error_mv;
+                self.supply.time_below(rest_mv, recovery_start, self.now)
+            }
+            false => 0,
+        };
         if low_time.max(resting_time) < MIN_LOW_TIME {
             let ms = low_time / MS;
             let observation = format!("{report:?}, but the supply was low for only {ms} ms");

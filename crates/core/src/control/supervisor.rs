@@ -26,7 +26,7 @@ pub enum State {
 pub enum Event {
     /// The command `stand`.
     Stand,
-    /// A command that starts a gait other than `stand` or a routine, or a move to a pose.
+    /// A command that starts a routine or a gait other than `stand`, or a move to a pose.
     Move,
     /// The command `stop`.
     Stop,

@@ -140,6 +140,11 @@ impl RecordAddress {
 }
 
 impl RecordWrite {
+    /// True if this only invalidates the record.
+    pub const fn is_invalidation(&self) -> bool {
+        self.last_step == 0
+    }
+
     /// Advances by at most one byte. Does not write a byte that the memory already has. `content` must be the same in
     /// every call.
     #[inline(never)]

@@ -87,7 +87,7 @@ impl Deadman {
     }
 
     /// Returns the text of the line to send. [`DeadmanLine::Restore`] also marks the setting as restored, and
-    /// [`DeadmanLine::Set`] marks it as replaced. `None` if the robot's own setting is unknown: the program ends, or the
+    /// [`DeadmanLine::Set`] as confirmed, if the robot's own setting is known. `None` if the robot's own setting is unknown: the program ends, or the
     /// user stops the robot, before the robot has reported it, or the answer to `cal` was lost.
     pub(super) fn apply_line(&mut self, deadman_line: DeadmanLine) -> Option<String> {
         match deadman_line {
@@ -96,7 +96,7 @@ impl Deadman {
                 return Some("cal".to_owned());
             }
             DeadmanLine::Restore => self.is_overridden = false,
-            DeadmanLine::Set => self.is_unconfirmed = false,
+            DeadmanLine::Set => self.is_unconfirmed &= self.own_ms.is_none(),
             DeadmanLine::RestoreForOneLine => {}
         }
         let ms = match (deadman_line, self.own_ms?) {

@@ -173,7 +173,7 @@ impl Dialogue {
         }
         if self.session.is_driven() {
             writeln!(out, "(no more lines: the robot now stops by itself)")?;
-        } else {
+        } else if !self.session.status().is_some_and(Status::is_walking) {
             self.restore_deadman(&mut board);
         }
         if let Some(recorder) = &mut self.recorder {
@@ -234,17 +234,18 @@ impl Dialogue {
         let has_quit = fatal_failure.is_none();
         let mut is_restored = true;
         if has_quit && let Some(board) = &mut board {
-            screen.draw("waiting for the robot", &prompt)?;
+            // The terminal may be closed.
+            let _ = screen.draw("waiting for the robot", &prompt);
             is_restored = self.restore_deadman(board);
         }
         drop(screen);
         history::save(prompt.history());
         let is_walking = self.session.status().is_some_and(Status::is_walking);
-        if has_quit && is_walking && board.is_some() && !finder.is_simulated() {
+        if has_quit && (is_walking || !is_restored) && board.is_some() && !finder.is_simulated() {
             let message = match is_restored {
                 true => "the robot continues its gait",
                 false => {
-                    "(the robot has not confirmed its `deadman` setting: it may stop by itself)"
+                    "(the robot has not confirmed its `deadman` setting: a gait may end by itself)"
                 }
             };
             // The terminal may be closed; a failed message is not an error.

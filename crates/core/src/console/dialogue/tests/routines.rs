@@ -223,6 +223,19 @@ fn after_a_rest_in_a_routine_the_servos_wake_one_by_one() {
 }
 
 #[test]
+fn a_routine_that_boot_starts_at_rest_has_invalidated_the_rest_pose_when_the_servos_wake() {
+    let steps = [(Step::REST, "stand", 50), (Step::CYCLES, "sway", 1)];
+    let mut robot = wake_robot(Sample::asymmetric().with_routine("patrol", 1, &steps));
+    robot.expect_all_accepted(&["boot patrol", "save", "rest"]);
+    robot.run_frames(50);
+    assert_eq!(rest_pose_mark(&robot), 0xa5);
+    robot.reset(Cause::External);
+    robot.run_frames(220);
+    assert!(!robot.motion().is_resting());
+    assert_eq!(rest_pose_mark(&robot), 0xff);
+}
+
+#[test]
 fn a_routine_that_ends_with_a_rest_saves_its_rest_pose() {
     let mut robot = start_patrol(2, &[(Step::CYCLES, "sway", 1), (Step::REST, "stand", 50)]);
     assert_eq!(robot.run_frames(LONG_FRAMES), ["# done"]);
