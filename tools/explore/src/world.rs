@@ -160,8 +160,11 @@ impl World {
     /// # Errors
     /// Returns the first violation that the action causes.
     pub fn apply(&mut self, action: Action) -> Verdict {
-        let must_keep_rest_pose = self.observer.must_rest() && self.is_rest_pose_saved();
-        let (start, rest_pose) = (self.now, *self.running_robot.motion().pose());
+        // After a pulse, the record must be invalidated as soon as the supply allows it.
+        let must_keep_rest_pose = self.observer.must_rest()
+            && !self.observer.has_pulsed_since_rest()
+            && self.is_rest_pose_saved();
+        let start = self.now;
         match action {
             Action::Line(_) | Action::GarbledLine
                 if self.sender_rate != self.running_robot.board.rate =>
@@ -205,10 +208,10 @@ impl World {
             Action::Contact(pin, is_closed) => self.set_contact(pin, is_closed)?,
             Action::HeldOutput(is_held) => self.running_robot.board.transmitter.is_held = is_held,
         }
-        // `boot` may have moved the robot to another pose meanwhile.
-        let motion = self.running_robot.motion();
-        let has_moved = *motion.pose() != rest_pose && self.observer.has_pulsed_since(start);
-        if must_keep_rest_pose && motion.is_resting() && !has_moved && !self.is_rest_pose_saved() {
+        // `boot` may have woken the robot meanwhile.
+        let is_resting = self.running_robot.motion().is_resting();
+        let has_woken = self.observer.has_pulsed_since(start);
+        if must_keep_rest_pose && is_resting && !has_woken && !self.is_rest_pose_saved() {
             return violation(Rule::RestPoseKept, action.to_string());
         }
         self.check_writes()?;

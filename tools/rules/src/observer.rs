@@ -4,7 +4,7 @@ use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
 
 use crate::event::{Event, MS, NEVER, Pulse, Time};
-use crate::pulses::{Permission, ServoHistory};
+use crate::pulses::{MAX_TIME_TO_REST, Permission, ServoHistory};
 use crate::reports::Reports;
 use crate::rule::{Rule, Violation};
 use crate::supply::SupplyHistory;
@@ -273,6 +273,12 @@ impl Observer {
     /// True if a pulse has begun since a time.
     pub fn has_pulsed_since(&self, time: Time) -> bool {
         self.servos.iter().any(|servo| servo.last_start >= time)
+    }
+
+    /// True if a pulse has begun since the robot was told to rest, or since the last reset.
+    pub fn has_pulsed_since_rest(&self) -> bool {
+        let rest_at = self.rest_command_at.max(self.boot_rest_at);
+        self.has_pulsed_since(self.started_at.max(rest_at + MAX_TIME_TO_REST))
     }
 
     /// True if no stall has delayed main since a time. After a stall, main is late for about a frame.

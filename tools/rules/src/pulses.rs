@@ -20,7 +20,7 @@ const MAX_SETTLING_TIME: Time = 1_000 * MS;
 const MAX_STEADY_CHANGE: u32 = 16;
 
 /// Longest time from a `rest` command to the end of the last pulse.
-const MAX_TIME_TO_REST: Time = 45 * MS;
+pub(crate) const MAX_TIME_TO_REST: Time = 45 * MS;
 
 /// Shortest time from a reset to the `boot` action: 3 s minus about a frame, since the first tick comes early.
 const MIN_BOOT_TIME: Time = 2_975 * MS;
