@@ -11,6 +11,7 @@ mod answers;
 mod coarse_state;
 mod event;
 pub mod led;
+mod limits;
 mod observer;
 mod pulses;
 mod reports;
@@ -19,5 +20,6 @@ mod supply;
 
 pub use coarse_state::CoarseState;
 pub use event::{Event, MS, Pulse, Time};
-pub use observer::{Limits, Observer};
+pub use limits::Limits;
+pub use observer::Observer;
 pub use rule::{Rule, Violation};

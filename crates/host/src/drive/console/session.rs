@@ -8,13 +8,15 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use lizard_core::console::text::Text;
-
 use super::deadman::{self, Deadman, DeadmanLine};
 use super::link::BANNER_START;
 use super::recorder::Event;
 use crate::Failure;
 use lizard_robot::Status;
+
+use answer::{can_answer, is_stop_refusal};
+
+mod answer;
 
 /// Interval between two `status` lines while no person drives the robot.
 const STATUS_INTERVAL: Duration = Duration::from_millis(500);
@@ -441,29 +443,6 @@ impl Session {
     pub fn take_events(&mut self) -> Vec<Event> {
         std::mem::take(&mut self.events)
     }
-}
-
-/// True if `answer` can belong to `line`: after `ok`, it must begin with the first word of the line.
-fn can_answer(answer: &str, line: &str) -> bool {
-    let line = line.to_ascii_lowercase();
-    let word = match line.split_whitespace().next() {
-        Some("status") => "gait=",
-        Some("?") => "help",
-        word => word.unwrap_or_default(),
-    };
-    let rest = answer.strip_prefix("ok ");
-    rest.is_none_or(|rest| rest.starts_with(word))
-}
-
-/// True if a line refuses `stop` because there are no pulses to stop: the robot rests, or the flash has no robot.
-/// The whole line must match: a line cut off by a radio may be the beginning of an older answer.
-fn is_stop_refusal(line: &str) -> bool {
-    let is_refusal = |code: u8, reason: Text| {
-        let mut refusal = format!("err {code} ");
-        reason.print(&mut refusal);
-        line == refusal
-    };
-    is_refusal(7, Text::Resting) || is_refusal(10, Text::NoRobot)
 }
 
 #[cfg(test)]
