@@ -140,8 +140,8 @@ impl<C: Console> Session<C> {
         Ok(pose[servo])
     }
 
-    /// Reverses a servo's sign, and also the trim, so that the neutral pulse width stays the same. Changes nothing after
-    /// a reset, see [`Session::take_reset`].
+    /// Reverses a servo's sign, and also the trim, so that the neutral pulse width stays the same. Changes nothing
+    /// after a reset, see [`Session::take_reset`].
     ///
     /// # Errors
     /// Fails if the robot cannot stand.
@@ -241,8 +241,8 @@ impl<C: Console> Session<C> {
     /// Saves the active settings on the board. If the board has lost them by a reset, first sends them again.
     ///
     /// # Errors
-    /// Fails if the robot cannot save now, or refuses a setting. After an error while the settings are sent, the robot may
-    /// have only some of them; another `save` sends them again.
+    /// Fails if the robot cannot save now, or refuses a setting. After an error while the settings are sent, the robot
+    /// may have only some of them; another `save` sends them again.
     pub async fn save(&mut self) -> Result<(), C> {
         self.refresh().await?;
         // Only a wait for the end of a movement notices a reset.

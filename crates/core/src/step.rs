@@ -2,8 +2,8 @@
 //!
 //! A tick of the pulses or a received byte wakes the main loop. Each step does one task, and a tick has priority, so a
 //! frame waits for at most one byte or one line. The loop takes no input while it writes the EEPROM (3.4 ms per byte),
-//! or while a line waits for room in the transmit buffer; but frames and EEPROM writes continue even if nobody reads the
-//! output.
+//! or while a line waits for room in the transmit buffer; but frames and EEPROM writes continue even if nobody reads
+//! the output.
 //!
 //! The loop computes one frame per tick. If several ticks have passed, the loop still computes only one frame: of
 //! several frames only the last would be played, and the servos would jump. While the pulses run, the loop also skips a

@@ -1,5 +1,5 @@
-//! Assumptions that `lizard gaits --assumptions` does not vary, or varies less, and their effect on the gaits in MuJoCo:
-//! the floor, the pads' printed shape, the drive of analog servos, and the mass distribution.
+//! Assumptions that `lizard gaits --assumptions` does not vary, or varies less, and their effect on the gaits in
+//! MuJoCo: the floor, the pads' printed shape, the drive of analog servos, and the mass distribution.
 
 use std::fmt::Write as _;
 

@@ -1,7 +1,7 @@
 //! Drawings of parts to cut from a sheet: outlines to cut through, pockets to mill.
 //!
-//! A part can be cut if all of its layers have the same outer outline. If the layers of the plate or of the deck differ,
-//! each layer is cut as a sheet of its own, and the sheets are glued together.
+//! A part can be cut if all of its layers have the same outer outline. If the layers of the plate or of the deck
+//! differ, each layer is cut as a sheet of its own, and the sheets are glued together.
 
 use lizard_kinematics::Vector;
 

@@ -57,8 +57,8 @@ impl Controller {
         }
         let may_write = self.safety.allows_writing_now();
         if may_write && let Some(record_write) = &mut self.rest_pose_write {
-            // Writing an equal record again would first remove its mark: a power cut before the last byte would lose the
-            // pose.
+            // Writing an equal record again would first remove its mark: a power cut before the last byte would lose
+            // the pose.
             let is_saved = !record_write.is_invalidation()
                 && copies::read_rest_pose(self.motion.robot(), memory).as_ref()
                     == Some(self.motion.pose());

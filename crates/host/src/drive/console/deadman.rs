@@ -87,8 +87,9 @@ impl Deadman {
     }
 
     /// Returns the text of the line to send. [`DeadmanLine::Restore`] also marks the setting as restored, and
-    /// [`DeadmanLine::Set`] as confirmed, if the robot's own setting is known. `None` if the robot's own setting is unknown: the program ends, or the
-    /// user stops the robot, before the robot has reported it, or the answer to `cal` was lost.
+    /// [`DeadmanLine::Set`] as confirmed, if the robot's own setting is known. `None` if the robot's own setting is
+    /// unknown: the program ends, or the user stops the robot, before the robot has reported it, or the answer to `cal`
+    /// was lost.
     pub(super) fn apply_line(&mut self, deadman_line: DeadmanLine) -> Option<String> {
         match deadman_line {
             DeadmanLine::Read => {
