@@ -66,8 +66,8 @@ async function install(path, entry) {
   const archive = await download(url);
   const checksum = `sha512-${createHash('sha512').update(archive).digest('base64')}`;
   if (checksum !== integrity) throw new Error(`${url} has checksum ${checksum}, expected ${integrity}`);
-  const newFolder = `${folder}.new`;
-  rmSync(newFolder, { recursive: true, force: true });
+  // Two processes may install the same package at the same time, because .ci/run runs targets in parallel.
+  const newFolder = `${folder}.new.${process.pid}`;
   for (const { name, bytes, mode } of readTar(gunzipSync(archive))) {
     // All files of an archive are in one top folder, usually `package`.
     const file = join(newFolder, normalize(`/${name}`).replace(/^\/[^/]+\//, ''));
@@ -75,7 +75,12 @@ async function install(path, entry) {
     writeFileSync(file, bytes, { mode });
   }
   rmSync(folder, { recursive: true, force: true });
-  renameSync(newFolder, folder);
+  try {
+    renameSync(newFolder, folder);
+  } catch (error) {
+    rmSync(newFolder, { recursive: true, force: true });
+    if (readInstalledVersion(folder) !== version) throw error;
+  }
   console.log(`setup: ${path} ${version}`);
 }
 
