@@ -386,19 +386,18 @@ impl Controller {
     /// Freezes the pose and ends the routine.
     #[inline(never)]
     fn stop(&mut self) {
-        self.safety.clear_notice(Notice::Waiting);
         // If the routine rests, the robot stays at rest, and its pose must survive a loss of power.
         if self.routine.is_under_way() && self.motion.is_resting() {
             return self.rest();
         }
-        self.routine = Routine::NONE;
+        self.end_routine();
         self.motion.stop();
     }
 
     /// Prepares for a motion that an order starts: ends the routine, clears the fault, the guard's hazard and the count
     /// of suspected brown-outs, and invalidates the saved rest pose.
     fn prepare_for_motion(&mut self) {
-        self.routine = Routine::NONE;
+        self.end_routine();
         self.safety.clear_fault();
         self.motion.clear_hazard();
         self.suspected_brown_outs = 0;
@@ -407,7 +406,7 @@ impl Controller {
 
     /// Ends the pulses and saves the pose for the next power-on.
     fn rest(&mut self) {
-        self.routine = Routine::NONE;
+        self.end_routine();
         self.motion.rest();
         self.rest_pose_write = Some(REST_POSE_ADDRESS.start_write());
     }

@@ -43,7 +43,7 @@ impl Controller {
     #[inline(never)]
     pub(super) fn start_gait(&mut self, id: GaitId, count: u16) {
         let gait = self.motion.robot().gait(id);
-        self.routine = Routine::NONE;
+        self.end_routine();
         if gait.is_routine() {
             // A routine stores this number in place of a channel's offset.
             let [_, _, round_count, _] = gait.channels;
@@ -59,12 +59,18 @@ impl Controller {
         }
     }
 
+    /// Ends the routine, if one is under way. A notice that it waits, if it is not printed yet, is no longer true.
+    #[inline(never)]
+    pub(super) fn end_routine(&mut self) {
+        self.routine = Routine::NONE;
+        self.safety.clear_notice(Notice::Waiting);
+    }
+
     /// Advances the routine by a frame. `is_closed` is true while the contact that may end the current step is closed.
     #[inline(never)]
     pub(super) fn advance_routine(&mut self, is_closed: bool) {
         if self.motion.hazard().is_some() {
-            self.routine = Routine::NONE;
-            return;
+            return self.end_routine();
         }
         let is_step_over = match self.routine.frames_left {
             0 => self.motion.has_come_to_standstill(),
@@ -82,7 +88,7 @@ impl Controller {
     /// Starts the next step, or ends the routine after its last round.
     #[inline(never)]
     fn start_next_step(&mut self) {
-        // The previous step's line, if it is not printed yet, is no longer true and would name the next step's input.
+        // The previous step's notice, if it is not printed yet, is no longer true and would name the next step's input.
         self.safety.clear_notice(Notice::Waiting);
         let robot = *self.motion.robot();
         let gait = robot.gait(self.routine.id);
@@ -92,7 +98,7 @@ impl Controller {
         if step_index >= step_count.offset {
             step_index = first_step_of_round.offset;
             if self.routine.rounds_left == 1 {
-                self.routine = Routine::NONE;
+                self.end_routine();
                 // The pose of the routine's last rest must survive a loss of power.
                 if self.motion.is_resting() {
                     self.rest();

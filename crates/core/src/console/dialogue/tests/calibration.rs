@@ -11,7 +11,7 @@ fn read_cal(robot: &mut RunningRobot) -> Vec<String> {
 }
 
 #[test]
-fn cal_prints_all_settings_independent_of_the_motion() {
+fn cal_prints_all_settings_independently_of_the_motion() {
     let mut robot = wake_asymmetric_robot();
     let initial_lines = read_cal(&mut robot);
     assert_eq!(initial_lines.len(), 7);
@@ -151,7 +151,7 @@ fn a_refused_factory_or_load_command_changes_nothing() {
     trimmed_robot.board.memory.bytes_mut()[0] = 0;
     trimmed_robot.expect_refused("load", "9 no saved calibration to load");
     assert_eq!(read_cal(&mut trimmed_robot), lines_before);
-    // Settings for other servos are not loaded, and the current ones stay.
+    // Saved settings with a wrong CRC, which ends at byte 44, are not loaded, and the current ones stay.
     let robot = wake_and_send(&["save"]);
     trimmed_robot.board.memory = robot.board.memory.clone();
     trimmed_robot.board.memory.bytes_mut()[44] ^= 1;

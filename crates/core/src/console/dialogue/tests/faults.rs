@@ -183,6 +183,7 @@ fn a_robot_that_has_hung_holds_its_pose_and_reports_the_hang() {
 
 #[test]
 fn after_a_reset_in_an_unsafe_or_unreachable_pose_the_robot_rests() {
+    // The first pose is beyond the travel of A1; the second is within every travel, but unsafe.
     for sweeps in [[30_000, 0, 0, 0], [-6803, 7663, 0, 0]] {
         for cause in [Cause::Watchdog, Cause::External] {
             let restart = Restart {

@@ -1,4 +1,4 @@
-//! A simulated robot, and helpers that send lines to it and read its answers.
+//! Helpers that wake a robot on a virtual board, send lines to it and read its answers.
 
 use std::collections::HashMap;
 
@@ -39,7 +39,7 @@ impl RunningRobot {
         self.run_frames(frames)
     }
 
-    /// Powers on another robot of this kind with a copy of this robot's memory.
+    /// Powers on another robot like this one, with a copy of this robot's EEPROM.
     pub(super) fn power_on_copy(&self) -> Self {
         let memory = self.board.memory.clone();
         Self::with_memory(*self.motion().robot(), memory, Restart::NONE)
@@ -67,10 +67,10 @@ pub(super) fn wake_and_run(line: &str, frames: u32) -> RunningRobot {
     robot
 }
 
-/// Starts the asymmetric sample robot on the routine `patrol`, which repeats these steps `rounds` times, or endlessly
-/// if that is 0.
-pub(super) fn start_patrol(rounds: u16, steps: &[(u8, &str, u16)]) -> RunningRobot {
-    let mut robot = wake_robot(Sample::asymmetric().with_routine("patrol", rounds, steps));
+/// Starts the asymmetric sample robot on the routine `patrol`, which executes these steps for `round_count` rounds, or
+/// endlessly if that is 0.
+pub(super) fn start_patrol(round_count: u16, steps: &[(u8, &str, u16)]) -> RunningRobot {
+    let mut robot = wake_robot(Sample::asymmetric().with_routine("patrol", round_count, steps));
     robot.expect_accepted("patrol");
     robot
 }

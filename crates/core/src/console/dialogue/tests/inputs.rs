@@ -7,9 +7,9 @@ use crate::sample::{BUTTON, NOSE};
 /// A step of a routine: its kind, a gait or an input, and a count.
 type StepTuple = (u8, &'static str, u16);
 
-/// The record that makes the button end the next step.
+/// The record before a step that the button ends.
 const UNTIL_BUTTON: StepTuple = (Step::UNTIL, "button", 0);
-/// The record that makes the nose switch end the next step.
+/// The record before a step that the nose switch ends.
 const UNTIL_NOSE: StepTuple = (Step::UNTIL, "nose", 0);
 
 /// The steps of a patrol: wait for the button, walk to a wall, walk back, turn.
@@ -221,8 +221,8 @@ fn a_wait_brakes_the_previous_gait_without_moving_a_servo_faster() {
     let mut changes = Vec::new();
     for _ in 0..200 {
         let new_widths = run_frame_and_read_widths(&mut robot);
-        let servo_changes = last_widths.iter().zip(new_widths);
-        let change = servo_changes.map(|(a, b)| a.abs_diff(b)).max();
+        let width_pairs = last_widths.iter().zip(new_widths);
+        let change = width_pairs.map(|(last, new)| last.abs_diff(new)).max();
         changes.push(change.expect("there are four widths"));
         last_widths = new_widths;
     }
@@ -375,6 +375,23 @@ fn a_routine_that_starts_while_the_guard_holds_the_robot_still_waits_for_its_con
 }
 
 #[test]
+fn a_routine_that_ends_before_its_wait_is_printed_does_not_print_the_wait() {
+    let steps = [
+        (Step::FRAMES, "sway", 90),
+        UNTIL_NOSE,
+        (Step::CYCLES, "stray", 3),
+    ];
+    let mut robot = start_patrol(0, &steps);
+    robot.expect_accepted("watch 1");
+    robot.run_without_reader(100);
+    robot.run_without_reader(LONG_FRAMES);
+    let printed_lines = robot.run_frames(2);
+    let has_line = |start: &str| printed_lines.iter().any(|line| line.starts_with(start));
+    assert!(has_line("# held"), "{printed_lines:?}");
+    assert!(!has_line("# waiting"), "{printed_lines:?}");
+}
+
+#[test]
 fn a_routine_brakes_its_last_gait_before_it_is_done() {
     for steps in [
         &[(Step::FRAMES, "sway", 90)][..],
@@ -396,6 +413,7 @@ fn a_routine_may_wait_once_and_repeat_only_the_later_steps() {
     let robot = Sample::asymmetric().with_routine("patrol", 3, &PATROL_STEPS);
     let robot = robot.with_changes(|content| {
         let routine = content.gaits.last_mut().expect("the robot has a routine");
+        // The index of the step at which each round after the first begins.
         routine.channels[3].offset = 2;
     });
     let mut robot = wake_robot(robot);

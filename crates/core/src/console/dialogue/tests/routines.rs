@@ -1,5 +1,7 @@
 //! Tests of routines, which are sequences of steps, and of the events that end them early.
 
+use std::collections::BTreeSet;
+
 use super::*;
 
 /// The steps of a routine, each with its kind, its gait and its count of cycles or frames. Two consecutive steps have
@@ -16,10 +18,10 @@ const PATROL_STEPS: [(u8, &str, u16); 6] = [
 /// More frames than one round of the routine takes.
 const LONG_FRAMES: u32 = 1_500;
 
-/// Builds the asymmetric robot with the routine `patrol`, which repeats its steps `rounds` times, or endlessly if that
-/// is 0.
-fn robot_with_routine(rounds: u16) -> Sample {
-    Sample::asymmetric().with_routine("patrol", rounds, &PATROL_STEPS)
+/// Builds the asymmetric robot with the routine `patrol`, which executes its steps for `round_count` rounds, or
+/// endlessly if that is 0.
+fn build_patrol_robot(round_count: u16) -> Sample {
+    Sample::asymmetric().with_routine("patrol", round_count, &PATROL_STEPS)
 }
 
 /// Runs a robot for `frames` frames. Returns the sequence of its activities and the printed lines.
@@ -48,27 +50,30 @@ fn record_snapshots() -> Vec<RunningRobot> {
     snapshots
 }
 
-/// Checks that a robot that now rests has saved its pose: after a loss of power it wakes in this pose.
-fn assert_rest_pose_is_saved(mut robot: RunningRobot, event: &str) {
+/// Checks that a robot, if it rests now, has saved its pose: after a loss of power it wakes in this pose. Returns true
+/// if the robot rests.
+fn assert_rest_pose_is_saved(mut robot: RunningRobot, event: &str) -> bool {
     let pose = *robot.motion().pose();
-    if robot.motion().is_resting() {
+    let is_resting = robot.motion().is_resting();
+    if is_resting {
         robot.cycle_power(None);
         robot.run_frames(1);
         assert_eq!(*robot.motion().pose(), pose, "{event}");
     }
+    is_resting
 }
 
 #[test]
 fn a_routine_executes_its_steps_in_order_and_prints_done_once() {
-    for rounds in [1, 2, 3] {
-        let mut robot = wake_robot(robot_with_routine(rounds));
+    for round_count in [1, 2, 3] {
+        let mut robot = wake_robot(build_patrol_robot(round_count));
         assert_eq!(robot.send_line("Patrol"), "ok patrol");
         assert_eq!(robot.status_value("gait"), "patrol");
         let (activities, printed_lines) =
-            record_activities(&mut robot, LONG_FRAMES * u32::from(rounds));
+            record_activities(&mut robot, LONG_FRAMES * u32::from(round_count));
         assert_eq!(printed_lines, ["# done"]);
         let mut expected_activities =
-            ["stand", "sway", "Rest", "back", "sway left"].repeat(rounds.into());
+            ["stand", "sway", "Rest", "back", "sway left"].repeat(round_count.into());
         expected_activities.push("Stop");
         assert_eq!(activities, expected_activities);
         assert_eq!(robot.status_value("gait"), "stop");
@@ -77,7 +82,7 @@ fn a_routine_executes_its_steps_in_order_and_prints_done_once() {
 
 #[test]
 fn a_count_limits_the_rounds_of_an_endless_routine() {
-    let mut counted_robot = wake_robot(robot_with_routine(0));
+    let mut counted_robot = wake_robot(build_patrol_robot(0));
     counted_robot.send_line("patrol 2");
     let (activities, printed_lines) = record_activities(&mut counted_robot, 3 * LONG_FRAMES);
     assert_eq!(printed_lines, ["# done"]);
@@ -99,7 +104,7 @@ fn a_timed_step_lasts_its_number_of_frames() {
 
 #[test]
 fn help_boot_and_cal_treat_a_routine_as_a_gait() {
-    let mut robot = wake_robot(robot_with_routine(1));
+    let mut robot = wake_robot(build_patrol_robot(1));
     assert!(robot.send(b"help\r")[0].ends_with("|stray|patrol"));
     robot.expect_accepted("boot patrol");
     assert!(robot.send(b"cal\r").contains(&"# boot patrol".to_string()));
@@ -115,6 +120,7 @@ fn help_boot_and_cal_treat_a_routine_as_a_gait() {
 
 #[test]
 fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
+    let mut events_that_rest = BTreeSet::new();
     for snapshot in record_snapshots() {
         for line in ["stop", "rest", "stand", "sway", "back 1", NEUTRAL_COMMAND] {
             let mut robot = snapshot.clone();
@@ -124,7 +130,9 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
             let line_count = usize::from(line == "back 1");
             assert_eq!(printed_lines.len(), line_count, "{line}: {printed_lines:?}");
             assert_ne!(robot.status_value("gait"), "patrol");
-            assert_rest_pose_is_saved(robot, line);
+            if assert_rest_pose_is_saved(robot, line) {
+                events_that_rest.insert(line);
+            }
         }
         let mut repeated_robot = snapshot.clone();
         repeated_robot.send_line("patrol");
@@ -137,7 +145,9 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
         let (activities, _) = record_activities(&mut low_supply_robot, 300);
         let has_ended = activities == ["Stop"] || activities == ["Rest"];
         assert!(has_ended, "the routine continues by itself: {activities:?}");
-        assert_rest_pose_is_saved(low_supply_robot, "a low supply");
+        if assert_rest_pose_is_saved(low_supply_robot, "a low supply") {
+            events_that_rest.insert("a low supply");
+        }
         let mut failing_supply_robot = snapshot.clone();
         failing_supply_robot.run_at_supply(3_900, 60);
         assert_eq!(failing_supply_robot.status_value("gait"), "rest");
@@ -151,11 +161,12 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
             assert!(!printed_lines.contains(&"# done".to_string()));
         }
     }
+    assert!(events_that_rest.into_iter().eq(["a low supply", "rest", "stop"]));
 }
 
 #[test]
 fn a_low_supply_does_not_end_a_routine() {
-    let mut robot = wake_robot(robot_with_routine(1));
+    let mut robot = wake_robot(build_patrol_robot(1));
     robot.run_at_supply(4_400, 40);
     assert_eq!(robot.send_and_run("patrol", 2 * LONG_FRAMES), ["# done"]);
 }
@@ -178,7 +189,7 @@ fn silence_ends_a_routine_that_a_command_began_but_not_one_that_boot_began() {
         assert!(["stop", "rest"].contains(&gait.as_str()), "{gait}");
         assert_rest_pose_is_saved(robot, "silence");
     }
-    let mut robot = wake_robot(robot_with_routine(0));
+    let mut robot = wake_robot(build_patrol_robot(0));
     robot.expect_all_accepted(&["boot patrol", "deadman 200", "save"]);
     let mut unattended_robot = robot.power_on_copy();
     unattended_robot.run_frames(150);
