@@ -182,15 +182,15 @@ fn find_even_walk(path: &[PathPoint], gait: &Gait) -> Result<[f64; 2], VideoErro
     large_lengths.retain(|length| *length > max_length / 2.0);
     let usual_length = mean::median(large_lengths).unwrap_or(max_length);
     // Finds the longest run of frames after each of which the robot moves as far as usual within a cycle.
-    let (mut longest_run, mut run_start): (Option<[usize; 2]>, Option<usize>) = (None, None);
+    let (mut longest_run, mut run_begin): (Option<[usize; 2]>, Option<usize>) = (None, None);
     for (i, length) in movement_lengths.iter().enumerate() {
         if *length < MIN_EVEN_FRACTION * usual_length {
-            run_start = None;
+            run_begin = None;
             continue;
         }
-        let run_begin = *run_start.get_or_insert(i);
-        if longest_run.is_none_or(|[a, b]| i - run_begin > b - a) {
-            longest_run = Some([run_begin, i]);
+        let begin = *run_begin.get_or_insert(i);
+        if longest_run.is_none_or(|[a, b]| i - begin > b - a) {
+            longest_run = Some([begin, i]);
         }
     }
     let [even_begin, even_end] = longest_run.unwrap_or_default();

@@ -13,7 +13,7 @@ impl Frame {
     /// Decodes the bytes of a PNG or JPEG file.
     ///
     /// # Errors
-    /// Returns the reason if the bytes are no valid PNG or JPEG file.
+    /// Returns the reason if the bytes are not a valid PNG or JPEG file.
     pub fn decode(bytes: &[u8]) -> Result<Self, String> {
         if bytes.starts_with(b"\x89PNG") {
             decode_png(bytes)
@@ -29,15 +29,15 @@ fn decode_png(bytes: &[u8]) -> Result<Frame, String> {
     decoder.set_transformations(png::Transformations::normalize_to_color8());
     let mut reader = decoder.read_info().map_err(error_text)?;
     let mut pixels = vec![0; reader.output_buffer_size().ok_or("it is too large")?];
-    let info = reader.next_frame(&mut pixels).map_err(error_text)?;
-    let channels = info.color_type.samples();
-    let pixels = pixels[..info.buffer_size()].chunks_exact(channels);
+    let output = reader.next_frame(&mut pixels).map_err(error_text)?;
+    let channels = output.color_type.samples();
+    let pixels = pixels[..output.buffer_size()].chunks_exact(channels);
     let grey = pixels.map(|pixel| match *pixel {
         [red, green, blue, ..] => luma(red, green, blue),
         [grey, ..] => grey,
         [] => 0,
     });
-    let (width, height) = (info.width as usize, info.height as usize);
+    let (width, height) = (output.width as usize, output.height as usize);
     Frame::new(width, height, grey.collect()).ok_or_else(|| "it has no pixels".to_owned())
 }
 

@@ -5,7 +5,7 @@
 pub struct Estimate {
     /// The measured value.
     pub value: f64,
-    /// The true value is within two standard errors with a probability of 95 %.
+    /// The standard error: the true value is within two standard errors of `value` with a probability of 95 %.
     pub standard_error: f64,
 }
 

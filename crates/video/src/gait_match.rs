@@ -9,7 +9,7 @@ use crate::gait::Gait;
 use crate::path::PathPoint;
 use crate::video_error::VideoError;
 
-/// Largest misfit of an accepted gait: the misfit of a robot that moves half as far as predicted.
+/// Largest misfit of an accepted gait: the misfit of a robot that moves a third as far, or twice as far, as predicted.
 const MAX_MISFIT: f64 = 0.25;
 /// Smallest ratio of the second best gait's misfit to the best gait's: the 1 % critical value of Fisher's F if both
 /// variances come from four quarters of a cycle on three axes.

@@ -17,7 +17,7 @@ pub struct Mean {
     pub value: f64,
     /// Standard deviation of single cycles.
     pub standard_deviation: f64,
-    /// The true value is within two standard errors of the mean with a probability of 95 %.
+    /// Standard error of the mean: the true value is within two of them with a probability of 95 %.
     pub standard_error: f64,
     /// The part of the standard error that more cycles do not reduce: the errors of camera, clock and ruler.
     pub systematic_error: f64,
@@ -68,7 +68,8 @@ pub(crate) fn compute_mean(walks: &[WalkValues]) -> Mean {
     }
 }
 
-/// Returns the median of values, the upper one of two; `None` if there are no values.
+/// Returns the median of values; of an even number of values, the larger of the two in the middle. `None` if there are
+/// no values.
 pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()

@@ -100,7 +100,7 @@ impl MeasuredServo {
     pub fn from_path(path: &[PathPoint], jig: Jig) -> Result<Self, ServoError> {
         let horn_path = HornPath::new(path);
         let commands = servo_commands::list_commands(jig.side);
-        let first_command_seconds = horn_path.find_first_command(&commands)?;
+        let first_command_seconds = horn_path.find_start_time(&commands)?;
         let rests = horn_path.find_rests(&commands, first_command_seconds, COMMAND_INTERVAL);
         let [gain, hysteresis] =
             fit_gain_and_hysteresis(&commands, &rests).ok_or(ServoError::StepMismatch)?;
@@ -125,8 +125,8 @@ impl MeasuredServo {
             gain,
             hysteresis,
             dead_band: horn_path.find_dead_band(&commands, &rests, gain.value),
-            rate: add_model_error(rate),
-            rates: rates.map(add_model_error),
+            rate: add_systematic_errors(rate),
+            rates: rates.map(add_systematic_errors),
             rotor_time_constant: fit.rotor_time_constant,
             first_command_seconds,
             frame_rate,
@@ -136,8 +136,8 @@ impl MeasuredServo {
     }
 
     /// Computes the stall torque from two measurements: this one without a load, and `loaded` with a load of `torque`.
-    /// The result has the unit of `torque`. The rate falls linearly with the torque. The load acts only in the direction
-    /// in which it slows the servo down more.
+    /// The result has the unit of `torque`. The rate falls linearly with the torque. The load acts in only one
+    /// direction: the one in which it slows the servo down more.
     ///
     /// # Errors
     /// Fails if there are too few frames, if the load does not slow the servo down, or if `loaded` seems to be the
@@ -178,7 +178,7 @@ impl MeasuredServo {
 }
 
 /// Adds the errors of the camera and of the motor model to a rate.
-fn add_model_error(rate: Estimate) -> Estimate {
+fn add_systematic_errors(rate: Estimate) -> Estimate {
     add_relative_error(add_relative_error(rate, CAMERA_SIGMA), MOTOR_SIGMA)
 }
 
@@ -300,12 +300,8 @@ impl HornPath {
     }
 
     /// Finds the time of the first command, s, that minimises the unexplained fraction. Returns the time and the
-    /// fraction.
-    fn find_best_first_command(
-        &self,
-        commands: &[ServoCommand],
-        interval: f64,
-    ) -> Option<(f64, f64)> {
+    /// fraction; `None` if no time makes enough rests visible.
+    fn find_best_start_time(&self, commands: &[ServoCommand], interval: f64) -> Option<(f64, f64)> {
         let (first, last) = (self.angles.first()?.0, self.angles.last()?.0);
         let end = last - interval * (commands.len() as f64 - 1.0 + REST_FRACTIONS[0]);
         let step_count =
@@ -319,7 +315,7 @@ impl HornPath {
     }
 
     /// Finds the time of the first command, s.
-    fn find_first_command(&self, commands: &[ServoCommand]) -> Result<f64, ServoError> {
+    fn find_start_time(&self, commands: &[ServoCommand]) -> Result<f64, ServoError> {
         let angle_values = || self.angles.iter().map(|(_, angle)| *angle);
         let max_angle = angle_values().fold(f64::MIN, f64::max);
         let turn = max_angle - angle_values().fold(f64::MAX, f64::min);
@@ -329,12 +325,12 @@ impl HornPath {
             });
         }
         let is_explained = |(_, unexplained): &(f64, f64)| *unexplained < MAX_UNEXPLAINED_FRACTION;
-        let best = self.find_best_first_command(commands, COMMAND_INTERVAL);
+        let best = self.find_best_start_time(commands, COMMAND_INTERVAL);
         if let Some((first_command_seconds, _)) = best.filter(is_explained) {
-            return Ok(self.refine_first_command(commands, first_command_seconds));
+            return Ok(self.refine_start_time(commands, first_command_seconds));
         }
         for multiple in INTERVAL_MULTIPLES {
-            let best = self.find_best_first_command(commands, multiple * COMMAND_INTERVAL);
+            let best = self.find_best_start_time(commands, multiple * COMMAND_INTERVAL);
             if best.is_some_and(|best| is_explained(&best)) {
                 return Err(ServoError::WrongStepInterval { ratio: multiple });
             }
@@ -348,7 +344,7 @@ impl HornPath {
     }
 
     /// Refines the time of the first command, s, from the times at which the large steps are half complete.
-    fn refine_first_command(&self, commands: &[ServoCommand], first_command_seconds: f64) -> f64 {
+    fn refine_start_time(&self, commands: &[ServoCommand], first_command_seconds: f64) -> f64 {
         let rests = self.find_rests(commands, first_command_seconds, COMMAND_INTERVAL);
         let estimate_from_step = |i: usize| {
             let [before, after] = [&rests[i - 1], &rests[i]];

@@ -314,6 +314,7 @@ fn fit_sliding(points: &[SlidePoint]) -> Result<Estimate, SlideError> {
         distances.push(next);
     }
     let first_seconds = points[0].seconds;
+    // The parameters: the first point's distance, mm, and its speed in units of 100 mm/s; the friction coefficient.
     let model = |parameters: &[f64]| -> Vec<f64> {
         let residual =
             |(point, [frictionless_distance, friction_distance]): (&SlidePoint, &[f64; 2])| {

@@ -37,7 +37,8 @@ pub(crate) struct LargeStep {
 }
 
 impl LargeStep {
-    /// Selects the frames that the fit uses. `frames` has times, s, and angles, deg, since the start of the step.
+    /// Selects the frames that the fit uses. `frames` has the time of each frame, s, and the horn's angle relative to
+    /// the start of the step, deg. `step_deg` is the angle of the whole step. Counter-clockwise is positive.
     pub(crate) fn new(frames: impl Iterator<Item = (f64, f64)>, step_deg: f64) -> Self {
         let [low, high] = USED_FRACTION_RANGE.map(|fraction| fraction * step_deg.abs());
         let turns = frames.map(|(time, angle)| (time, angle * step_deg.signum()));
@@ -136,8 +137,8 @@ fn mean_rate(step: &LargeStep) -> f64 {
     (end_angle - start_angle) / (end_time - start_time)
 }
 
-/// Computes the angle by which a motor turns in the first `seconds` at full torque, deg. `time_constant` is the rotor
-/// time constant, s.
+/// Computes the angle by which a motor turns in the first `seconds` at full torque, deg. `rate` is the steady rate,
+/// deg/s, and `time_constant` the rotor time constant, s.
 fn angle_after(rate: f64, time_constant: f64, seconds: f64) -> f64 {
     if seconds <= 0.0 {
         return 0.0;

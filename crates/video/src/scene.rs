@@ -189,7 +189,8 @@ impl Scene {
     }
 }
 
-/// Converts a point on a floor tag's strip, in designed mm, to a point on the floor, mm.
+/// Converts a point on a floor tag's strip, in mm of the sheet's design, to a point on the floor, mm. `shared` starts
+/// with the parameters that all views have in common.
 fn strip_to_floor(shared: &[f64], print_scale: f64, id: usize, point: [f64; 2]) -> [f64; 2] {
     let point = point.map(|coordinate| print_scale * coordinate);
     if sheet::strip_index(id) == 0 {
@@ -207,7 +208,8 @@ fn to_body_pose(parameters: &[f64]) -> BodyPose {
     }
 }
 
-/// Returns the corners of a printed tag, including the ink spread, relative to its centre, in designed mm.
+/// Returns the corners of a printed tag, including the ink spread, relative to its centre, in mm of the sheet's
+/// design.
 fn printed_corners(shared: &[f64], print_scale: f64, id: usize) -> [[f64; 2]; 4] {
     sheet::tag_corners(sheet::tag_edge(id) + 2.0 * shared[1] / print_scale)
 }

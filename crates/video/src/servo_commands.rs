@@ -15,9 +15,9 @@ const HALF_LARGE_STEP: f64 = 30.0;
 const START_COMMAND_COUNT: usize = 2;
 /// Number of large steps.
 const LARGE_STEP_COUNT: usize = 8;
-/// The poses at which the servo's angle is measured: deg from neutral, and true if the direction is reversed. In
-/// them, the servo turns twice from one side to the other and back, in steps of 15 deg. The direction is reversed at
-/// neutral, where this does not move the servo.
+/// The poses at which the servo's angle is measured: deg from neutral, and true if the direction is reversed. From
+/// pose to pose, the servo turns twice from one side to the other and back, in steps of 15 deg. The direction is
+/// reversed at neutral, where this does not move the servo.
 #[rustfmt::skip]
 const VISITED_POSES: [(f64, bool); 19] = [
     (15.0, false), (0.0, false),

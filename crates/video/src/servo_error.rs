@@ -24,8 +24,8 @@ pub enum ServoError {
     },
     /// The steps take more time than planned, or less.
     #[error(
-        "the steps take {ratio} times as long as expected: for a video in slow motion, give the rate at which it was \
-         recorded with --fps"
+        "the steps take {ratio} times as long as expected: for a video in slow motion, give the recording's frame rate \
+         with --fps"
     )]
     WrongStepInterval {
         /// Measured duration of a step divided by the planned one.

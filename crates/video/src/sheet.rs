@@ -1,5 +1,4 @@
-//! The layout of the printed sheet of tags. All dimensions on which a measurement depends are
-//! defined here.
+//! The layout of the printed sheet of tags. All dimensions on which a measurement depends are defined here.
 //!
 //! The robot is larger than a sheet of paper, so the sheet is cut into three pieces. Two strips lie on the floor, one
 //! on either side of the robot's path, and a card lies on the robot's deck. The known distance between a strip's two

@@ -17,8 +17,8 @@ const MIN_CAMERA_SHIFT: f64 = 1.0;
 const MAX_MISSING_FRACTION: f64 = 0.1;
 /// Number of frames whose deck tags are used to find the camera.
 const SAMPLE_COUNT: usize = 8;
-/// Distance by which the robot may be farther than the outermost floor tag from the centre of all floor tags, mm.
-const MAX_TAG_DISTANCE: f64 = 200.0;
+/// Largest excess of the robot's distance from the centre of the floor tags over the outermost tag's distance, mm.
+const MAX_EXCESS_DISTANCE: f64 = 200.0;
 /// Largest difference between the deck tag's given height and the height computed from its size, mm.
 const MAX_HEIGHT_ERROR: f64 = 12.0;
 /// Number of frames from one full search to the next, so that a second copy of a tag is noticed even if it appears
@@ -201,7 +201,7 @@ impl Video {
     }
 
     /// True if the camera moved: in more than 2 % of the frames, at least two floor tags are not at their usual
-    /// positions. A single displaced tag is partly covered.
+    /// positions. A single displaced tag counts as partly covered.
     fn has_camera_moved(&self) -> bool {
         let usual_corners = self.find_usual_floor_corners();
         let is_displaced = |tag: &[Pixel; 4], usual: &[Pixel; 4]| {
@@ -248,7 +248,7 @@ impl Video {
             [0, 1].map(|i| tags.iter().map(|tag| tag[i]).sum::<f64>() / FLOOR_TAG_COUNT as f64);
         let distance_from_centre = |[x, y]: [f64; 2]| (x - centre[0]).hypot(y - centre[1]);
         let tag_distances = tags.into_iter().map(distance_from_centre);
-        let max_distance = tag_distances.fold(0.0, f64::max) + MAX_TAG_DISTANCE;
+        let max_distance = tag_distances.fold(0.0, f64::max) + MAX_EXCESS_DISTANCE;
         for point in path {
             let distance = distance_from_centre([point.pose.forward, point.pose.left]);
             if distance > max_distance {

@@ -6,10 +6,12 @@ use crate::sheet::{FLOOR_TAG_COUNT, FLOOR_TAG_EDGE};
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum VideoError {
     /// The video has no frames.
-    #[error("the video has no frames")]
+    #[error("the video has no frames: check that it plays")]
     NoFrames,
     /// The frames differ in size.
-    #[error("frame {frame_number} differs in size from the first frame")]
+    #[error(
+        "frame {frame_number} differs in size from the first frame: use the frames of one video"
+    )]
     SizeDiffers {
         /// Number of the frame, from 1.
         frame_number: usize,
@@ -111,7 +113,8 @@ pub enum VideoError {
     },
     /// The robot did not move.
     #[error(
-        "the robot did not move: at most {distance:.1} mm and {turn:.1} deg within the duration of a cycle"
+        "the robot did not move: at most {distance:.1} mm and {turn:.1} deg within the duration of a cycle; record the \
+         robot while it walks"
     )]
     NoMovement {
         /// Largest distance within the duration of a cycle, mm.
@@ -133,7 +136,7 @@ pub enum VideoError {
     /// The cycles take a multiple of their predicted duration.
     #[error(
         "the cycles take {ratio} times as long as expected: give the pace with --speed (a weak supply halves it), or, \
-         for a video in slow motion, the rate at which it was recorded with --fps"
+         for a video in slow motion, the recording's frame rate with --fps"
     )]
     WrongPace {
         /// Measured duration of a cycle divided by the predicted one.
@@ -158,6 +161,8 @@ pub enum VideoError {
         seconds: f64,
     },
     /// No gait moves the robot, so the video cannot be compared with a prediction.
-    #[error("no gait moves the robot, so the video cannot be compared with a prediction")]
+    #[error(
+        "no gait moves the robot, so the video cannot be compared with a prediction: add such a gait to robot.toml"
+    )]
     NoGait,
 }

@@ -201,7 +201,7 @@ fn a_card_at_another_height_than_given_is_rejected_by_its_size() {
     assert_matches!(error, VideoError::WrongHeight { height_by_size, .. } if height_by_size > 52.0);
 }
 
-/// Returns the error that occurs when a robot that moves as `pose_at` determines is measured as walking.
+/// Returns the error that occurs when `walk` is measured in a video of a robot that moves as `pose_at` determines.
 fn expect_robot_error(pose_at: impl Fn(f64) -> Pose) -> VideoError {
     expect_robot_error_in(&studio(), 4.0, pose_at)
 }

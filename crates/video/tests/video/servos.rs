@@ -1,4 +1,4 @@
-//! Tests of the accuracy in videos of a servo whose true values are known.
+//! Tests with paths and videos of a servo whose true values are known.
 
 use std::assert_matches;
 
@@ -20,20 +20,20 @@ const JIG: Jig = Jig {
 const LOAD_FRACTION: f64 = 0.111;
 
 /// Simulates the path of a card as its tag would show it to a phone in daylight. Each angle is the mean over the
-/// exposure time. The camera only adds errors to angles, and renders no frames.
+/// exposure time, plus a random error of the camera. No frame is rendered.
 fn simulate_path(frame_rate: f64, servo: &Servo, rng: &mut Rng) -> Vec<PathPoint> {
-    const BEGIN: f64 = 0.3;
+    const BEGIN_SECONDS: f64 = 0.3;
     const EXPOSURE_SECONDS: f64 = 1.0 / 120.0;
     const ANGLE_SIGMA: f64 = 0.15;
     let horn_angles = servo.simulate(1.0);
     let path_point_at = |i: usize| {
-        let seconds = i as f64 / frame_rate + BEGIN;
+        let seconds = i as f64 / frame_rate + BEGIN_SECONDS;
         let angles = [-0.4, -0.2, 0.0, 0.2, 0.4]
             .map(|fraction| horn_angles.angle_at(seconds + fraction * EXPOSURE_SECONDS));
         let angle = angles.iter().sum::<f64>() / 5.0 + ANGLE_SIGMA * random_normal(rng);
         point_at(seconds, angle)
     };
-    let frame_count = (servo.end_s() - BEGIN) * frame_rate;
+    let frame_count = (servo.end_s() - BEGIN_SECONDS) * frame_rate;
     (0..frame_count as usize).map(path_point_at).collect()
 }
 
