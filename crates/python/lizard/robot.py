@@ -71,7 +71,8 @@ class Robot:
         self._end_reason: str | None = ""
         self._port_error: OSError | None = None
         self._is_connected = False
-        # How the answer begins while a line that starts a gait waits for it.
+        self._reset_count = 0
+        # Beginning of the answer that a line that starts a gait waits for; None if no such line waits.
         self._awaited_prefix: str | None = None
         # `deadman` before and while this program drives the robot, ms.
         self._own_deadman: int | None = None
@@ -237,7 +238,8 @@ class Robot:
         if every < 1:
             raise ValueError(f"every must be at least 1, got {every}")
         frames: SimpleQueue[Frame] = SimpleQueue()
-        self._watchers.append(frames)
+        with self._condition:
+            self._watchers.append(frames)
         try:
             self.send(f"watch {every}")
             while True:
@@ -248,14 +250,16 @@ class Robot:
                     raise RobotError("the robot no longer sends its poses") from None
                 yield frame
         finally:
-            self._watchers.remove(frames)
+            with self._condition:
+                self._watchers.remove(frames)
             if not self._is_closed:
                 self._send_until_answered("watch 0")
 
     def send(self, line: str) -> list[str]:
         """Sends a console line; returns the `#` lines before its answer, and the answer.
 
-        Raises RobotError if the robot refuses the line. Does not change `deadman`.
+        Raises RobotError if the robot refuses the line. Unlike `go`, does not set `deadman` for a gait that the line
+        starts.
         """
         word = line.strip().lower().split(" ")[0]
         if word not in ("deadman", "factory", "load", "save"):
@@ -357,9 +361,14 @@ class Robot:
                 own_deadman = 0
             self._own_deadman = own_deadman
         driving_deadman = min(own_deadman or DRIVING_DEADMAN, DRIVING_DEADMAN)
-        self._send_until_answered(f"deadman {driving_deadman}")
-        # If the robot was reset meanwhile, `_handle_line` has cleared both.
-        self._own_deadman, self._driving_deadman = own_deadman, driving_deadman
+        while self._driving_deadman is None:
+            reset_count = self._reset_count
+            self._send_until_answered(f"deadman {driving_deadman}")
+            with self._condition:
+                # A reset loses `deadman`, also after the answer.
+                if self._reset_count == reset_count:
+                    self._own_deadman = own_deadman
+                    self._driving_deadman = driving_deadman
 
     def _restore_deadman(self) -> None:
         if self._driving_deadman is not None:
@@ -431,6 +440,7 @@ class Robot:
                 if self._is_connected:
                     # After a reset, the robot has its saved settings.
                     self._own_deadman = self._driving_deadman = None
+                    self._reset_count += 1
                     self._mark_ended("the robot was reset")
                 self._is_connected = True
             elif line == "# done":

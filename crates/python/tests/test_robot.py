@@ -89,7 +89,7 @@ def walk_after(robot, monkeypatch, action: Callable[[], None]) -> None:
     robot.walk()
 
 
-def test_a_gait_keeps_its_deadman_when_the_gait_before_has_ended(robot, monkeypatch):
+def test_a_late_done_line_of_the_gait_before_does_not_end_a_gait(robot, monkeypatch):
     walk_after(robot, monkeypatch, lambda: robot._handle_line("# done"))
     assert robot.is_going
 
@@ -99,6 +99,25 @@ def test_a_robot_that_was_reset_just_before_a_gait_walks_with_deadman(
 ):
     walk_after(robot, monkeypatch, robot._port.board.reset)
     assert (robot.is_going, read_deadman(robot)) == (True, 901)
+
+
+def test_a_robot_that_was_reset_just_after_its_answer_to_deadman_walks_with_deadman(
+    robot, monkeypatch
+):
+    send = robot._send_until_answered
+
+    def send_before_reset(line: str) -> list[str]:
+        answer = send(line)
+        if line == "deadman 901" and robot._reset_count == 0:
+            robot._port.board.reset()
+            while robot._reset_count == 0:
+                time.sleep(0.01)
+        return answer
+
+    monkeypatch.setattr(robot, "_send_until_answered", send_before_reset)
+    # The line after `deadman` starts the gait.
+    robot._set_deadman()
+    assert read_deadman(robot) == 901
 
 
 def test_stop_restores_deadman_even_if_the_robot_rests_already(robot):
@@ -187,7 +206,7 @@ def test_after_a_reset_wait_raises_an_error_and_the_robot_can_walk_again(robot):
     robot.walk(cycles=1)
 
 
-def test_after_a_start_without_a_banner_wait_recognizes_a_reset(monkeypatch):
+def test_after_a_start_without_a_banner_wait_notices_a_reset(monkeypatch):
     with monkeypatch.context() as patch:
         patch.setattr("lizard.robot.BANNER_PREFIX", "# lost")
         patch.setattr("lizard.robot.BANNER_TIMEOUT", 0.1)

@@ -9,8 +9,8 @@ use crate::Failure;
 /// File extensions of frames.
 const FRAME_EXTENSIONS: [&str; 3] = ["png", "jpg", "jpeg"];
 
-/// Lists the frames in a folder, each with its time, s: in the order of the numbers in their names if `frame_rate`
-/// gives the times, otherwise in the order of the times in their names.
+/// Lists the frames in a folder, each with its time, s, in the order of time. `frame_rate` replaces the times in the
+/// names; their order is that of the times in the names if every name has one, otherwise that of the numbers.
 ///
 /// # Errors
 /// Fails if the folder cannot be read or has no frames, or if neither `frame_rate` nor the names give the times.
@@ -37,6 +37,13 @@ pub(super) fn list_frames(
         )));
     }
     files.sort_by_key(|path| split_for_sorting(&stem(path)));
+    if files
+        .iter()
+        .all(|path| parse_seconds(&stem(path)).is_some())
+    {
+        let seconds = |path: &PathBuf| parse_seconds(&stem(path)).unwrap_or_default();
+        files.sort_by(|a, b| seconds(a).total_cmp(&seconds(b)));
+    }
     let to_timed_frame = |(index, path): (usize, PathBuf)| {
         let seconds = match frame_rate {
             Some(frame_rate) => Some(index as f64 / frame_rate),
@@ -52,10 +59,7 @@ pub(super) fn list_frames(
         let seconds = seconds.ok_or_else(unknown_time)?;
         Ok((seconds, path))
     };
-    let frames = files.into_iter().enumerate().map(to_timed_frame);
-    let mut frames = frames.collect::<Result<Vec<_>, Failure>>()?;
-    frames.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(frames)
+    files.into_iter().enumerate().map(to_timed_frame).collect()
 }
 
 /// Returns a file's name without its extension.
@@ -114,9 +118,15 @@ mod tests {
         for name in ["0.1s.png", "0.067s.png", "33ms.png"] {
             fs::write(folder.path().join(name), "").expect("the file is written");
         }
-        let frames = list_frames(folder.path(), None).expect("the names give the times");
-        let times: Vec<f64> = frames.into_iter().map(|(seconds, _)| seconds).collect();
-        assert_eq!(times, [0.033, 0.067, 0.1]);
+        for (frame_rate, expected_times) in
+            [(None, [0.033, 0.067, 0.1]), (Some(2.0), [0.0, 0.5, 1.0])]
+        {
+            let frames = list_frames(folder.path(), frame_rate).expect("the names give the times");
+            let (times, paths): (Vec<f64>, Vec<_>) = frames.into_iter().unzip();
+            assert_eq!(times, expected_times);
+            let names: Vec<_> = paths.iter().map(|path| stem(path)).collect();
+            assert_eq!(names, ["33ms", "0.067s", "0.1s"]);
+        }
     }
 
     #[test]

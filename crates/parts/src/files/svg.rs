@@ -10,7 +10,7 @@ use crate::layers::outline::Loop;
 /// Margin around the sheet, mm.
 const MARGIN: f64 = 5.0;
 /// Colours of the layers: the first for lines to cut through, the others for pockets.
-const COLOURS: [&str; 4] = ["#d00000", "#0050c0", "#a000a0", "#008040"];
+const COLOURS: [&str; 5] = ["#d00000", "#0050c0", "#a000a0", "#008040", "#806000"];
 
 /// Formats a sheet as SVG. `kerf` is the width of the cut, mm; the lines are the part's edge, not the cutter's path.
 pub fn format_svg(sheet: &Sheet, kerf: f64) -> String {
@@ -34,8 +34,8 @@ pub fn format_svg(sheet: &Sheet, kerf: f64) -> String {
                     writeln!(svg, "<circle cx=\"{x:.6}\" cy=\"{y:.6}\" r=\"{r:.6}\"/>")
                 }
                 None => {
-                    let data = format_path(outline_loop, to_page);
-                    writeln!(svg, "<path d=\"{data}\"/>")
+                    let path_data = format_path(outline_loop, to_page);
+                    writeln!(svg, "<path d=\"{path_data}\"/>")
                 }
             };
         }
@@ -47,24 +47,24 @@ pub fn format_svg(sheet: &Sheet, kerf: f64) -> String {
 
 /// Formats the path data of a loop.
 fn format_path(outline_loop: &Loop, to_page: impl Fn(Vector) -> (f64, f64)) -> String {
-    let mut data = String::new();
+    let mut path_data = String::new();
     for (index, (side, to)) in outline_loop.sides_with_end_points().enumerate() {
         let (x, y) = to_page(side.from);
         if index == 0 {
-            let _ = write!(data, "M{x:.6} {y:.6}");
+            let _ = write!(path_data, "M{x:.6} {y:.6}");
         }
         let (x, y) = to_page(to);
         let _ = match side.arc(to) {
             // The page's y axis points down, so a left turn has the sweep flag 0.
             Some((_, radius)) => write!(
-                data,
+                path_data,
                 "A{radius:.6} {radius:.6} 0 {} {} {x:.6} {y:.6}",
                 u8::from(side.bulge.abs() > 1.0),
                 u8::from(side.bulge < 0.0)
             ),
-            None => write!(data, "L{x:.6} {y:.6}"),
+            None => write!(path_data, "L{x:.6} {y:.6}"),
         };
     }
-    data.push('Z');
-    data
+    path_data.push('Z');
+    path_data
 }

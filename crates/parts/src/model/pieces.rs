@@ -73,13 +73,13 @@ impl<'a> Pieces<'a> {
     }
 }
 
-/// Makes the spring of a slotted strut if the assembly has rigid struts: a bar as wide as the coil, from screw to
-/// screw.
+/// Makes the spring of a slotted strut if the assembly has rigid struts: a bar as wide as the coil, which ends one
+/// coil diameter before each screw.
 fn make_spring_piece(assembly: &Assembly, servo: usize) -> Piece {
     let spring = assembly.robot().parts().spring;
     let length = assembly.layout().legs[servo].strut_length;
     let radius = spring.outer_diameter / 2.0;
-    let middle_z = assembly.stack().strut_floor[1];
+    let middle_z = assembly.stack().coil_middle;
     let size = Vector::new(length - 2.0 * spring.outer_diameter, spring.outer_diameter);
     let bar = Shape::rectangle(Vector::new(length / 2.0, 0.0), size, 0.0);
     let bar = Prism::solid([bar], [middle_z - radius, middle_z + radius]);

@@ -14,7 +14,7 @@ fn history_path() -> Option<PathBuf> {
     Some(folder.join("lizard/history"))
 }
 
-/// Loads the lines, the oldest first; returns an empty list if the file does not exist.
+/// Loads the lines, the oldest first; returns an empty list if the file cannot be read.
 pub fn load() -> Vec<String> {
     let text = history_path().and_then(|path| std::fs::read_to_string(path).ok());
     let text = text.unwrap_or_default();
@@ -26,5 +26,6 @@ pub fn save(lines: &[String]) {
     let Some(path) = history_path() else {
         return;
     };
-    let _ = files::write(&path, (lines.join("\n") + "\n").as_bytes());
+    let text: String = lines.iter().map(|line| format!("{line}\n")).collect();
+    let _ = files::write(&path, text.as_bytes());
 }

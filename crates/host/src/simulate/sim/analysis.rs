@@ -245,8 +245,9 @@ impl Safety {
 }
 
 /// Computes the displacement during each command with the contact model; the last entry is the complete run. The
-/// legs are rigid here, so a frame's displacement depends only on its own pulses and the next frame's, and each pair is
-/// computed only once; in `lizard twin`, legs lag. Feet are never lifted; see [`lizard_robot::GroundContact`].
+/// legs are rigid here, whereas in `lizard twin` they lag. A frame's displacement therefore depends only on its own
+/// pulses and those of the next frame, and each pair of frames is computed only once. Feet are never lifted; see
+/// [`lizard_robot::GroundContact`].
 pub fn compute_command_displacements(run: Run<'_>, spans: &[Span]) -> Vec<CommandDisplacement> {
     let mut cache = HashMap::new();
     let mut total = NO_TRAVEL;

@@ -60,7 +60,8 @@ fn tick(run: &mut RunningRobot, cycle: u64) -> [u16; 4] {
     widths
 }
 
-/// Returns the cycle for writing waiting lines and reading waiting bytes; `None` if nothing waits.
+/// Returns the cycle from which the transmit buffer has room for the longest answer, so that main writes waiting lines
+/// and reads waiting bytes; `None` if nothing waits.
 fn compute_next_wake_cycle(run: &RunningRobot) -> Option<u64> {
     let is_waiting = run.board.unread_count() > 0 || run.has_output();
     let idle_from_cycle = run.board.transmitter.idle_from_cycle();
@@ -104,7 +105,7 @@ pub fn play(
                     && next_wake_cycle.is_none_or(|next_wake_cycle| byte.cycle < next_wake_cycle)
             };
             if let Some(byte) = received.next_if(is_due) {
-                run.board.send(&[byte.byte]);
+                run.board.send(&[byte.value]);
                 wake(&mut run, byte.cycle);
             } else if let Some(next_wake_cycle) = next_wake_cycle {
                 wake(&mut run, next_wake_cycle);
@@ -138,7 +139,7 @@ pub fn find_undetermined_lines(
     first_pulse_cycle: u64,
 ) -> impl Iterator<Item = usize> {
     let tick_cycle = first_pulse_cycle.saturating_sub(SLOT_CYCLES) % FRAME_CYCLES;
-    let line_ends = received.iter().filter(|byte| byte.byte == b'\n');
+    let line_ends = received.iter().filter(|byte| byte.value == b'\n');
     let cycles_left = line_ends
         .map(move |end| (tick_cycle + FRAME_CYCLES - end.cycle % FRAME_CYCLES) % FRAME_CYCLES);
     cycles_left

@@ -19,7 +19,7 @@ pub struct DialoguePrinter {
 }
 
 impl DialoguePrinter {
-    /// Creates a printer that prints all lines, or shortens runs of `# t=` lines.
+    /// Creates a printer that prints all lines if `shows_all` is true, and otherwise shortens runs of `# t=` lines.
     pub fn new(shows_all: bool) -> Self {
         Self {
             shows_all,
@@ -60,7 +60,7 @@ impl DialoguePrinter {
         if hidden_count > 0 {
             writeln!(
                 out,
-                "               ({hidden_count} more lines `# t=`; --all prints them)"
+                "               (hidden lines `# t=`: {hidden_count}; --all prints them)"
             )?;
         }
         Ok(())
@@ -102,10 +102,10 @@ mod tests {
         assert_eq!(watch_line_count, 9, "{shortened_text}");
         assert!(
             shortened_text
-                .contains("(2 more lines `# t=`; --all prints them)\n    1.500 s    # hold")
+                .contains("(hidden lines `# t=`: 2; --all prints them)\n    1.500 s    # hold")
         );
-        assert!(shortened_text.ends_with("(1 more lines `# t=`; --all prints them)\n"));
-        assert_eq!(shortened_text.matches("more lines").count(), 2);
+        assert!(shortened_text.ends_with("(hidden lines `# t=`: 1; --all prints them)\n"));
+        assert_eq!(shortened_text.matches("hidden lines").count(), 2);
         let full_text = print_lines(true, &lines);
         assert_eq!(full_text.lines().count(), lines.len());
         assert!(full_text.starts_with("    1.500 s  > watch 1\n    1.500 s    ok watch 1\n"));

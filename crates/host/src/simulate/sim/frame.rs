@@ -16,7 +16,7 @@ pub struct Frame {
     /// Nominal start cycle of A1's pulse.
     pub start: u64,
     /// Start cycle of each servo's pulse; `None` if it has no pulse.
-    pub starts: [Option<u64>; 4],
+    pub pulse_starts: [Option<u64>; 4],
     /// Width of each servo's pulse, cycles of 62.5 ns; `None` if it has no pulse.
     pub widths: [Option<u64>; 4],
 }
@@ -72,7 +72,7 @@ pub fn latest_frame_start(edges: &[Edge], a1_pin: Pin) -> Option<u64> {
 pub fn group_frames(edges: &[Edge], pins: [Pin; 4], start: u64, count: u64) -> Vec<Frame> {
     let empty_frame = |n| Frame {
         start: start + n * FRAME_CYCLES,
-        starts: [None; 4],
+        pulse_starts: [None; 4],
         widths: [None; 4],
     };
     let mut frames: Vec<Frame> = (0..count).map(empty_frame).collect();
@@ -83,7 +83,7 @@ pub fn group_frames(edges: &[Edge], pins: [Pin; 4], start: u64, count: u64) -> V
                 continue;
             };
             if let Some(frame) = frames.get_mut((offset / FRAME_CYCLES) as usize) {
-                frame.starts[servo] = Some(pulse.start);
+                frame.pulse_starts[servo] = Some(pulse.start);
                 frame.widths[servo] = Some(pulse.width);
             }
         }
@@ -116,7 +116,7 @@ pub(super) mod tests {
         let frames = group_frames(&edges, PINS, start, 3);
         assert_eq!(frames[0].widths, [Some(24_000), None, None, Some(25_000)]);
         assert_eq!(frames[1].widths, [Some(26_000), None, None, None]);
-        assert_eq!(frames[1].starts[0], Some(start + FRAME_CYCLES - 1));
+        assert_eq!(frames[1].pulse_starts[0], Some(start + FRAME_CYCLES - 1));
         assert!(frames[2].is_silent());
     }
 

@@ -9,8 +9,8 @@ use super::frame::{FRAME_CYCLES, first_cycle};
 pub struct FrameLog {
     /// Start cycle of A1's pulse in the first frame.
     pub first_start: u64,
-    /// Widths of each frame's pulses, cycles, in servo order; 0 if there is no pulse, 65535 for a pulse
-    /// of 65535 cycles or more.
+    /// Widths of each frame's pulses, cycles, in servo order; 0 if there is no pulse, 65535 for a pulse of 65535
+    /// cycles or more.
     pub widths: Vec<[u16; 4]>,
     /// Each servo's largest deviation of a pulse period from 20 ms, cycles.
     pub max_period_error: [u64; 4],

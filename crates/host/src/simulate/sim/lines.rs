@@ -27,7 +27,7 @@ pub struct LineReader {
 impl LineReader {
     /// Returns the lines that end within `bytes`.
     pub fn read<'a>(&'a mut self, bytes: &'a [SerialByte]) -> impl Iterator<Item = Line> + 'a {
-        bytes.iter().filter_map(|byte| match byte.byte {
+        bytes.iter().filter_map(|byte| match byte.value {
             b'\n' => Some(Line {
                 cycle: byte.cycle,
                 text: std::mem::take(&mut self.partial_line),

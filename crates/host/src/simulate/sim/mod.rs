@@ -183,7 +183,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         flash: firmware::count_code_bytes(uno.image(), &robot) + robot.section().len() as u32,
         ram: RamUse::measure(&uno),
         overruns: uno.overrun_count(),
-        resets: uno.watchdog_resets(),
+        resets: uno.watchdog_reset_count(),
         ended: describe_firmware_state(&recording.state),
         svg: args.svg.display().to_string(),
         dialogue,

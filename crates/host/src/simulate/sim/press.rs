@@ -1,5 +1,6 @@
 //! Timed presses of a robot's inputs, which are contacts.
 
+use std::collections::BTreeMap;
 use std::str::FromStr;
 
 use lizard_robot::Robot;
@@ -61,7 +62,7 @@ impl FromStr for Press {
     }
 }
 
-/// Lists the changes of a robot's contacts in order of time.
+/// Lists the changes of a robot's contacts in order of time. Overlapping presses of an input are one longer press.
 ///
 /// # Errors
 /// Fails if the robot does not have the input of a press.
@@ -82,6 +83,12 @@ pub fn list_contact_changes(
         }
     }
     changes.sort_by_key(|change| (change.ms, change.is_closed));
+    let mut press_counts = BTreeMap::new();
+    changes.retain(|change| {
+        let count = press_counts.entry(change.pin).or_insert(0);
+        *count += if change.is_closed { 1 } else { -1 };
+        *count == i32::from(change.is_closed)
+    });
     Ok(changes)
 }
 
@@ -107,5 +114,34 @@ mod tests {
             let result = invalid_text.parse::<Press>();
             assert_eq!(result, Err(reason.to_owned()), "{invalid_text}");
         }
+    }
+    #[test]
+    fn overlapping_presses_hold_the_contact_closed_until_the_last_one_ends() {
+        let paper = include_str!("../../../../../robots/paper.toml");
+        let inputs = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";
+        let robot = Robot::parse(&format!("{paper}\n{inputs}")).expect("the robot is valid");
+        let texts = [
+            "nose@1-3",
+            "nose@2-5",
+            "button@4",
+            "button@4.2",
+            "nose@6-8",
+            "nose@6-7",
+        ];
+        let presses = texts.map(|text| text.parse().expect("the press is valid"));
+        let changes = list_contact_changes(&presses, &robot).expect("the robot has both inputs");
+        let [button, nose] = [15, 16];
+        let change = |ms, pin, is_closed| ContactChange { ms, pin, is_closed };
+        let expected = [
+            change(1_000, nose, true),
+            change(4_000, button, true),
+            change(4_200, button, false),
+            change(4_200, button, true),
+            change(4_400, button, false),
+            change(5_000, nose, false),
+            change(6_000, nose, true),
+            change(8_000, nose, false),
+        ];
+        assert_eq!(changes, expected);
     }
 }

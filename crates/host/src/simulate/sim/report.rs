@@ -13,6 +13,7 @@ use crate::shared::number::{format_or_dash, round_to_decimals};
 /// All results of a run; the serialized field names are the JSON keys.
 #[derive(Debug, Serialize)]
 pub struct Report<'a> {
+    /// The path of the firmware's file, or a description of the built-in firmware.
     #[serde(rename = "elf")]
     pub firmware_name: String,
     /// The fidelity of the simulated chip: `data-sheet` or `stock`.
@@ -33,9 +34,9 @@ pub struct Report<'a> {
     /// Largest number of servo pins that are high at the same time.
     #[serde(rename = "most_pins_high")]
     pub max_pins_high: u32,
-    /// Cycles in which the CPU was asleep, percent.
+    /// Percentage of the cycles in which the CPU was asleep.
     pub asleep_percent: f64,
-    /// Flash size of the firmware, bytes.
+    /// Flash that the code and the robot's section occupy, bytes.
     pub flash: u32,
     /// The RAM in use; `None` for an image that is not an ELF, because such an image does not contain the end of the
     /// data.
@@ -47,7 +48,7 @@ pub struct Report<'a> {
     pub resets: u64,
     /// The firmware's final state, as a message.
     pub ended: String,
-    /// The picture's file.
+    /// Path of the picture.
     pub svg: String,
     /// The servo angles of every frame.
     pub frames: Run<'a>,

@@ -55,12 +55,12 @@ impl Script {
     pub fn from_gaits(gaits: &[&str], ms: u64) -> Self {
         let gaits_ms = ms - STAND_MS - CLOSING_MS;
         // The last gait gets four parts of the time, and each earlier gait gets five.
-        let compute_start = |index: usize| {
+        let compute_start_ms = |index: usize| {
             STAND_MS + gaits_ms * 5 * index as u64 / (4 + 5 * (gaits.len() as u64 - 1))
         };
         let gait_steps = gaits.iter().enumerate();
         let gait_steps =
-            gait_steps.map(|(index, gait)| Step::new(compute_start(index), to_command(gait)));
+            gait_steps.map(|(index, gait)| Step::new(compute_start_ms(index), to_command(gait)));
         let closing_steps = [
             Step::new(ms - CLOSING_MS, "stop"),
             Step::new(ms - CLOSING_MS / 2 - 200, "status"),

@@ -57,7 +57,7 @@ pub(super) fn serve_until_interrupted(
         }
         None => port.path().to_owned(),
     };
-    // A closed standard output does not end the board.
+    // The simulation continues even if standard output is closed.
     let print_line = |line: &str| _ = writeln!(io::stdout(), "{line}");
     print_line(&format!("the simulated UNO is at {}", port_name.display()));
     print_line(&format!("{reset_note}; Ctrl-C ends this program"));
@@ -72,7 +72,7 @@ pub(super) fn serve_until_interrupted(
             .map_or(f64::MAX, |change| change.ms as f64 - uno.ms());
         let wait = Duration::from_secs_f64(wait_ms.clamp(1.0, 1_000.0) / 1_000.0);
         port.serve(&mut uno, wait)
-            .map_err(|error| Failure::Operation(format!("the pseudo terminal: {error}")))?;
+            .map_err(|error| Failure::Operation(format!("cannot serve the port: {error}")))?;
         // Nobody reads these records, which would otherwise grow.
         uno.take_edges();
         uno.take_marks();
@@ -124,7 +124,7 @@ fn create_link(link: &Path, port: &Path) -> Result<(), Failure> {
     }
     symlink(port, link).map_err(|error| match error.kind() {
         io::ErrorKind::AlreadyExists => Failure::Input(format!(
-            "{} already exists and is not a link to a pseudo terminal",
+            "{} already exists and is not a link to a pseudo terminal; choose another name",
             link.display()
         )),
         _ => to_failure(error),

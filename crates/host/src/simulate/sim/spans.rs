@@ -29,6 +29,11 @@ impl Span {
     }
 }
 
+/// True if an answer refuses its command. The answer in a recording may be lost.
+pub fn is_refused(answer: &Option<String>) -> bool {
+    matches!(answer, Some(answer) if answer.starts_with("err"))
+}
+
 /// True if a command starts or ends a motion or changes its speed. A word that is not a console word counts as a gait's
 /// name.
 fn changes_motion(command: &str) -> bool {
@@ -42,15 +47,14 @@ fn changes_motion(command: &str) -> bool {
 pub fn list_command_spans(script: &Script, answers: &[Option<String>]) -> Vec<Span> {
     let mut starts = vec![(0.0, "stand")];
     for (step, answer) in script.steps.iter().zip(answers) {
-        let is_refused = matches!(answer, Some(answer) if answer.starts_with("err"));
         let is_within_run = step.ms <= script.end_ms;
-        if is_within_run && !is_refused && changes_motion(&step.command) {
+        if is_within_run && !is_refused(answer) && changes_motion(&step.command) {
             starts.push((step.ms as f64 / 1000.0, step.command.as_str()));
         }
     }
-    let end = script.end_ms as f64 / 1000.0;
+    let end_s = script.end_ms as f64 / 1000.0;
     let ends = starts.iter().skip(1).map(|(start_s, _)| *start_s);
-    let spans = starts.iter().zip(ends.chain([end]));
+    let spans = starts.iter().zip(ends.chain([end_s]));
     spans
         .map(|((start_s, command), end_s)| Span::new(command, *start_s, end_s))
         .collect()

@@ -205,7 +205,7 @@ impl Chart<'_> {
         let foot_spans = list_foot_spans(self.run.servo_frames(), servo);
         if foot_spans.len() as f64 > STRIP_WIDTH / 2.0 {
             let position = (MIDDLE_X, text_y);
-            let note = "steps are narrower than a pixel; simulate a shorter time to see them";
+            let note = "the steps are too narrow to be drawn; simulate a shorter time to see them";
             return group.add(text(note, position, 13.0, GREY, Anchor::Middle));
         }
         for span in foot_spans {
@@ -289,8 +289,8 @@ struct Curve {
 }
 
 impl Curve {
-    /// Adds a point in a pixel column. Only the lowest and the highest point in a column are kept. If
-    /// `column` is `None`, all points are kept.
+    /// Adds a point in a pixel column. Only the lowest and the highest point in a column are kept. If `column` is
+    /// `None`, all points are kept.
     fn add_point(&mut self, column: Option<i64>, point: (f64, f64)) {
         if column.is_none() {
             self.points.push(point);

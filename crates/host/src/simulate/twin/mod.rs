@@ -90,8 +90,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
         ServoArg::Ideal => ServoModel::Ideal,
     };
     let spans = spans::list_command_spans(&script, &recording.answers);
-    let mut steps = script.steps.iter();
-    let changes_speed = steps.any(|step| step.command.starts_with("speed"));
+    let mut steps = script.steps.iter().zip(&recording.answers);
+    let changes_speed =
+        steps.any(|(step, answer)| step.command.starts_with("speed") && !spans::is_refused(answer));
     let spinner = create_spinner("simulating every frame");
     let replay = Replay::simulate(&robot, recording.frames, spans, model);
     let rows = report::compute_reports(&robot, &replay, model, changes_speed);

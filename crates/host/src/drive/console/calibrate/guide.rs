@@ -31,9 +31,10 @@ pub enum Key {
     Yes,
     /// Answer no.
     No,
-    /// The left or right arrow: turn the servo by this many degrees, counter-clockwise if positive.
+    /// The left or right arrow: turn the servo by this many degrees, counter-clockwise if positive; or move its first
+    /// limit by 1 degree in this direction.
     LeftRight(f64),
-    /// The up or down arrow: turn the servo by this many degrees.
+    /// The up or down arrow: as [`Key::LeftRight`], but moves the second limit.
     UpDown(f64),
 }
 
@@ -153,19 +154,27 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// Fails if the connection breaks.
     pub fn read_messages(&mut self) -> std::result::Result<(), LinkError> {
         while let Some(line) = self.robot.console().read_line(Duration::ZERO)? {
-            if line.starts_with(BANNER_START) {
-                self.message = RESET_MESSAGE.to_owned();
-            } else if let Some(note) = line.strip_prefix("# ") {
-                self.message = format!("Message from the robot: {note}.");
-            }
+            self.show_message(&line);
         }
         if self.is_walking {
             // The line also prevents `deadman` from ending the gait.
             let reply = self.robot.console().ask("status")?;
+            for line in &reply.notes {
+                self.show_message(line);
+            }
             self.is_walking =
                 Status::parse(&reply.answer).is_some_and(|status| status.is_walking());
         }
         Ok(())
+    }
+
+    /// Shows a line that the robot printed without being asked.
+    fn show_message(&mut self, line: &str) {
+        if line.starts_with(BANNER_START) {
+            self.message = RESET_MESSAGE.to_owned();
+        } else if let Some(note) = line.strip_prefix("# ") {
+            self.message = format!("Message from the robot: {note}.");
+        }
     }
 
     fn leave(&mut self) -> Result<()> {

@@ -39,7 +39,7 @@ const CAPTION: Caption = Caption {
 /// Runs `lizard console replay`.
 ///
 /// # Errors
-/// Fails if the file is not a session, or the picture cannot be written.
+/// Fails if robot.toml is invalid, the file is not a session, or the picture cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let name = args.file.display();

@@ -52,7 +52,10 @@ impl RecordedSession {
                     "`begin` must occur exactly once, in the first line".to_owned(),
                 ));
             }
-            if entry.ms > MAX_SESSION_MS || entries.last().is_some_and(|last| last.ms > entry.ms) {
+            if entry.ms > MAX_SESSION_MS {
+                return Err(to_error(format!("{} ms is more than a day", entry.ms)));
+            }
+            if entries.last().is_some_and(|last| last.ms > entry.ms) {
                 return Err(to_error(format!("{} ms is out of order", entry.ms)));
             }
             entry.event.escape_controls();
@@ -77,8 +80,8 @@ impl RecordedSession {
         self.entries.last().map_or(0, |last| last.ms)
     }
 
-    /// Returns the pulse widths of the reported poses, one entry per frame since the start of the session; zero while
-    /// the robot rested or was silent.
+    /// Returns the pulse widths of the reported poses, CPU cycles, one entry per frame since the start of the session;
+    /// zero while the robot rested, and in gaps of more than [`MAX_HELD_FRAMES`] without a pose.
     pub(super) fn build_frame_log(&self, robot: &Robot) -> FrameLog {
         let mut widths: Vec<[u16; 4]> = vec![[0; 4]; (self.end_ms() / FRAME_MS) as usize + 1];
         let mut is_resting = false;
@@ -132,8 +135,8 @@ impl RecordedSession {
                         .filter(|index| pose_index.saturating_sub(*index) <= MAX_HELD_FRAMES)
                     {
                         let held_widths = widths[previous_index];
-                        for frame in widths.iter_mut().take(pose_index).skip(previous_index + 1) {
-                            *frame = held_widths;
+                        for gap in widths.iter_mut().take(pose_index).skip(previous_index + 1) {
+                            *gap = held_widths;
                         }
                     }
                     last_index = Some(pose_index);
@@ -146,19 +149,26 @@ impl RecordedSession {
 
     /// Returns the commands, each with the time span of its effect.
     pub(super) fn compute_spans(&self) -> Vec<Span> {
-        let mut steps = Vec::new();
-        let mut answers = Vec::new();
+        let mut steps: Vec<Step> = Vec::new();
+        let mut answers: Vec<Option<String>> = Vec::new();
         for entry in &self.entries {
             match &entry.event {
                 Event::Sent(command) => {
-                    answers.resize(steps.len(), None);
+                    answers.push(None);
                     steps.push(Step::new(entry.ms, command));
                 }
-                Event::Answer(line) => answers.push(Some(line.clone())),
+                Event::Answer(line) => {
+                    // A `stop` may be sent before the answer to the previous line.
+                    let is_for_previous_line = line != "ok stop"
+                        && steps.last().is_some_and(|step| step.command == "stop");
+                    let mut unanswered = answers.iter_mut().rev().skip(is_for_previous_line.into());
+                    if let Some(answer @ None) = unanswered.next() {
+                        *answer = Some(line.clone());
+                    }
+                }
                 _ => {}
             }
         }
-        answers.resize(steps.len(), None);
         let script = Script::new(steps, self.end_ms());
         spans::list_command_spans(&script, &answers)
     }
@@ -255,13 +265,27 @@ mod tests {
             "{\"ms\":2000,\"sent\":\"fly\"}".to_owned(),
             "{\"ms\":2001,\"answer\":\"err 1 no\"}".to_owned(),
             "{\"ms\":3000,\"sent\":\"stop\"}".to_owned(),
+            "{\"ms\":3001,\"answer\":\"ok stop\"}".to_owned(),
+            // This `stop` is sent before the refusal arrives.
+            "{\"ms\":4000,\"sent\":\"trot\"}".to_owned(),
+            "{\"ms\":4001,\"sent\":\"STOP\"}".to_owned(),
+            "{\"ms\":4002,\"answer\":\"err 6 no\"}".to_owned(),
+            "{\"ms\":4003,\"answer\":\"ok stop\"}".to_owned(),
+            "{\"ms\":5000,\"sent\":\"left\"}".to_owned(),
         ]);
         let spans = session.compute_spans();
         let commands: Vec<(&str, f64)> = spans
             .iter()
             .map(|span| (span.command.as_str(), span.start_s))
             .collect();
-        assert_eq!(commands, [("stand", 0.0), ("walk", 1.0), ("stop", 3.0)]);
+        let expected = [
+            ("stand", 0.0),
+            ("walk", 1.0),
+            ("stop", 3.0),
+            ("stop", 4.001),
+            ("left", 5.0),
+        ];
+        assert_eq!(commands, expected);
     }
 
     #[test]
@@ -287,7 +311,7 @@ mod tests {
         );
         assert_eq!(
             third_line_error("{\"ms\":99999999999,\"gone\":null}"),
-            "line 3: 99999999999 ms is out of order"
+            "line 3: 99999999999 ms is more than a day"
         );
     }
 

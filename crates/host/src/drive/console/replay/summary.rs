@@ -52,9 +52,9 @@ pub(super) fn print(session: &RecordedSession, out: &mut impl Write) -> io::Resu
         )?;
     }
     let supply_volts = statuses.iter().filter_map(|(_, status)| status.vcc);
-    print_range(out, "supply", supply_volts)?;
+    print_voltage_range(out, "supply", supply_volts)?;
     let servo_volts = statuses.iter().filter_map(|(_, status)| status.rail);
-    print_range(out, "servos", servo_volts)?;
+    print_voltage_range(out, "servos", servo_volts)?;
     if let Some((_, last)) = statuses.last() {
         writeln!(
             out,
@@ -89,7 +89,7 @@ fn reports_problem(note: &str) -> bool {
         .any(|start| note.starts_with(start))
 }
 
-fn print_range(
+fn print_voltage_range(
     out: &mut impl Write,
     name: &str,
     volts: impl Iterator<Item = f64>,
