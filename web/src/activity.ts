@@ -1,11 +1,11 @@
-// The robot's activity, a gait or a command, as the console's lines name it. An activity also names the line that
-// starts it.
+// The robot's activity, a gait or a command, as the console's lines name it. The name of an activity is also the
+// command that starts it.
 import type { Description } from './robot';
-import { DONE_LINE, GAITS, WORDS } from './words';
+import { DONE_LINE, STAND, WORDS } from './words';
 
 const BOOT_PREFIX = '# boot: ';
 
-/** Formats a gait's name from the robot as an activity. */
+/** Converts a gait's name, for example `arc-left`, to an activity, `arc left`. */
 export const formatActivity = (name: string) => name.replaceAll('-', ' ');
 
 const removeCount = (line: string) => line.replace(/ \d+$/, '');
@@ -25,7 +25,7 @@ export function startsWalking(line: string, { gaits }: Description): boolean {
   const [word] = line.split(' ');
   // A board with another robot may have gaits that the page's robot does not have.
   const knownGait = gaits.find(({ command }) => command === removeCount(line));
-  return knownGait ? knownGait.moves : !['', '?', GAITS.stand, ...Object.values<string>(WORDS)].includes(word);
+  return knownGait ? knownGait.moves : !['', '?', STAND, ...Object.values<string>(WORDS)].includes(word);
 }
 
 /** Returns true if an activity is a routine, also a real board's routine that the page's robot does not have. */

@@ -10,7 +10,7 @@ import { type Cause, getMessage } from './problem';
 import { type Four, parseBanner, parsePoseReport, parseStatus, type Status } from './robot';
 import { type BoardBanner, FULL_PACE, type SessionState } from './session-state';
 import type { ShownRobot } from './shown-robot';
-import { GAITS, WORDS } from './words';
+import { STAND, WORDS } from './words';
 
 /** Number of frames per reported pose; a radio at 9600 baud cannot transmit more poses. */
 const FRAMES_PER_REPORT = { usb: 2, radio: 10, simulated: 1 };
@@ -222,7 +222,7 @@ export class Board {
     const bannerNumber = ++this.state.bannerCount.value;
     // First, because `setGait` would send the robot's own `deadman`.
     this.deadman.reset();
-    this.setGait(GAITS.stand);
+    this.setGait(STAND);
     this.setPace(FULL_PACE);
     this.isWatching = false;
     this.listener.onProblem('board', null);

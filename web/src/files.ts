@@ -3,7 +3,7 @@ import type { Predictions } from './robot';
 
 async function getFile(path: string): Promise<Response> {
   const response = await fetch(new URL(path, document.baseURI));
-  if (!response.ok) throw new Error(`${path} is missing (status ${response.status}); was the page built with make web?`);
+  if (!response.ok) throw new Error(`${path} is missing (status ${response.status}): build the page with make web`);
   return response;
 }
 

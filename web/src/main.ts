@@ -75,10 +75,7 @@ async function start(): Promise<void> {
       if (frame.scene) for (const map of maps) map.addPose(frame.scene);
       if (widths) scope.frameWidths = widths;
     },
-    onPulse: (pin, rise, width) => {
-      latestCycle = rise + width;
-      scope.addPulse(pin, rise, width);
-    },
+    onPulse: (pin, riseCycle, width) => scope.addPulse(pin, riseCycle, width),
     onSent(line) {
       log.showSent(line);
       measure?.protocol?.handleSent(line);
@@ -102,7 +99,6 @@ async function start(): Promise<void> {
     },
   });
 
-  let latestCycle = 0;
   const connectButton = element<HTMLButtonElement>('connect');
   const radioButton = element<HTMLButtonElement>('radio');
   const predictor = new Predictor(session);
@@ -130,12 +126,12 @@ async function start(): Promise<void> {
   setUpCalibration(session);
   const updateAlarm = setUpAlarm(session);
   setUpRemote();
-  const text: RobotTextView = new RobotTextView(session, writer, () => routines.show());
-  const routines = new RoutinesView(session, text, writer);
-  new GaitEditorView(session, writer, (ownGait, foundGait, output) => {
+  const robotText: RobotTextView = new RobotTextView(session, writer, () => routines.show());
+  const routines = new RoutinesView(session, robotText, writer);
+  new GaitEditorView(session, writer, (previousGait, foundGait, output) => {
     // The second robot is drawn only from above.
     parts.set3d(false);
-    return recordView.compare(ownGait, foundGait, output);
+    return recordView.compare(previousGait, foundGait, output);
   });
   new GestureEditorView(session, writer);
   const flash = new FlashView(session, writer);
@@ -197,7 +193,6 @@ async function start(): Promise<void> {
     radioButton.hidden = isReal || findBluetoothProblem() !== null;
     choice.list.disabled = isBusy;
   });
-  session.state.link.subscribe(() => (latestCycle = 0));
   session.state.gait.subscribe(() => session.robot.description && updateNumbers());
   function updateNumbers(): void {
     const { last } = session.robot;
@@ -279,7 +274,7 @@ async function start(): Promise<void> {
     const message = `${saved.file}.toml has changed since the last visit; your changes to the previous file are not applied.`;
     problems.setMessage('robot', message, remedy);
   }
-  if (await text.loadFromAddress()) address.start();
+  if (await robotText.loadFromAddress()) address.start();
   if (isRobotInAddress) ownRobots.putAside(saved);
   addEventListener('popstate', ({ state }) => {
     const { hash } = location;
@@ -287,7 +282,7 @@ async function start(): Promise<void> {
     // Between the page's own entries, Back and Forward change only the room; the robot stays.
     if (state === PAGE_ENTRY_STATE) return address.scheduleUpdate();
     const file = parseFragment(hash).get('file');
-    if (file === null) return void replaceRobot(async () => (await text.loadFromAddress(hash)) && address.start());
+    if (file === null) return void replaceRobot(async () => (await robotText.loadFromAddress(hash)) && address.start());
     if (choice.select(file)) void replaceRobot(loadChosenFile);
     else reportMissing(file);
   });
@@ -309,11 +304,11 @@ async function start(): Promise<void> {
       steer.readGamepads();
       if (!session.robot.description) return;
       if (!parts.is3d || floor.drawsAlways) floor.draw(session.robot.description.plate, recordView.chooseFrame(session.robot.last), recordView.companionFrame);
-      recordView.afterDrawing();
+      recordView.finishDrawing();
       parts.render(session.robot.last);
       frameCount += 1;
       if (frameCount % FRAMES_PER_DRAWING === 0) {
-        scope.draw(latestCycle);
+        scope.draw();
         margins.draw(session.robot.last?.scene ?? null);
         for (const map of maps) map.draw();
       }
@@ -343,8 +338,8 @@ function describeBoard(name: string, banner: BoardBanner | undefined, hash: stri
   if (banner === 'unknown') return `on a ${name} that has not restarted: press its reset button to see its robot`;
   const { robot } = banner;
   if (!robot) return `on a ${name} with this firmware but no robot: write this robot`;
-  const robotText = `robot ${robot.name} ${robot.hash}`;
-  return robot.hash === hash ? `on a ${name}, ${robotText}` : `on a ${name} with another robot, ${robotText}: choose that robot, or write this robot`;
+  const robotLabel = `robot ${robot.name} ${robot.hash}`;
+  return robot.hash === hash ? `on a ${name}, ${robotLabel}` : `on a ${name} with another robot, ${robotLabel}: choose that robot, or write this robot`;
 }
 
 openRoom(location.hash);

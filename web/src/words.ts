@@ -10,8 +10,8 @@ type Word = (typeof WORD_LIST)[number];
 
 export const WORDS = Object.fromEntries(WORD_LIST.map((word) => [word, word])) as { readonly [Name in Word]: Name };
 
-/** The gaits that the page uses by name: every robot has `stand`, and the page prefers `walk` to other gaits. */
-export const GAITS = { stand: 'stand', walk: 'walk' } as const;
+/** The gait that every robot has. */
+export const STAND = 'stand';
 
 /** The line that the robot sends at the end of a routine, or of a gait with a count. */
 export const DONE_LINE = '# done';

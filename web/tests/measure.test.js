@@ -244,10 +244,10 @@ testPage('after the link is cut, the board is no longer driven, the room reports
   assert.equal(await readGait(page), 'stand', 'no gait was sent to the simulated board that replaces it');
 });
 
-testPage('the printed sheet equals the output of lizard measure sheet for both paper sizes', () => openRoomWithVideo(null), async (page) => {
+testPage('the downloaded sheet equals the output of lizard measure sheet for both paper sizes', () => openRoomWithVideo(null), async (page) => {
   for (const [name, paper] of [['A4', 'a4'], ['letter', 'letter']]) {
     await page.locator('#measure-paper').selectOption(name);
-    const { bytes } = await download(page, page.getByRole('button', { name: 'Print the sheet' }));
+    const { bytes } = await download(page, page.getByRole('button', { name: 'Download the sheet' }));
     const file = join(folder, `${paper}.pdf`);
     execFileSync(LIZARD, ['measure', 'sheet', '--paper', paper, '-o', file]);
     assert.deepEqual(bytes, readFileSync(file));
@@ -257,9 +257,9 @@ testPage('the printed sheet equals the output of lizard measure sheet for both p
 testPage('a worker that cannot be loaded is reported, and the next press of the button loads it', () => openRoomWithVideo(null), async (page) => {
   const previousCount = browserErrors.length;
   await page.route(/assets\/worker-/, (route) => route.abort());
-  await pressAndWait(page, 'Print the sheet', 'message', /^the worker could not be loaded/);
+  await pressAndWait(page, 'Download the sheet', 'message', /^the worker could not be loaded/);
   await page.unroute(/assets\/worker-/);
-  await download(page, page.getByRole('button', { name: 'Print the sheet' }));
+  await download(page, page.getByRole('button', { name: 'Download the sheet' }));
   // The browser also reports the file that was not loaded, as expected.
   for (const browserError of browserErrors.splice(previousCount)) assert.match(browserError, /Failed to load|worker/i);
 });

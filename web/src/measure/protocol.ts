@@ -1,7 +1,7 @@
 // The protocol of a measurement: drives gaits one after another in front of a camera, keeps the robot near the sheet of
 // tags, and records the times of each walk. The protocol ends at any other activity of the robot, such as `stop` or
 // another gait, and when the link is lost.
-import { DONE_LINE, GAITS, WORDS } from '../words';
+import { DONE_LINE, STAND, WORDS } from '../words';
 import type { OffsetToCentre } from './tag-tracker';
 
 /**
@@ -42,8 +42,8 @@ export interface Plan {
   /** The gaits, each with the duration of a cycle at full speed, s. */
   gaits: { command: string; period: number }[];
   /**
-   * Number of cycles of each gait. If the edge of the sheet cuts a walk short, the remaining cycles follow when the robot
-   * is back in the centre.
+   * Number of cycles of each gait. If the edge of the sheet cuts a walk short, the remaining cycles follow when the
+   * robot is back in the centre.
    */
   cycles: number;
   /** Pace of all gaits, percent. */
@@ -146,7 +146,7 @@ export class Protocol {
   setActivity(activity: string): void {
     const { activeWalk } = this;
     const isWalking = activeWalk?.gait === activity;
-    const isStanding = activity === WORDS.stop || activity === GAITS.stand;
+    const isStanding = activity === WORDS.stop || activity === STAND;
     if (isWalking || (isStanding && (activeWalk === null || activeWalk.isCutShort))) return;
     this.end(activity === '' ? 'the link to the robot was cut, or it was reset' : `the robot does "${activity}"`);
   }
@@ -199,8 +199,8 @@ export class Protocol {
   }
 
   /**
-   * Drives a gait to its last cycle, or to the edge of the sheet. Returns the start and the end of the walk, s; `record`
-   * is called with both even if the walk is interrupted.
+   * Drives a gait to its last cycle, or to the edge of the sheet. Returns the start and the end of the walk, s;
+   * `record` is called with both even if the walk is interrupted.
    */
   private async walk(gait: string, cycles: number, record: (during: [number, number]) => void = () => {}): Promise<[number, number]> {
     const { environment } = this;
@@ -212,19 +212,19 @@ export class Protocol {
     const start = environment.now();
     await this.ask(`${gait} ${cycles}`);
     activeWalk.nearestMm = this.lastOffset ? distance(this.lastOffset) : Infinity;
-    void this.watch(activeWalk);
+    void this.cutShortWhenUnseen(activeWalk);
     const { end, error } = await walkEnd;
     record([start, end]);
     if (error) throw error;
     if (activeWalk.isCutShort) {
-      await this.ask(GAITS.stand);
+      await this.ask(STAND);
       this.activeWalk = null;
     }
     return [start, end];
   }
 
-  /** Ends a walk when the robot is no longer detected. */
-  private async watch(activeWalk: ActiveWalk): Promise<void> {
+  /** Ends a walk when the camera no longer detects the robot. */
+  private async cutShortWhenUnseen(activeWalk: ActiveWalk): Promise<void> {
     while (this.activeWalk === activeWalk && !activeWalk.isCutShort) {
       if (!this.lastOffset) return this.cutShort(activeWalk);
       await this.environment.wait(MAX_UNSEEN_S / 4);

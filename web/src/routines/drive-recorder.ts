@@ -1,10 +1,11 @@
 // Records a drive as the steps of a routine, from the robot's reports of its gait, its pace and the phase of its cycle.
 // All times are in seconds of `Session.clock`.
 import type { Gait } from '../robot';
-import { GAITS, WORDS } from '../words';
+import { STAND, WORDS } from '../words';
 
 /** Shortest pause that becomes a step, s: a thumb that changes direction briefly releases the stick. */
 const MIN_PAUSE_S = 0.5;
+/** Shortest activity other than a pause that becomes a step, s. */
 const MIN_STEP_S = 0.1;
 /** Largest error of the count since the last reported phase, in cycles. */
 const COUNT_TOLERANCE_CYCLES = 0.05;
@@ -14,7 +15,7 @@ const COUNT_TOLERANCE_CYCLES = 0.05;
  */
 const ROUNDING_OFFSET_CYCLES = 0.4;
 /** The robot's activities between gaits, which become the step `stand` in a routine. */
-const PAUSE_ACTIVITIES: string[] = ['', GAITS.stand, WORDS.stop, WORDS.pose, WORDS.center];
+const PAUSE_ACTIVITIES: string[] = ['', STAND, WORDS.stop, WORDS.pose, WORDS.center];
 
 /** A section of the drive with one activity. */
 interface Section {
@@ -24,7 +25,7 @@ interface Section {
   seconds: number;
 }
 
-const isPause = ({ name }: Section) => name === GAITS.stand;
+const isPause = ({ name }: Section) => name === STAND;
 /** Returns true if a section is too short to become a step. */
 const isTooShort = (section: Section) => section.seconds < (isPause(section) ? MIN_PAUSE_S : MIN_STEP_S);
 
@@ -58,12 +59,12 @@ export class DriveRecorder {
     this.pace = percent;
   }
 
-  /** Corrects the cycle count with the gait's phase that the robot reports. */
+  /** Corrects the cycle count with the phase of the gait, 0 to 1, that the robot reports. */
   setPhase(reportedPhase: number, time: number): void {
     this.countCycles(time);
     const phase = this.currentGait?.reversed ? (1 - reportedPhase) % 1 : reportedPhase;
-    // The count is never too low; therefore a phase ahead of it belongs to the previous gait: the robot reports that
-    // gait's phase until it reaches the new gait's first pose.
+    // The count is never too low; therefore a phase above the count belongs to the previous gait: the robot reports
+    // that gait's phase until it reaches the new gait's first pose.
     if (phase > this.cycles + COUNT_TOLERANCE_CYCLES) this.cycles = 0;
     else this.cycles = Math.floor(this.cycles + ROUNDING_OFFSET_CYCLES - phase) + phase;
   }
@@ -93,7 +94,7 @@ export class DriveRecorder {
     const { sections, activity, currentGait } = this;
     const seconds = time - this.activityStart;
     const section = PAUSE_ACTIVITIES.includes(activity)
-      ? { name: GAITS.stand, cycles: 0, seconds }
+      ? { name: STAND, cycles: 0, seconds }
       : { name: activity, cycles: currentGait ? Math.max(0, Math.floor(this.cycles + COUNT_TOLERANCE_CYCLES)) : 0, seconds };
     const previous = sections.at(-1);
     if (!previous || !isPause(section) || !isPause(previous)) return [...sections, section];

@@ -270,7 +270,7 @@ export class FloorView {
       Home: () => this.setFollowing(true),
     };
     const action = actions[event.key];
-    if (!action || event.defaultPrevented) return;
+    if (!action || event.defaultPrevented || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
     action();
   }

@@ -3,6 +3,7 @@ import { effect } from '@preact/signals-core';
 
 import type { Description, Scene } from '../robot';
 import type { Session } from '../session';
+import { UnoLink } from '../link/uno-link';
 import { FREQUENCY_HZ } from '../uno/simulated-board';
 import { addPolyline, beginLines, prepareSurface } from './canvas';
 import { element, make, setText } from './elements';
@@ -11,9 +12,11 @@ import { isShown } from './rooms';
 
 /** Time span of the scope: three frames, in CPU cycles. */
 const SPAN_CYCLES = 0.06 * FREQUENCY_HZ;
+/** A longer pause than this means that the servos get no pulses: one frame, in CPU cycles. */
+const MAX_PAUSE_CYCLES = 0.02 * FREQUENCY_HZ;
 const CYCLES_PER_US = FREQUENCY_HZ / 1e6;
 
-/** A servo's pulse: the cycle of its rising edge, and its width in CPU cycles. */
+/** A servo's pulse: the CPU cycle of its rising edge, and its width in CPU cycles. */
 interface Pulse {
   servo: number;
   riseCycle: number;
@@ -27,18 +30,21 @@ export class ScopeView {
   private rows: { row: HTMLElement; width: HTMLElement; angle: HTMLElement }[] = [];
   private pins: number[] = [];
   private pulses: Pulse[] = [];
+  /** The CPU cycle of the last falling edge of a pulse. */
+  private lastFallCycle = 0;
   /** Pulse widths of the latest frame, CPU cycles; 0 for no pulse. */
   frameWidths: readonly number[] = [0, 0, 0, 0];
   /** True for the simulated board, whose pulses are known; a real board reports only poses. */
   private hasPulses = true;
 
-  constructor(session: Session) {
+  constructor(private readonly session: Session) {
     session.robot.follow((description) => this.showRobot(description));
     effect(() => {
-      const { isReal } = session.board;
+      const { isReal } = session.board; // depends on the link
       this.hasPulses = !isReal;
       element('scope-note').hidden = !isReal;
       this.pulses = [];
+      this.lastFallCycle = 0;
       this.frameWidths = [0, 0, 0, 0];
     });
   }
@@ -59,26 +65,39 @@ export class ScopeView {
   addPulse(pin: number, riseCycle: number, widthCycles: number): void {
     const servo = this.pins.indexOf(pin);
     if (servo < 0) return;
+    this.lastFallCycle = riseCycle + widthCycles;
     this.pulses.push({ servo, riseCycle, widthCycles });
     if (this.pulses.length > 64) this.pulses.splice(0, 32);
   }
 
-  /** Updates the table; called less often than `draw`, because each changed text makes the browser lay out the page again. */
+  /** The simulated board's cycle; 0 for a real board. */
+  private get boardCycle(): number {
+    const { link } = this.session.board;
+    return link instanceof UnoLink ? link.board.cycle : 0;
+  }
+
+  /** True if the simulated board sends no pulses. */
+  private get isPulseless(): boolean {
+    return this.boardCycle - this.lastFallCycle > MAX_PAUSE_CYCLES;
+  }
+
+  /** Updates the table; called less often than `draw`, because each change of a text causes a layout. */
   updateNumbers(scene: Scene | null): void {
     if (!isShown(element<HTMLDetailsElement>('pulses'))) return;
     this.rows.forEach(({ width, angle }, servo) => {
-      const cycles = this.frameWidths[servo];
+      const cycles = this.isPulseless ? 0 : this.frameWidths[servo];
       setText(width, !this.hasPulses ? '–' : cycles ? (cycles / CYCLES_PER_US).toFixed(2) : 'none');
       setText(angle, scene ? `${scene.angles[servo].toFixed(1)}°` : '–');
     });
   }
 
-  /** Draws the pulses up to `currentCycle`, which is at the right edge. */
-  draw(currentCycle: number): void {
+  /** Draws the pulses; at the right edge is the end of the last pulse, or the present if there are no pulses. */
+  draw(): void {
     const surface = prepareSurface(element<HTMLCanvasElement>('scope'));
     if (!surface) return;
     const { context, width, height } = surface;
     const rowHeight = height / 4;
+    const currentCycle = this.isPulseless ? this.boardCycle : this.lastFallCycle;
     const toX = (cycle: number) => width * (1 - (currentCycle - cycle) / SPAN_CYCLES);
     for (let servo = 0; servo < 4; servo++) {
       const lowY = (servo + 1) * rowHeight - 3;

@@ -7,7 +7,7 @@ import { parseCalibration } from '../robot';
 import type { Session } from '../session';
 import { BoardCalibrator } from '../setup/board-calibrator';
 import { getMessage } from '../problem';
-import { GAITS, NOTHING_SAVED_LINE } from '../words';
+import { STAND, NOTHING_SAVED_LINE } from '../words';
 import { reveal } from './rooms';
 import { boardStep } from './setup/board';
 import { makeDrawing, SERVO_POSITIONS } from './setup/drawing';
@@ -286,7 +286,7 @@ export class SetupDialog {
     // Servos that the previous step turned return to neutral.
     const { calibrator } = this;
     if (!calibrator) this.runAction(async () => this.requireCalibrator().then(() => ''), true);
-    else if (this.session.board.gait !== GAITS.stand) this.runAction(async () => calibrator.run((calibrator) => calibrator.stand()).then(() => ''), true);
+    else if (this.session.board.gait !== STAND) this.runAction(async () => calibrator.run((calibrator) => calibrator.stand()).then(() => ''), true);
   }
 
   readonly redraw = (): void => {
