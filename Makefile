@@ -30,7 +30,7 @@ unexport CARGO_TARGET_DIR CARGO_BUILD_TARGET_DIR CARGO_BUILD_TARGET RUSTFLAGS CA
 # Cargo can use make's jobserver only in a rule that calls make; in other rules, cargo prints a warning.
 CARGO := MAKEFLAGS= cargo
 
-# Each of these targets has a rule of the same name with a dot.
+# Each of these targets has a rule of the same name with a leading dot, which does the work.
 TARGETS := sim test sweep flash flash-test web web-test lint measure-test parts-test cli bench fit prove physics mutants other-robots trouble explore fuzz package code-image docs install docs-check release release-test parallel-test arduino-test python-test addresses-test desks
 
 .PHONY: help clean firmware .firmware .gaits .simulator .tests .workspace .walks $(TARGETS) $(TARGETS:%=.%)
@@ -55,9 +55,9 @@ bench: ## measure the budgets, compared with the Arduino Servo library; poses so
 fit: ## prove that no two parts collide in any pose that the guard accepts
 prove: ## compare the guard with floating point for every pose; takes a minute or two
 physics: ## compare the contact model with MuJoCo for every gait; WRITE=1 stores the results, ONE_IN=10 selects every tenth row
-mutants: ## mutation tests: report mutants that no test detects; PART=board, core or kinematics; SAMPLE=60 SEED=1: random mutants, with the rate
+mutants: ## mutation tests: report mutants that no test detects; PART=board, core or kinematics; SAMPLE=60 SEED=1: random mutants and their detection rate
 other-robots: ## run every test of the image with the robots in robots/ and with random valid robots; SEED=1 COUNT=10, EXCEPT=large+grain
-trouble: ## fault injection: stalls, resets, supply dips and drives by radio at random times; SEED=1, COUNT=10000, ONLY=number
+trouble: ## fault injection: stalls, resets, supply dips and lost radio packets at random times; SEED=1, COUNT=10000, ONLY=number of a scenario
 explore: ## run the model checker: commands, resets, stalls and weak supplies in any order; STATES=10000000
 fuzz: ## search for harmful bytes with libFuzzer; TARGET=console or memory, MINUTES=1
 package: ## package the stand-alone crates as for a registry, and build each from its package
@@ -68,7 +68,7 @@ docs-check: ## check that the book's values that take long to compute are up to 
 release: ## build all files of a release from the current commit, in dist/; takes a while
 release-test: ## build a release twice, in different folders; compare the bytes, and test each file
 parallel-test: ## split long computations with GNU parallel, merge the parts, and compare the output with that of one process
-arduino-test: ## compare the C++ library in arduino/, compiled like in the Arduino IDE, with the Rust engine; SERVO=folder of the Servo library
+arduino-test: ## compare the C++ library in arduino/, compiled as in the Arduino IDE, with the Rust engine; SERVO=folder of the Servo library
 python-test: ## build the Python package's wheel, install it in target/python, test it there
 addresses-test: ## check that the addresses in crates/Cargo.toml, set in a copy, appear in the program, a package, the page and the book
 desks: ## build `lizard` for Linux on ARM and for Windows, run it, compare its output; compile it for macOS
@@ -105,8 +105,8 @@ firmware:
 	@scripts/setup-flash
 	@scripts/flash
 
-# The README's `make flash`, and `lizard flash`, with a simulated board on a pseudo terminal. The tests run in real time
-# and therefore one after another.
+# Tests `make flash` and `lizard flash` with a simulated board on a pseudo terminal. The tests run in real time and
+# therefore one after another.
 .flash-test: .firmware
 	@scripts/setup-flash
 	@scripts/setup-flash-test
@@ -154,7 +154,8 @@ TESTS ?= $(ALL)
 .workspace:
 	@cd crates && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} $(CARGO) test $(TESTS) --no-fail-fast --quiet
 
-# Runs in parallel with the tests above, many of which wait; its output is shown at the end.
+# The tests of walking with other robots. They run in parallel with .workspace, many of whose tests wait, and their
+# output is shown at the end.
 WALKS := target/walks.log
 .walks:
 	@mkdir -p $(dir $(WALKS))
@@ -264,7 +265,7 @@ PREFIX ?= $(HOME)/.local
 	@cd crates && cargo build $(ALL) --bin lizard --quiet
 	@scripts/parallel-test $(HOST)/debug/lizard
 
-# Debian has the Arduino core but not the Servo library, so the library's test runs only with SERVO.
+# Debian has the Arduino core but not the Servo library, so the comparison with this library runs only with SERVO.
 .arduino-test: .sweep
 	@scripts/arduino $(SERVO)
 	@cd crates && cargo test $(ALL) --features lizard-host-tests/arduino --test arduino --quiet $(if $(SERVO),-- --include-ignored --nocapture)

@@ -1,7 +1,7 @@
 //! Converts robot.toml, or the file named by LIZARD_ROBOT, to the robot's section of flash.
 //!
-//! An invalid value or gait ends the build with a message. The report on the gaits is written to `gaits.txt` in the
-//! folder of the firmware.
+//! An invalid value or gait ends the build with a message. The report on the gaits is written to `gaits.txt`, in the
+//! folder into which Cargo puts the compiled firmware.
 
 use std::path::{Path, PathBuf};
 use std::process::exit;
@@ -37,7 +37,7 @@ fn main() {
     for name in ["ROBOT", "MARK", "MMCU"] {
         println!("cargo::rustc-link-arg-bins=-Wl,--undefined={name}");
     }
-    // OUT_DIR is build/<package>/out in the folder of the firmware.
+    // OUT_DIR is build/<package>/out in the folder of the compiled firmware.
     if let Some(firmware_folder) = out_dir.ancestors().nth(3) {
         let report = Report::compute(&robot).to_string();
         write_file(&firmware_folder.join("gaits.txt"), report.as_bytes());

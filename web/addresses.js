@@ -3,7 +3,10 @@ import { readFileSync } from 'node:fs';
 
 const CARGO_TOML = new URL('../crates/Cargo.toml', import.meta.url);
 
-/** Inserts the addresses of the repository and the page; removes the text around an empty address. */
+/**
+ * Replaces each comment `<!-- with a repository: ... -->` or `<!-- with a homepage: ... -->` by its content, in which
+ * the address replaces the word in capitals. Removes the comment if crates/Cargo.toml has an empty address.
+ */
 const insertAddresses = (html, cargoToml) =>
   ['repository', 'homepage'].reduce((newHtml, name) => {
     const [, address] = new RegExp(`^${name} = "(.*?)"`, 'm').exec(cargoToml);

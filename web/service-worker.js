@@ -2,7 +2,7 @@
 // prepends two constants to this code: FILES, a list of all paths with the SHA-256 of their bytes, and BUILD, the
 // SHA-256 of this list.
 
-/** The prefix of this page's cache names, which differs from other pages of the same origin. */
+/** The prefix of this page's cache names. Other pages of the same origin have other prefixes. */
 const CACHE_PREFIX = `lizard ${new URL(self.registration.scope).pathname} `;
 const CACHE_NAME = CACHE_PREFIX + BUILD;
 
@@ -41,7 +41,7 @@ async function activate() {
 }
 self.addEventListener('activate', (event) => event.waitUntil(activate()));
 
-// The user requests the newer build.
+// The older page sends this message when the user requests the newer build.
 self.addEventListener('message', ({ data }) => {
   if (data === 'take over') void self.skipWaiting();
 });

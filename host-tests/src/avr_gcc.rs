@@ -39,7 +39,7 @@ pub fn link(assembly: &str, object: &[u8]) -> Result<Image, String> {
     Ok(Image::read(elf_path).expect("avr-gcc's ELF loads"))
 }
 
-/// Shrinks an object in the same way as the linker.
+/// Shrinks an object in the same way as the firmware's linker, `scripts/link`.
 ///
 /// # Panics
 /// If the bytes are not a valid object for an AVR.
@@ -56,7 +56,8 @@ pub fn ram_address(image: &Image, name: &str) -> u16 {
     (image.symbol(name).expect("the variable exists").address - 0x80_0000) as u16
 }
 
-/// Runs a program on a UNO until its variable `done` is 1.
+/// Runs a program on a UNO until its variable `done` is 1. If the program's timer has interrupted it too rarely, `done`
+/// never becomes 1.
 ///
 /// # Panics
 /// If the variable is not 1 after `max_ms` milliseconds.

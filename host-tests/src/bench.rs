@@ -1,4 +1,4 @@
-//! Test bench for the firmware, which powers on a board, talks to it and measures its pulses.
+//! Test bench that powers on a board with the firmware, talks to it and measures its pulses.
 //!
 //! A test of the running firmware should read like the actions of a person with a board: `boot`, `say("walk")`, wait
 //! some frames, check the pulses. The bench is a [`SimulatedBoard`] with the robot under test. Every error panics,
@@ -29,7 +29,7 @@ impl FirmwareBench {
         std::env::var_os("LIZARD_ELF").map_or(built_elf, PathBuf::from)
     }
 
-    /// Returns the firmware's image, with [`robot`] in place of the file's robot.
+    /// Returns the firmware's image, with [`robot`] in place of the robot in the file.
     ///
     /// # Panics
     /// If there is no firmware.
@@ -38,7 +38,7 @@ impl FirmwareBench {
         IMAGE.clone()
     }
 
-    /// Returns the firmware's image, with the given robot in place of the file's robot.
+    /// Returns the firmware's image, with the given robot in place of the robot in the file.
     ///
     /// # Panics
     /// If there is no firmware.
@@ -120,7 +120,7 @@ impl FirmwareBench {
         unwrap_or_panic(self.0.run_ms(ms));
     }
 
-    /// Measures the duration of a function's calls: see [`SimulatedBoard::time_calls`].
+    /// Runs the firmware for some milliseconds and times every call of a function: see [`SimulatedBoard::time_calls`].
     ///
     /// # Panics
     /// If the ELF has no such function, or more than one.

@@ -13,7 +13,7 @@ pub fn assert_contains(text: &str, part: &str) {
 
 /// Returns bytes from the serial line as a text.
 pub fn decode_text(bytes: &[SerialByte]) -> String {
-    let bytes: Vec<u8> = bytes.iter().map(|byte| byte.byte).collect();
+    let bytes: Vec<u8> = bytes.iter().map(|byte| byte.value).collect();
     String::from_utf8_lossy(&bytes).into_owned()
 }
 

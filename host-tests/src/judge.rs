@@ -114,13 +114,13 @@ pub fn run_on_avr8js(
     if let Some((pin, mv)) = supplies::healthy_rail(robot) {
         script += &format!("analogue {} {mv}\n", pin.number());
     }
-    for SerialByte { cycle, byte } in received {
+    for SerialByte { cycle, value } in received {
         let cycle = cycle.saturating_add_signed(AVR8JS_LAG_CYCLES);
-        script += &format!("{cycle} {byte:02x}\n");
+        script += &format!("{cycle} {value:02x}\n");
     }
     script += &format!("end {end_cycle}\n");
     let mut node = node_command()?;
-    node.arg(judge_dir().join("run.js")).arg(hex_path);
+    node.arg(judge_folder().join("run.js")).arg(hex_path);
     let output_text = run_program(&mut node, "nodejs", &script)?;
     let mut run = parse_run(&output_text)
         .ok_or_else(|| format!("malformed output of the judge:\n{output_text}"))?;
@@ -133,7 +133,7 @@ pub fn run_on_avr8js(
 /// # Errors
 /// Fails if a program is missing or a test fails.
 pub fn run_judge_tests() -> Result<String, String> {
-    let folder = judge_dir().join("test");
+    let folder = judge_folder().join("test");
     let files = std::fs::read_dir(&folder).map_err(|error| error.to_string())?;
     let paths = files.filter_map(|file| Some(file.ok()?.path()));
     // Names each file, because versions of Node treat a folder differently.
@@ -145,13 +145,13 @@ pub fn run_judge_tests() -> Result<String, String> {
     run_program(node_command()?.arg("--test").args(tests), "nodejs", "")
 }
 
-fn judge_dir() -> PathBuf {
+fn judge_folder() -> PathBuf {
     root().join("tools/judge")
 }
 
 /// Returns the command that starts Node. Fails if the package avr8js is not installed.
 fn node_command() -> Result<Command, String> {
-    let package = judge_dir().join("node_modules/avr8js/package.json");
+    let package = judge_folder().join("node_modules/avr8js/package.json");
     if !package.exists() {
         return Err("the package avr8js is missing: run scripts/setup-judge to install it".into());
     }
@@ -195,9 +195,9 @@ fn parse_run(output_text: &str) -> Option<Avr8jsRun> {
                 rise_cycle: rise_cycle.parse().ok()?,
                 width: width.parse().ok()?,
             }),
-            ["sent", cycle, byte] => run.outputs.sent_bytes.push(SerialByte {
+            ["sent", cycle, value] => run.outputs.sent_bytes.push(SerialByte {
                 cycle: cycle.parse().ok()?,
-                byte: u8::from_str_radix(byte, 16).ok()?,
+                value: u8::from_str_radix(value, 16).ok()?,
             }),
             ["eeprom", bytes] => {
                 let parse_byte = |index| u8::from_str_radix(bytes.get(index..index + 2)?, 16).ok();
@@ -288,7 +288,7 @@ pub fn compare_console(simavr: &Outputs, avr8js: &Outputs) -> Result<Agreement, 
     let pairs = simavr.sent_bytes.iter().zip(&avr8js.sent_bytes);
     let mut jitter_cycles = 0;
     for (index, (simavr_byte, avr8js_byte)) in pairs.enumerate() {
-        if simavr_byte.byte != avr8js_byte.byte {
+        if simavr_byte.value != avr8js_byte.value {
             return Err(format!(
                 "byte {index} of the console, cycle {}: simavr sends {:?}, avr8js {:?}",
                 simavr_byte.cycle,

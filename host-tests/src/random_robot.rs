@@ -184,8 +184,9 @@ fn random_servos(rng: &mut Rng, pins: &[&str], neutral: [f64; 4]) -> String {
     text
 }
 
-/// Returns the angles of a random neutral pose, deg; `None` if no pose was found. The pose's margins exceed their
-/// limits by at least `MIN_RESERVE`; the strokes are not checked.
+/// Returns the angles of a random neutral pose, deg; `None` if no pose was found. Each crank points 8 to 80 deg forward
+/// or backward from its side of the robot. The pose's margins exceed their limits by at least `MIN_RESERVE`; the
+/// strokes are not checked.
 fn random_neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> {
     /// The smallest allowed distance of a margin from its limit, a sine.
     const MIN_RESERVE: f64 = 0.12;

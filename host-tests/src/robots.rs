@@ -1,4 +1,4 @@
-//! Robots under test, from the repository's files and random.
+//! Robots under test: those of the repository's files, and random ones.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;

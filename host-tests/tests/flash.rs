@@ -1,5 +1,5 @@
-//! Tests of `make flash` as described in the README: cargo, ravedude and avrdude write the image to a new board. The
-//! board is simulated in real time on a pseudo terminal, with the boot loader of a stock UNO in its flash.
+//! Tests of `make flash` as described in docs/flashing.md: cargo, ravedude and avrdude write the image to a new board.
+//! The board is simulated in real time on a pseudo terminal, with the boot loader of a stock UNO in its flash.
 //!
 //! `make flash-test` installs the tools and runs these tests.
 

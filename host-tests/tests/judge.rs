@@ -150,7 +150,7 @@ fn pulse(rise_cycle: u64, width: u64) -> PinPulse {
 }
 
 fn build_outputs(pulses: &[PinPulse], text: &str) -> Outputs {
-    let sent_bytes = text.bytes().map(|byte| SerialByte { cycle: 0, byte });
+    let sent_bytes = text.bytes().map(|value| SerialByte { cycle: 0, value });
     Outputs {
         pulses: pulses.to_vec(),
         sent_bytes: sent_bytes.collect(),

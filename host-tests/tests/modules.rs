@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use lizard_host_tests::root;
 use workspace::list_crates;
 
-/// Programs for the tests, whose modules are not checked: some of them use each other in a cycle.
+/// Crates whose modules are not checked: some of these modules use each other in a cycle.
 const UNCHECKED_CRATES: [&str; 3] = ["host-tests", "tools/physics", "tools/rules"];
 
 /// The layers of the core, which are its top-level modules, from top to bottom. A layer may use the layers below.

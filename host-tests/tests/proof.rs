@@ -1,5 +1,8 @@
 //! Tests that compare the guard of every robot in this repository with floating point and with the robot's maps of
-//! cells. They check one in 256 pairs of servo positions; `make prove` checks all pairs.
+//! certified cells. They check one in 256 pairs of servo positions; `make prove` checks all pairs.
+//!
+//! In a narrow band around a limit, rounding may change the guard's decision. Both decisions are therefore allowed in
+//! this band, whose width is [`lizard_proof::margin_band`] for a margin.
 
 use std::iter::repeat;
 
@@ -11,7 +14,7 @@ use lizard_robot::Robot;
 const SAMPLE_ONE_IN: u32 = 256;
 
 #[test]
-fn the_guard_decides_correctly_for_every_pair_of_positions_outside_the_band_or_in_a_cell() {
+fn the_guard_decides_correctly_for_every_sampled_pair_outside_the_bands_or_in_a_cell() {
     for (number, NamedRobot { name, robot }) in (0..).zip(load_robots_from_files()) {
         // Each robot and each seed gets a different sample of the pairs.
         let sample = PairSample {

@@ -19,7 +19,8 @@ fn compute_expected_width(servo: u64, frame: u64) -> u64 {
 /// Loads the crate's example `sweep`.
 fn load_sweep_example(fidelity: Fidelity) -> Uno {
     let elf = FirmwareBench::elf_path().with_file_name("examples/sweep.elf");
-    Uno::load(&elf, fidelity).unwrap_or_else(|error| panic!("`make sweep` builds it: {error}"))
+    Uno::load(&elf, fidelity)
+        .unwrap_or_else(|error| panic!("run `make sweep` to build the example: {error}"))
 }
 
 #[test]
@@ -60,7 +61,7 @@ fn eight_servos_are_exact_to_the_cycle_during_a_flood_of_echoed_bytes() {
                 assert_eq!(interval, frame_length_cycles, "{fidelity:?}, pin {pin}");
             }
         }
-        let echo: Vec<u8> = uno.transmitted().iter().map(|sent| sent.byte).collect();
+        let echo: Vec<u8> = uno.transmitted().iter().map(|sent| sent.value).collect();
         // The serial line was saturated in both directions. Stock simavr sends more slowly than it receives and
         // therefore loses bytes. The simulation according to the data sheet loses no byte.
         if fidelity == Fidelity::DataSheet {

@@ -1,5 +1,5 @@
-//! Fault-injection tests at random moments during all activities. `make trouble` runs about a hundred times as many
-//! scenarios.
+//! Fault-injection tests at random moments during all activities. `make trouble` runs 10 000 scenarios unless
+//! COUNT is set.
 
 use std::collections::BTreeSet;
 

@@ -16,13 +16,13 @@ pub fn start(cpu: CPU) {
     cpu.smcr.write(|w| w.sm().idle().se().set_bit());
 }
 
-/// Sleeps until the count of ticks differs from `tick`, a received byte waits, or the send buffer becomes empty, so
+/// Sleeps until the count of ticks differs from `ticks`, a received byte waits, or the send buffer becomes empty, so
 /// that the next line has room. Interrupts are off for fewer than 40 cycles at a time.
-pub fn wait_for_event(tick: u8) {
+pub fn wait_for_event(ticks: u8) {
     let was_sending = serial::is_sending();
     loop {
         interrupt::disable();
-        if pulses::ticks() != tick || serial::has_input() || was_sending && !serial::is_sending() {
+        if pulses::ticks() != ticks || serial::has_input() || was_sending && !serial::is_sending() {
             break;
         }
         // The `nop` is for stock simavr, which accepts an interrupt one instruction later than the chip. Without the

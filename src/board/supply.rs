@@ -2,7 +2,7 @@
 //!
 //! The converter compares a voltage with its own supply, AVcc. Therefore its reading of the chip's 1.1 V reference
 //! determines AVcc without any external part. A conversion takes 104 us, and the reference settles within 70 us after
-//! its selection (data sheet, sections 24.6 and 28.8). Therefore a frame selects the channel, the next frame starts the
+//! its selection (data sheet, sections 24.4 and 29.5). Therefore a frame selects the channel, the next frame starts the
 //! conversion, and the frame after that reads the result.
 
 use avr_device::atmega328p::ADC;

@@ -16,7 +16,7 @@ from walk import Walk
 
 
 def simulate(path):
-    """Returns the content of the line for a file."""
+    """Simulates the walk in a file, and returns the content of its line."""
     try:
         walk = Walk(path)
     except ValueError as error:

@@ -30,12 +30,12 @@ def main():
         print("view.py: the file has no gait; write it with --drive GAIT")
     is_paused = False
 
-    def handle_key(code):
+    def on_key(code):
         nonlocal is_paused
         is_paused ^= code == SPACE
 
     with mujoco.viewer.launch_passive(
-        walk.model, walk.data, key_callback=handle_key, show_left_ui=False, show_right_ui=False
+        walk.model, walk.data, key_callback=on_key, show_left_ui=False, show_right_ui=False
     ) as window:
         with window.lock():
             window.cam.type = mujoco.mjtCamera.mjCAMERA_TRACKING

@@ -91,7 +91,8 @@ class Walk:
         return [sum(components) / self.cycle_count for components in zip(*displacements)]
 
     def walk(self, step_count):
-        """Runs some steps of the engine and returns the displacement in the frame of their start."""
+        """Runs some steps of the engine. Returns the displacement in the frame of their start, in the units of
+        `measure_cycles`."""
         forward, left, heading = self.compute_pose()
         for _ in range(step_count):
             self.step()

@@ -11,7 +11,9 @@ export interface SavedChanges {
   toml: string;
   /** Floor, mass, feet and leg drive set in the page; null for the values of robot.toml. */
   floor: Floor | null;
+  /** The servo model, as in `SessionState.servos`. */
   servos: string;
+  /** Supply voltage of the simulated board, V. */
   volts: number;
 }
 

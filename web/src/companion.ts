@@ -2,7 +2,7 @@
 import { isRefused, type Frame, Robot } from './robot';
 import type { ShownRobot } from './shown-robot';
 
-/** Number of frames between power-on and standing. */
+/** Number of frames after which a robot that was switched on stands. */
 const WAKE_FRAME_COUNT = 200;
 
 export class Companion {

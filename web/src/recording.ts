@@ -13,7 +13,7 @@ export interface RecordedFrame {
 }
 
 /** Longest duration of a recording, s, so that a forgotten recording does not fill the memory. */
-export const MAX_SECONDS = 180;
+export const MAX_RECORDING_SECONDS = 180;
 const CYCLES_PER_US = 16;
 
 export class Recording {
@@ -23,7 +23,7 @@ export class Recording {
   add(frame: Frame, widths: Four<number> | null, activity: string, seconds: number): boolean {
     const lastFrame = this.frames[this.frames.length - 1];
     this.frames.push({ time: lastFrame ? lastFrame.time + seconds : 0, activity, frame, widths });
-    return this.duration < MAX_SECONDS;
+    return this.duration < MAX_RECORDING_SECONDS;
   }
 
   /** Duration so far, s. */

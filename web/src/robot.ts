@@ -19,7 +19,7 @@ export type Predictions = (GaitPrediction | null)[];
 export interface RobotOnFloor {
   toml: string;
   floor: Floor;
-  /** The servo model's name in the description. */
+  /** The servo model: a name from the description, or such a name with a supply in V, as in `own at 4.2`. */
   servos: string;
 }
 

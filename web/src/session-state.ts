@@ -16,7 +16,7 @@ export class SessionState {
   readonly description = signal<Description | null>(null);
   /** The floor set in the page; null for the floor of robot.toml. */
   readonly floor = signal<Floor | null>(null);
-  /** The servo model's name in the description. */
+  /** The servo model: a name from the description, or such a name with a supply in V, as in `own at 4.2`. */
   readonly servos = signal('own');
   /** Supply voltage of the simulated board, V. */
   readonly volts = signal(5);

@@ -17,10 +17,16 @@ const CLOCK_STEP_MS = 5;
 
 /** Callbacks for a session's events; all other changes are in its state. */
 export interface SessionListener extends ProgramListener, Omit<BoardListener, 'onPose'> {
-  /** Called for each frame, with the frame's duration. */
+  /**
+   * Called for each frame of the simulated board with its pulse widths in CPU cycles, and for each pose report of a
+   * real board with null. `seconds` is the duration of the frame, or of the frames since the previous report.
+   */
   onFrame(frame: Frame, widths: Four<number> | null, seconds: number): void;
-  /** Called for each pulse: the Arduino number of its pin, the cycle of its rising edge, and its width in cycles. */
-  onPulse(pin: number, rise: number, width: number): void;
+  /**
+   * Called for each pulse: the Arduino number of its pin, the CPU cycle of its rising edge, and its width in CPU
+   * cycles.
+   */
+  onPulse(pin: number, riseCycle: number, width: number): void;
 }
 
 export class Session {

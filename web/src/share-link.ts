@@ -3,7 +3,10 @@
 /** Largest accepted size of a robot.toml, bytes; a typical robot.toml is a few thousand bytes long. */
 const MAX_BYTES = 200_000;
 
-/** Compresses or decompresses; throws a RangeError with a message for the user if one side exceeds `MAX_BYTES`. */
+/**
+ * Compresses or decompresses; throws a RangeError with a message for the user if the input or the output exceeds
+ * `MAX_BYTES`.
+ */
 async function pipeThrough(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {
   const output = new Blob([bytes]).stream().pipeThrough(stream);
   const reader = output.getReader();

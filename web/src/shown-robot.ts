@@ -147,7 +147,7 @@ export class ShownRobot {
     return this.state.servos.value;
   }
 
-  /** Sets the servo model by its name in the description. */
+  /** Sets the servo model: a name from the description, or such a name with a supply in V, as in `own at 4.2`. */
   setServos(name: string): void {
     this.state.servos.value = name;
     this.wasm.setServoModel(name);

@@ -25,6 +25,7 @@ async function checkEveryRoom(options, check) {
   for (const [room, panels] of Object.entries(ROOMS)) {
     for (const panel of panels) await unfold(page, panel);
     if (room === 'gaits') {
+      // A step with a mistake shows its refusal, which must be accessible, too.
       await page.getByRole('button', { name: 'Add a step' }).click();
       await page.getByLabel('Step 1', { exact: true }).fill('wolk 4');
       await page.keyboard.press('Enter');

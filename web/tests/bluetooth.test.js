@@ -88,6 +88,7 @@ testPage('after a failed attempt to reconnect, each byte is received once', () =
     };
   });
   await radio.bringIntoRange();
+  // If each byte were received twice, the page could not read any line of the robot.
   await radio.runUntil('the robot is stopped', async () => (await readGait(page)) === 'stop');
 });
 

@@ -122,7 +122,7 @@ testPage('a gait that is pressed while the page leaves a board is not sent', ope
   assert.match(await page.evaluate(() => window.sentText), /stop\n(deadman 0\n)?$/);
 });
 
-testPage('a press of the button while the port is closing has no effect', openWalking, async (page) => {
+testPage('pressing Back to the simulation again while the port is closing has no effect', openWalking, async (page) => {
   await page.evaluate(async () => {
     const port = await navigator.serial.requestPort();
     const { close } = port;
@@ -223,7 +223,7 @@ testPage('the page shows no pulses for a board that does not report them', () =>
   await unfold(page, '#pulses');
   await page.clock.runFor(500);
   assert.deepEqual(await page.locator('#widths td:nth-child(3)').allInnerTexts(), ['–', '–', '–', '–']);
-  await page.getByText('A board on USB does not show its pulses here.').waitFor();
+  await page.getByText('A real board does not show its pulses here.').waitFor();
 });
 
 testPage('a HEX file of another program is written only after the user confirms', openWithBoard, async (page) => {

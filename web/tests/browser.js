@@ -20,11 +20,11 @@ const CONTENT_TYPES = {
   '.png': 'image/png',
   '.webmanifest': 'application/manifest+json',
 };
-/** Debian's headless Chromium, which opens pages faster. The environment variable CHROMIUM names another browser. */
+/** Debian's headless Chromium, which opens pages faster than Chromium. The variable CHROMIUM names another browser. */
 const CHROMIUM = { type: chromium, executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium-headless-shell', args: ['--no-sandbox'] };
 /**
- * Debian's Firefox, driven by WebDriver BiDi. The environment variable FIREFOX names another. Preferences emulate media
- * features, because playwright-core 1.65 sends a command for them that needs a newer Firefox.
+ * Debian's Firefox, driven by WebDriver BiDi. The environment variable FIREFOX names another. A preference sets reduced
+ * motion. playwright-core stays at 1.64, because 1.65 sets media features by a command that needs a newer Firefox.
  */
 const FIREFOX = {
   type: firefox,
@@ -34,7 +34,7 @@ const FIREFOX = {
 };
 /**
  * Time limit of a wait: long, so that only a hang fails on a busy machine. The environment variable PATIENCE sets
- * another, which is useful while writing a test.
+ * another, in ms, which is useful while writing a test.
  */
 export const TIMEOUT_MS = Number(process.env.PATIENCE ?? 300_000);
 
@@ -284,7 +284,7 @@ export const readToml = (page) => page.evaluate(() => window.lizard.robot.toml);
 /** Returns the robot's running gait, or its last command. */
 export const readGait = (page) => page.evaluate(() => window.lizard.board.gait);
 export const waitForGait = (page, gait) => page.waitForFunction((gait) => window.lizard.board.gait === gait, gait);
-/** Returns the place of the robot on the floor, mm. */
+/** Returns the place of the robot on the floor: `x` and `y` in mm, `heading` in deg. */
 export const readPlace = (page) => page.evaluate(() => window.lizard.robot.last.place);
 export const findGaitButton = (page, command) => page.locator(`#gaits button[data-command="${command}"]`);
 

@@ -49,6 +49,7 @@ export function installFakeSerial() {
         port.readable = null;
         output.error(new Error('The device has been lost.'));
       };
+      // The boot loader begins at the word address 0x3f00.
       const isBaudRight = () => baudRate === (board.uno.cpu.pc >= 0x3f00 ? (window.loaderBaud ?? 115_200) : 115_200);
       port.writable = new WritableStream({ write: (bytes) => (isBaudRight() ? board.send(bytes) : undefined) });
       board.onByte = (byte) => (isBaudRight() ? output.enqueue(Uint8Array.of(byte)) : undefined);

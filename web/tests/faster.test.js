@@ -12,7 +12,7 @@ const ROOT = new URL('../../', import.meta.url).pathname;
 
 useBrowser();
 
-/** Opens the gait editor with a gait of the robot, and sets the number of rounds of a search. */
+/** Opens the gait editor with a gait of the robot, and sets the numbers of a search; `maxServoSpeed` is in deg/s. */
 async function openEditor({ gait = 'walk', rounds = 1, seed = 3, maxServoSpeed = '' } = {}, options = {}) {
   const page = await openUnfolded('#gait-editor', options);
   await waitForPrediction(page);

@@ -1,5 +1,5 @@
-// The CPU time of a frame. Real time depends on what else the machine does, so this measures the CPU time of the page's thread,
-// while the test's clock makes the page draw sixty frames a second.
+// The CPU time of a frame. Real time depends on what else the machine does, so these tests measure the CPU time of the
+// page's thread, while the test's clock makes the page draw sixty frames a second.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 

@@ -56,7 +56,7 @@ testPage('a drawn circle is added to robot.toml as the path of the head', openPa
     const point = await readHeadPoint(page);
     distances.push(Math.hypot(point[0] - neutral[0], point[1] - neutral[1]));
   }
-  // A servo's dead band is a fraction of a mm there.
+  // At the point of the head, a servo's dead band is a fraction of a mm.
   for (const mm of distances) assert.ok(Math.abs(mm - 6) < 0.8, `${distances.map((mm) => mm.toFixed(2))} mm from the centre of a circle with a radius of 6 mm`);
 });
 

@@ -152,7 +152,7 @@ const recordLineGaps = (page) =>
     window.readLineGapsMs = () => arrivalTimesMs.slice(1).map((time, n) => time - arrivalTimesMs[n]);
   });
 
-/** Advances the clock by `ms`, and returns true if a servo turns meanwhile, that is, if a pulse changes by more than 1 us. */
+/** Advances the clock by `ms`; returns true if a servo turns meanwhile: if a pulse width changes by more than 1 us. */
 async function runAndDetectMovement(page, ms) {
   const observedWidths = [];
   for (let remainingMs = ms; remainingMs > 0; remainingMs -= 20) {

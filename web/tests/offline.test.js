@@ -22,7 +22,7 @@ async function serveCopy() {
 
 const waitUntilStarted = (page) => page.waitForFunction(() => window.lizard);
 
-/** Makes a copy a newer page, with another heading. Returns the index.html of the older page. */
+/** Changes a copy to a newer version of the page, with another heading. Returns the older version's index.html. */
 async function makeNewer(copyFolder) {
   const indexHtml = await readFile(join(copyFolder, 'index.html'), 'utf8');
   assert.ok(indexHtml.includes('>lizard</a>'));

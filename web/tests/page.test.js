@@ -279,8 +279,8 @@ testPage('weak springs shorten the walk as the contact model predicts', openStan
   const rigidMm = (await runGait(page, 'walk')).measured.forward;
   assert.equal(await page.locator('.sprung').first().isVisible(), false, 'rigid legs do not lag');
   // The table of docs/twin.md: mm per cycle of the paper's robot, and the lag in deg.
-  const twin = await readFile(new URL('../../docs/twin.md', import.meta.url), 'utf8');
-  const readRow = (name) => twin.split('\n').find((line) => line.startsWith(`| ${name}`)).split('|').slice(2).map(Number);
+  const twinMarkdown = await readFile(new URL('../../docs/twin.md', import.meta.url), 'utf8');
+  const readRow = (name) => twinMarkdown.split('\n').find((line) => line.startsWith(`| ${name}`)).split('|').slice(2).map(Number);
   const [pulls, walkedMm, lagsDeg] = ['pull in a slotted strut', '`walk`', 'lag in `walk`'].map(readRow);
   await page.getByLabel('Driven by').selectOption('strut');
   for (const pull of [0.5, 1]) {

@@ -10,9 +10,9 @@ const { Protocol } = await importSource('measure/protocol.ts');
 const STEPS_PER_SECOND = 20;
 /** Distance of the sheet's tags from the middle of the sheet, mm. */
 const TAG_DISTANCE_MM = 210;
-/** Distance from the tags at which a robot is near the end of the sheet, mm. */
+/** Distance beyond the tags from which on a robot is near the edge of the sheet, mm. */
 const NEAR_MARGIN_MM = 50;
-/** Distance from the tags up to which a video is measured, mm. */
+/** Distance beyond the tags up to which a video is measured, mm. */
 const END_MARGIN_MM = 200;
 /** Time after which a robot that receives nothing stops. */
 const DEADMAN_SECONDS = 0.9;
@@ -34,6 +34,7 @@ function makeGenerator(seed) {
   return { random, between: (low, high) => low + (high - low) * random(), pick: (list) => list[Math.floor(random() * list.length)] };
 }
 
+/** A simulated robot on the sheet, with its link and its camera, and the protocol that drives it. */
 class World {
   seconds = 0;
   place = { x: 0, y: 0, heading: 0 };
@@ -154,9 +155,9 @@ class World {
   }
 }
 
-/** Gaits with cycles of a second. */
-const gaits = (...commands) => commands.map((command) => ({ command, period: 1 }));
-const PLAN = { gaits: gaits('walk', 'left', 'arc left', 'back', 'walk'), cycles: 8, speed: 100, pause: 1 };
+/** Makes the gaits of a plan, with cycles of a second. */
+const makeGaits = (...commands) => commands.map((command) => ({ command, period: 1 }));
+const PLAN = { gaits: makeGaits('walk', 'left', 'arc left', 'back', 'walk'), cycles: 8, speed: 100, pause: 1 };
 /**
  * Runs `act` in worlds with a random place of the robot and a random delay of its answers. Checks that the robot stays
  * on the sheet and does not walk at the end.
@@ -198,7 +199,7 @@ test('a robot that walks as predicted walks every gait, most of them with all cy
 
 test('a walk of many cycles is interrupted at the end of the sheet, and the robot returns by itself and walks the rest', async () => {
   const world = new World();
-  assert.equal(await world.run({ ...PLAN, gaits: gaits('walk'), cycles: 30 }), null);
+  assert.equal(await world.run({ ...PLAN, gaits: makeGaits('walk'), cycles: 30 }), null);
   const walkSeconds = world.protocol.walks.map(({ during: [begin, end] }) => end - begin);
   for (const seconds of walkSeconds) assert.ok(seconds > 3.9 && seconds < 17, `${seconds} s`);
   const totalSeconds = walkSeconds.reduce((a, b) => a + b);
@@ -221,20 +222,20 @@ test('a robot that walks too far, too little or backward, and is sometimes hidde
 
 test('after a cut, a silence or a line of the user the robot is not driven, and its walks are kept', () =>
   runWorlds(150, async (world, { pick, between }, seed) => {
-    const [event, eventSeconds] = [pick(['', 'silent', 'stop', 'left']), between(0.5, 60)];
+    const [event, eventSeconds] = [pick(['cut', 'silent', 'stop', 'left']), between(0.5, 60)];
     let lineCount = null;
     let knownWalks = [];
     const onStep = () => {
       if (lineCount !== null || world.seconds < eventSeconds) return;
       lineCount = world.lines.length;
       knownWalks = world.protocol.walks.slice();
-      if (event === '' || event === 'silent') world.cut(event);
+      if (event === 'cut' || event === 'silent') world.cut(event);
       else void world.ask(event === 'stop' ? event : 'left 3');
     };
-    const reason = await world.run({ ...PLAN, gaits: gaits('walk', 'back', 'walk', 'back', 'walk', 'back', 'walk') }, onStep);
+    const reason = await world.run({ ...PLAN, gaits: makeGaits('walk', 'back', 'walk', 'back', 'walk', 'back', 'walk') }, onStep);
     const lines = [...world.lines.slice(lineCount), ...world.linesAfterCut].filter((line) => line !== 'stop');
     assert.deepEqual(lines, event === 'left' ? ['left 3'] : [], `world ${seed}, ${event}`);
-    assert.match(reason, { '': /cut/, silent: /silent/, stop: /stopped/, left: /the robot was sent "left 3"/ }[event]);
+    assert.match(reason, { cut: /cut/, silent: /silent/, stop: /stopped/, left: /the robot was sent "left 3"/ }[event]);
     assert.deepEqual(world.protocol.walks.slice(0, knownWalks.length), knownWalks);
     for (const { during: [begin, end] } of world.protocol.walks) assert.ok(begin <= end && end <= eventSeconds + world.answerDelay + 0.1, `world ${seed}: ${begin} to ${end} s`);
   }));

@@ -70,6 +70,7 @@ function prepareRadio() {
   };
 }
 
+/** The page, and an emulated module that a test may take out of range. */
 export class Radio {
   /** Lengths of the packets that the emulation has delivered. */
   packetLengths = [];
@@ -80,8 +81,8 @@ export class Radio {
   }
 
   /**
-   * Opens the page with a module in range. `adapter` is the state of the browser's radio; `isAllowed` is true if the
-   * page may use Bluetooth.
+   * Opens the page with a module in range. `adapter` is the state of the browser's radio; `hasRobot` is true if a robot
+   * is at the module's serial line, and `isAllowed` if the page may use Bluetooth.
    */
   static async open(module, { adapter = 'powered-on', hasRobot = true, isAllowed = true } = {}) {
     const page = isAllowed ? await openPage({}, prepareRadio) : await openForbidden('bluetooth', prepareRadio);
@@ -92,7 +93,7 @@ export class Radio {
     if (adapter !== 'powered-on') return radio;
     const { name, service } = module;
     await browserSession.send('BluetoothEmulation.simulatePreconnectedPeripheral', { address: MODULE_ADDRESS, name, manufacturerData: [], knownServiceUuids: [service] });
-    // A response may fail after the page was closed. After an earlier failure the test times out.
+    // A response may fail after the page was closed. If one fails earlier, the test times out.
     browserSession.on('BluetoothEmulation.gattOperationReceived', (event) => radio.respondToGatt(event).catch(() => {}));
     browserSession.on('BluetoothEmulation.characteristicOperationReceived', (event) => radio.respondToCharacteristic(event).catch(() => {}));
     await radio.pageSession.send('DeviceAccess.enable');

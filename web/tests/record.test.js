@@ -39,7 +39,8 @@ testPage('the table of a run has the pose, the position and the pulses of every 
   assert.ok(rows.length >= 150 && rows.length <= passedFrameCount + 1, `${rows.length} of ${passedFrameCount} frames`);
   rows.forEach((row, n) => assert.equal(Number(row.time_s), Number((n * 0.02).toFixed(2))));
   assert.ok(rows.every(({ doing }) => doing === '"walk"'));
-  // The angles that the pulses command according to robot.toml: 10 us per degree around 1500 us. The servo lags behind its pulses.
+  // The angles that the pulses command according to robot.toml: 10 us per degree around 1500 us. The servo lags behind
+  // its pulses.
   const computePulseAngle = (row) => 138.590378 + (Number(row.pulse_a1_us) - 1500) / 10;
   const deviations = rows.map((row) => Math.abs(computePulseAngle(row) - Number(row.a1_deg)));
   assert.ok(Math.max(...deviations) < 8, `deviation of A1 from the angle of its pulse: ${Math.max(...deviations)} deg`);

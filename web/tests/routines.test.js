@@ -307,7 +307,7 @@ testPage('an invalid or existing name is refused, and the recorded steps stay', 
   assert.equal(await page.locator('#routine').inputValue(), 'two-steps');
 });
 
-test('a routine of a day with a large number of steps does not block the page', async () => {
+test('a routine of 99 steps that lasts longer than a day does not block the page', async () => {
   const page = await openRoutine(['walk 1', ...Array(98).fill('stand 999 s')]);
   await page.getByText('The first 120 s of a round end 3').waitFor();
   await page.locator('#routine-steps li').nth(98).waitFor();

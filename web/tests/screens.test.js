@@ -1,4 +1,5 @@
-// The page on a phone, with a mouse, in forced colours, and in browsers that cannot run it; and its lists, words and scripts.
+// The page on a phone, with a mouse, in forced colours, and in browsers that cannot run it; and its lists, words and
+// scripts.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';

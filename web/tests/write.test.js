@@ -222,7 +222,7 @@ testPage('the page reports an older Nano that is unplugged while its baud rate i
   assert.match(await readText(page, '#where'), /simulated UNO/);
 });
 
-testPage('a write to the simulated UNO ends if another robot replaces this UNO', () => openUnfolded('#flash'), async (page) => {
+testPage('a write to the simulated UNO ends if the robot is changed meanwhile', () => openUnfolded('#flash'), async (page) => {
   const findMessage = (pattern) => page.locator('#flash-message', { hasText: pattern });
   await page.locator('#flash-write').click();
   await findMessage(/^reading/).waitFor();

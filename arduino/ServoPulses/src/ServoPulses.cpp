@@ -12,11 +12,11 @@ namespace {
 
 // Cycles from a compare match until the handler stops waiting; the edge follows after a fixed time. At most 255.
 const uint8_t LEAD_CYCLES = 220;
-const uint16_t SLOT_CYCLES = 40000;
+const uint16_t SLOT_CYCLES = 40000; // 2.5 ms
 const uint16_t MAX_WIDTH_CYCLES = SLOT_CYCLES - 1000;
-const uint16_t NO_PULSE_COUNT = MAX_WIDTH_CYCLES + LEAD_CYCLES;
+const uint16_t NO_PULSE_COUNT = MAX_WIDTH_CYCLES + LEAD_CYCLES; // `fallCount` of a slot without a pulse
 
-// The servos, by slot. A width of 0 results in no pulse.
+// The pins of the servos, and the widths of their pulses in cycles, by slot. A width of 0 results in no pulse.
 volatile uint8_t *volatile ports[MAX_SERVOS];
 volatile uint8_t masks[MAX_SERVOS];
 volatile uint16_t widths[MAX_SERVOS];

@@ -35,7 +35,7 @@ unsafe impl<T: ?Sized + Sync> Sync for Flash<'_, T> {}
 unsafe impl<T: ?Sized + Sync> Send for Flash<'_, T> {}
 
 impl<T: ?Sized> Flash<'_, T> {
-    /// Creates a reference to a constant. It is public only for [`flash!`](crate::flash!).
+    /// Creates a reference to the constant at `address`. Public only for [`flash!`](crate::flash!).
     ///
     /// # Safety
     /// For the whole lifetime, a value of `T` must be at `address` and must not be written. On an AVR `address` must be
@@ -164,7 +164,7 @@ impl<'a, T> Flash<'a, [T]> {
 }
 
 impl<'a> Flash<'a, [u8]> {
-    /// Reinterprets the bytes as values of a [`Pod`] type, without an incomplete value at the end.
+    /// Reinterprets the bytes as values of a [`Pod`] type; leaves out an incomplete value at the end.
     #[inline]
     pub const fn cast<T: Pod>(self) -> Flash<'a, [T]> {
         let values = core::ptr::slice_from_raw_parts(

@@ -10,7 +10,7 @@
 //! compiler on other machines, too.
 
 #![no_std]
-#![allow(unsafe_code)] // Reading flash (flash.rs) and multiplying (multiply.rs) need it.
+#![allow(unsafe_code)] // Reading flash (flash.rs, region.rs) and multiplying (multiply.rs) need it.
 #![cfg_attr(target_arch = "avr", feature(asm_experimental_arch))]
 
 mod flash;

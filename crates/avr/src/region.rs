@@ -27,7 +27,7 @@ pub struct Region<'a> {
 
 #[cfg(not(target_arch = "avr"))]
 impl<'a> Region<'a> {
-    /// The region until a robot is opened: on a host, an empty one.
+    /// The region before a robot is opened: on a host, it is empty.
     pub const DEFAULT: Self = Self { bytes: &[] };
 
     /// Creates a region that consists of these bytes.

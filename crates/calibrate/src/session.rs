@@ -140,8 +140,8 @@ impl<C: Console> Session<C> {
         Ok(pose[servo])
     }
 
-    /// Reverses a servo's sign, and also the trim, so that the neutral pulse width stays the same. Changes nothing
-    /// after a reset, see [`Session::take_reset`].
+    /// Reverses a servo's sign, and also the trim, so that the neutral pulse width stays the same. After a reset,
+    /// changes nothing until [`Session::take_reset`] is called.
     ///
     /// # Errors
     /// Fails if the robot cannot stand.
@@ -184,7 +184,7 @@ impl<C: Console> Session<C> {
     }
 
     /// Makes the robot stand, and sets a servo's scale from a commanded and a measured turn; returns the scale, us per
-    /// degree. Changes nothing after a reset, see [`Session::take_reset`].
+    /// degree. After a reset, changes nothing until [`Session::take_reset`] is called.
     ///
     /// # Errors
     /// Fails if the robot refuses the scale or the converted trim.

@@ -12,7 +12,7 @@ const STATUS_INTERVAL: Duration = Duration::from_millis(50);
 const MAX_STATUS_COUNT: u32 = 100;
 
 /// Waits until the robot stands still or the time limit has passed. Returns its pose, degrees, and true if it was
-/// reset: its frame count is then smaller than before. `frame_count` is the count in the latest status.
+/// reset: its frame count is then smaller than before. Updates `frame_count`, the count in the latest status.
 ///
 /// # Errors
 /// Fails if the robot does not answer, or if its answer cannot be read or has no pose.

@@ -198,7 +198,7 @@ enum Loss {
     Answer,
 }
 
-/// A connection that loses some lines or answers, and records the lines and the robot's saved settings.
+/// A connection that loses some lines or answers, and records the lines.
 struct LossyConsole {
     robot: DirectConsole,
     lines: Vec<String>,
@@ -206,6 +206,7 @@ struct LossyConsole {
     losses: Vec<(usize, Loss)>,
     /// The beginning of the lines that get the answer `ok`, but do not reach the robot.
     ignored_prefix: &'static str,
+    /// The robot's settings at the last `save` that it executed; before the first, those at the start of the session.
     saved: Calibration,
 }
 
@@ -425,7 +426,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn after_any_actions_and_losses_the_robot_has_its_last_saved_settings(
+    fn after_any_actions_and_losses_save_and_restore_make_session_and_robot_agree(
         actions in vec((0..9_usize, 0..4_usize, -5.0..5.0), 1..12),
         losses in vec((1..150_usize, prop_oneof![Just(Loss::Line), Just(Loss::Answer)]), 0..12),
         ends_with_save in any::<bool>(),

@@ -96,7 +96,7 @@ struct CostExpansion {
     gradient: [f64; 3],
     /// Hessian with respect to the twist, with the lags eliminated.
     hessian: [[f64; 3]; 3],
-    /// Derivatives with respect to each leg's lag, which eliminated the lags.
+    /// Derivatives with respect to each leg's lag, by which the lags were eliminated.
     lag_derivatives: [LagDerivatives; 4],
 }
 
@@ -275,8 +275,8 @@ impl Pads {
             let length_derivative = |[a, b]: Point| (wx * a * ux + wy * b * uy) / length;
             let with_slope = |row: Point| (row, length_derivative(row));
             let derivatives = derivatives.map(with_slope);
-            // Derivatives of the pad's friction cost plus its leg's inertia cost. Each argument is the derivative of
-            // the slide with respect to one unknown, with that of the length.
+            // Derivatives of the pad's friction cost plus its leg's inertia cost. Each argument is a pair: the
+            // derivatives of the slide and of `length` with respect to one unknown.
             let first_derivative =
                 |(row, slope): (Point, f64)| load * slope + leg_stiffness * dot(row, slide_change);
             let second_derivative = |(a, a_slope): (Point, f64), (b, b_slope): (Point, f64)| {

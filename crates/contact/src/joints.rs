@@ -15,7 +15,7 @@ pub struct JointFriction {
     pub slider_force: f64,
     /// Vectors from each servo's shaft to the tip of its slider arm at neutral: (forward, left), mm.
     pub slider_arms: [[f64; 2]; 4],
-    /// Vectors from the hind to the front shaft of the left and of the right slider: (forward, left), mm.
+    /// Vectors from the hind to the front servo's shaft, on the left and on the right side: (forward, left), mm.
     pub shaft_spans: [[f64; 2]; 2],
 }
 

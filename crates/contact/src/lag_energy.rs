@@ -114,8 +114,8 @@ impl StrutTriangle {
     /// Extension of the strut (mm) at a lag that lengthens it, with its first and second derivatives with respect to
     /// the lag: the lever arm (mm/rad) and the lever arm's slope.
     ///
-    /// Lags are often as small as a hundred-thousandth of a radian. The difference of two lengths would then consist
-    /// mostly of rounding errors, which would mislead Newton's method.
+    /// The extension at a tiny lag is not computed as the difference of two lengths: the difference would lose most of
+    /// its digits to rounding, which would mislead Newton's method.
     pub fn extension_and_derivatives(&self, lag: f64) -> (f64, f64, f64) {
         let (product, (sin, cos)) = (self.base * self.arm, self.sin_cos);
         let (half_sin, half_cos) = (lag / 2.0).sin_cos();

@@ -1,9 +1,9 @@
 //! A servo's motor: its torque falls as it turns faster, and its rotor takes time to spin up.
 //!
 //! At a constant supply voltage the torque of a DC motor falls linearly with its speed, from the stall torque at
-//! standstill to zero at the no-load speed. Up to this limit a servo applies torque in proportion to its error.
-//! Reflected through a gear ratio of several hundred, the rotor's inertia is far larger than a leg's. Only the rotor
-//! and friction therefore decide how well the servo follows its pulses.
+//! standstill to zero at the no-load speed. Up to this limit a servo applies torque in proportion to its error, the
+//! angle from its shaft to its target. Reflected through a gear ratio of several hundred, the rotor's inertia is far
+//! larger than a leg's. Only the rotor and friction therefore decide how well the servo follows its pulses.
 
 use crate::joints::JointFriction;
 

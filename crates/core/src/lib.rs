@@ -38,7 +38,7 @@
 //! assert_eq!((line_kind, line.text()), (Some(LineKind::Valid), &b"pose 120"[..]));
 //!
 //! // A servo that is at 90 degrees with a pulse of 1500 us and turns 90 degrees either way, at 10 us per degree:
-//! // 57 600 cycles for a turn of 65 536 steps, or 0.879 cycles per step.
+//! // 57 600 cycles for a turn of 65 536 steps, or 0.879 cycles per step. A gain of 1 << 14 is one cycle per step.
 //! let servo = Calibration {
 //!     neutral_width: PulseWidth(1500 * CYCLES_PER_US),
 //!     gain: (57_600 << 14 >> 16) as i16,
@@ -58,10 +58,9 @@
 //! 3. **Plain.** Each concept is a type, each choice is an enum, and each refusal has a message.
 //! 4. **Small.** Flash and RAM have the lowest priority: a type that costs a few bytes is kept while the program fits.
 //!
-//! All arithmetic uses integers and runs unchanged on the microcontroller and on the host, where the tests compare it
-//! with floating point. A robot's numbers come from its section of flash ([`numbers::section`],
-//! [`numbers::robot::Robot`]); the trait [`step::Board`] gives access to the board. This crate accesses neither
-//! registers nor files.
+//! All arithmetic of the firmware uses integers and runs unchanged on the host, where the tests compare it with
+//! floating point. A robot's numbers come from its section of flash ([`numbers::section`], [`numbers::robot::Robot`]);
+//! the trait [`step::Board`] gives access to the board. This crate accesses neither registers nor files.
 //!
 //! Do not use this crate for a robot with other mechanics: head, tail and sides must be five-bars on exactly four
 //! servos. To generate only pulses, use `servo-pulses`; to explore a linkage on a host, use the floating-point crate

@@ -1,9 +1,9 @@
 //! Robots for the tests of this crate, made at run time from floating-point measurements. The tests compare the core's
 //! integer arithmetic with exact results for the same measurements.
 //!
-//! [`Sample::asymmetric`] and the random robots have no symmetry: no two links have the same length, each kind of limit
-//! has another value, and every servo has its own gain, neutral width and travel. Therefore a test fails if the code
-//! confuses the numbers of two parts.
+//! [`Sample::asymmetric`] and the random robots have no symmetry: left links differ from right links, front links from
+//! rear links, and the head from the tail; each kind of limit has a different value, and every servo has its own gain,
+//! neutral width and travel. Therefore a test fails if the code confuses the numbers of two parts.
 
 mod five_bar;
 mod measurements;
@@ -40,14 +40,15 @@ use five_bar::to_steps;
 /// The number of steps of an [`Angle`] in a degree.
 pub const STEPS_PER_DEGREE: f64 = 65536.0 / 360.0;
 
-/// The names of every sample's gaits. The last gait becomes unsafe halfway through its cycle.
+/// The names of the gaits that every sample has. The cycle of the last gait includes unsafe poses.
 pub const GAIT_NAMES: [&str; 6] = ["stand", "sway", "sway left", "swing", "back", "stray"];
 
-/// The lowest and the highest sweep of each servo that the gaits need; see [`make_waves`] and [`add_gaits`].
+/// The lowest and the highest sweep of each servo that all gaits except `stray` need, 1/65536 turn; see [`make_waves`]
+/// and [`add_gaits`].
 const GAIT_TRAVEL: [[i16; 2]; 4] = [[-2000, 2100], [-1100, 1000], [-1500, 1600], [-900, 800]];
 
-/// Returns the thresholds of a supply, mV: below the first gaits slow down, below the second the robot freezes, and
-/// below the third the pulses end.
+/// Returns the thresholds of a supply, mV: below the first, gaits slow down; below the second, the robot freezes; below
+/// the third, the pulses end.
 pub const fn thresholds([slow_mv, stop_mv, rest_mv]: [u16; 3]) -> Thresholds {
     Thresholds {
         slow_mv,
@@ -193,14 +194,14 @@ impl Sample {
         self.with_changes(|content| add_gait(content, name, gait))
     }
 
-    /// Adds a routine that executes `steps` `round_count` times, or endlessly if that is 0. Each step consists of its
-    /// kind, the name of a gait or an input, and a count.
+    /// Adds a routine that executes `steps` for `round_count` rounds, or endlessly if that is 0. Each step consists of
+    /// its kind, the name of a gait or an input, and a count.
     pub fn with_routine(self, name: &str, round_count: u16, steps: &[(u8, &str, u16)]) -> Self {
         let steps: Vec<Step> = steps
             .iter()
-            .map(|(kind, gait, count)| Step {
+            .map(|(kind, gait_or_input, count)| Step {
                 kind: *kind,
-                gait: match *gait {
+                gait: match *gait_or_input {
                     "button" => BUTTON.byte(),
                     "nose" => NOSE.byte(),
                     gait => self.gait_id(gait).index() as u8,
@@ -302,8 +303,8 @@ pub const BUTTON: Input = Input::button(15);
 /// The obstacle switch for which routines wait.
 pub const NOSE: Input = Input::nose(16);
 
-/// Makes three waveforms: a sine, a slow rise with a fast fall, and a hump. Each channel of a gait multiplies its
-/// waveform by a gain.
+/// Makes three waveforms: a sine, a slow rise with a fast fall, and a hump. The value 1 of a formula becomes 1820 steps
+/// of an [`Angle`], or 10 degrees. Each channel of a gait multiplies its waveform by a gain.
 fn make_waves() -> Vec<Wave> {
     let make_wave = |function: fn(f64) -> f64| -> Wave {
         core::array::from_fn(|n| {
@@ -311,13 +312,13 @@ fn make_waves() -> Vec<Wave> {
         })
     };
     std::vec![
-        make_wave(|u| (u * core::f64::consts::TAU).sin()),
-        make_wave(|u| if u < 0.75 {
-            u / 0.75 - 0.5
+        make_wave(|phase| (phase * core::f64::consts::TAU).sin()),
+        make_wave(|phase| if phase < 0.75 {
+            phase / 0.75 - 0.5
         } else {
-            3.5 - 4.0 * u
+            3.5 - 4.0 * phase
         }),
-        make_wave(|u| 4.0 * (1.0 - (u * core::f64::consts::TAU).cos())),
+        make_wave(|phase| 4.0 * (1.0 - (phase * core::f64::consts::TAU).cos())),
     ]
 }
 

@@ -1,9 +1,9 @@
 //! The step that a firmware's main loop repeats.
 //!
-//! A tick of the pulses or a received byte wakes the main loop. Each step does one task, and a tick has priority, so a
-//! frame waits for at most one byte or one line. The loop takes no input while it writes the EEPROM (3.4 ms per byte),
-//! or while a line waits for room in the transmit buffer; but frames and EEPROM writes continue even if nobody reads
-//! the output.
+//! A tick (every 20 ms), a received byte, or a transmit buffer that becomes empty wakes the main loop. Each step does
+//! one task, and a tick has priority, so a frame waits for at most one byte or one line. The loop reads no input while
+//! it writes the EEPROM (3.4 ms per byte), or while a line waits for room in the transmit buffer; but frames and EEPROM
+//! writes continue even if nobody reads the output.
 //!
 //! The loop computes one frame per tick. If several ticks have passed, the loop still computes only one frame: of
 //! several frames only the last would be played, and the servos would jump. While the pulses run, the loop also skips a
@@ -39,7 +39,7 @@ pub trait Board {
     const CYCLES_PER_US: u16;
 
     /// Connects the servos A1 to A4, and the measured rail if any, to the pins with these Arduino numbers; 14 to 19 are
-    /// A0 to A5. Called once, before the first pulses.
+    /// the analogue pins A0 to A5. Called once, before the first pulses.
     fn connect(&mut self, servo_pins: [u8; 4], rail_pin: Option<u8>);
 
     /// The number of ticks since the program's start, modulo 256; the interval is 20 ms.
@@ -109,7 +109,8 @@ pub struct Main {
 pub enum StepResult {
     /// The step did a task; there may be more tasks.
     Worked,
-    /// There is no task until [`Board::ticks`] differs from this number or a byte is received.
+    /// There is no task until [`Board::ticks`] differs from this number, a byte is received, or the writer has room for
+    /// a waiting line.
     Idle(u8),
 }
 

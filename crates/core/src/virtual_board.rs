@@ -53,7 +53,7 @@ pub const WATCHDOG_MS: u16 = 125;
 /// The capacity of the receive buffer, bytes.
 const RECEIVE_CAPACITY: usize = 64;
 
-/// The pulse widths that fit into a slot, 1/16 us; any other width results in no pulse.
+/// The pulse widths that fit into a slot, CPU cycles; any other width results in no pulse.
 const VALID_WIDTHS: core::ops::RangeInclusive<u16> = 1_000..=63_000;
 
 /// A virtual board, with the state of a UNO's registers, memories and pins.
@@ -69,9 +69,11 @@ pub struct VirtualBoard {
     is_frame_pending: bool,
     /// The last frame that was taken over, which repeats until the next frame is taken over.
     played_pulses: Pulses,
-    /// The pulses that have begun since the frame was taken over.
+    /// The pulses of the played frame that have begun since it was taken over or began to repeat.
     started_pulses: Pulses,
+    /// True while the LED is lit.
     is_lit: bool,
+    /// The bytes that the main loop has not read yet.
     received_bytes: VecDeque<u8>,
     /// The number of received bytes that were lost.
     pub lost_bytes: u16,
@@ -174,7 +176,7 @@ impl VirtualBoard {
 
     fn pass_one_ms(&mut self) {
         self.transmitter.pass_time(1);
-        self.memory.pass_time();
+        self.memory.pass_one_ms();
         self.ms_since_tick += 1;
         if self.ms_since_tick == FRAME_MS {
             self.ms_since_tick = 0;
@@ -272,7 +274,7 @@ impl VirtualBoard {
         self.is_frame_pending
     }
 
-    /// The pulses that have begun since a frame was taken over.
+    /// The pulses of the played frame that have begun since it was taken over or began to repeat.
     pub const fn started_pulses(&self) -> Pulses {
         self.started_pulses
     }

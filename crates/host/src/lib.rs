@@ -1,6 +1,6 @@
 //! The program `lizard`. Its modules follow the user's tasks: editing robot.toml (`change`), making parts (`make`),
 //! controlling a board (`drive`), measuring videos (`measure`), reproducing the paper's results (`paper`) and
-//! simulating (`simulate`). `commands` contains the table of commands.
+//! simulating (`simulate`). `commands` contains the table of commands, `shared` the helpers of several commands.
 
 mod change;
 pub mod commands;
@@ -15,7 +15,7 @@ mod shared;
 #[cfg(feature = "simulator")]
 mod simulate;
 
-pub use shared::escape::readable_lines;
+pub use shared::escape::make_readable;
 pub use shared::failure::Failure;
 pub use shared::pose_args::PoseArgs;
 pub use shared::robot_args::RobotArgs;

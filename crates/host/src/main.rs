@@ -1,4 +1,4 @@
-//! `lizard`: the robot's mathematics and its simulation on the command line.
+//! The entry point of the program `lizard`; the library `lizard_host` contains everything else.
 
 use std::process::ExitCode;
 

@@ -1,9 +1,10 @@
 //! The fit of all keys, and the choice of the keys to change.
 //!
 //! First, a fit has all keys free. It provides the reported standard errors, because the file's values enter this fit
-//! only through wide priors. Then keys are held at their file values one at a time, always the key with the smallest
-//! distance in standard errors, until the distance of every free key is at least two. After each key, the free keys are
-//! adjusted. Therefore, if two keys have the same effect, only one of them changes.
+//! only through wide priors. Then keys are held at their file values: first all undetermined keys, then one key at a
+//! time, always the key whose value is nearest to the file's in standard errors, until every free key is at least two
+//! standard errors away. After each key, the free keys are adjusted. Therefore, if two keys have the same effect, only
+//! one of them changes.
 
 use lizard_robot::{CheckedGait, Robot, Travel};
 use nalgebra::DMatrix;
@@ -24,7 +25,7 @@ const MIN_SIGNIFICANT_DISTANCE: f64 = 2.0;
 const MIN_RISE: f64 = 0.25;
 /// Largest standard error of a determined key, as a fraction of the prior standard deviation.
 const MAX_ERROR_FRACTION: f64 = 0.5;
-/// Correlation of errors above which two keys are reported as hard to distinguish.
+/// Absolute correlation of errors above which two keys are reported as hard to distinguish.
 const MIN_CORRELATION: f64 = 0.8;
 
 /// A function that runs a job for each index below a count, sequentially or on all cores, and returns the results in
@@ -157,10 +158,10 @@ pub(crate) fn identify_with_model(
 fn fit_all(problem: &Problem) -> Result<Fit, IdentifyError> {
     let all_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).collect();
     let start = problem.start;
-    let other_starts = NONLINEAR_KEYS.iter().flat_map(|&key| {
+    let other_starts = NONLINEAR_KEYS.iter().flat_map(|&i| {
         [1.0, -1.0].map(|sign| {
             let mut guess = start;
-            guess[key] = (start[key] + sign * problem.prior_errors[key]).max(KEYS[key].min_value);
+            guess[i] = (start[i] + sign * problem.prior_errors[i]).max(KEYS[i].min_value);
             guess
         })
     });
@@ -226,17 +227,17 @@ fn choose_keys(
     let mut guess = full_fit.unknowns;
     let mut covariance = full_fit.covariance.clone();
     let start = &problem.start;
-    for key in 0..KEY_COUNT {
-        if errors[key] > MAX_ERROR_FRACTION * problem.prior_errors[key] {
-            verdicts[key] = Verdict::Undetermined;
-            hold_key(key, start, &mut guess, &mut covariance);
+    for i in 0..KEY_COUNT {
+        if errors[i] > MAX_ERROR_FRACTION * problem.prior_errors[i] {
+            verdicts[i] = Verdict::Undetermined;
+            hold_key(i, start, &mut guess, &mut covariance);
         }
     }
     loop {
         // Keys are first held in the linear model, since this needs no simulations.
-        while let Some((key, verdict)) = find_key_to_hold(&verdicts, &guess, start, errors) {
-            verdicts[key] = verdict;
-            hold_key(key, start, &mut guess, &mut covariance);
+        while let Some((i, verdict)) = find_key_to_hold(&verdicts, &guess, start, errors) {
+            verdicts[i] = verdict;
+            hold_key(i, start, &mut guess, &mut covariance);
         }
         let is_free = |i: &usize| *i >= KEY_COUNT || verdicts[*i] == Verdict::Changed;
         let free_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).filter(is_free).collect();
@@ -249,7 +250,8 @@ fn choose_keys(
     }
 }
 
-/// Finds the next key to hold at its file value, and its verdict; returns `None` if all free keys may change.
+/// Finds the index of the next key to hold at its file value, and its verdict; returns `None` if all free keys may
+/// change.
 fn find_key_to_hold(
     verdicts: &[Verdict; KEY_COUNT],
     unknowns: &Unknowns,
@@ -267,18 +269,19 @@ fn find_key_to_hold(
     Some((infeasible_key, verdict))
 }
 
-/// Holds a key at its file value, and shifts the other unknowns and the covariance according to the correlations.
-fn hold_key(key: usize, start: &Unknowns, unknowns: &mut Unknowns, covariance: &mut DMatrix<f64>) {
-    let variance = covariance[(key, key)];
-    let column: Vec<f64> = covariance.column(key).iter().copied().collect();
-    let shift = (unknowns[key] - start[key]) / variance;
+/// Holds the key with the index `held` at its file value, and shifts the other unknowns and the covariance according to
+/// the correlations.
+fn hold_key(held: usize, start: &Unknowns, unknowns: &mut Unknowns, covariance: &mut DMatrix<f64>) {
+    let variance = covariance[(held, held)];
+    let column: Vec<f64> = covariance.column(held).iter().copied().collect();
+    let shift = (unknowns[held] - start[held]) / variance;
     for i in 0..UNKNOWN_COUNT {
         unknowns[i] -= column[i] * shift;
         for j in 0..UNKNOWN_COUNT {
             covariance[(i, j)] -= column[i] * column[j] / variance;
         }
     }
-    unknowns[key] = start[key];
+    unknowns[held] = start[held];
 }
 
 /// Finds the pairs of keys with strongly correlated errors; returns the keys and their correlation.

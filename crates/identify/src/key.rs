@@ -13,12 +13,13 @@ pub struct Key {
     pub unit: &'static str,
     /// Instruction for measuring the number in another way.
     pub other_method: &'static str,
-    /// Name of the assumption in `lizard_robot` that has the key's plausible range.
+    /// Name of the assumption in `lizard_robot` that has the key's plausible range. Both coordinates of the centre of
+    /// mass use the range of the forward coordinate.
     assumption_name: &'static str,
-    /// Step of the numerical derivative: large compared with the roughness of the model, and small compared with its
-    /// curvature.
+    /// Step of the numerical derivative, in the key's unit: large enough to average over the roughness of the model,
+    /// and small enough that its curvature does not matter.
     pub(crate) derivative_step: f64,
-    /// Smallest possible value.
+    /// Smallest possible value, in the key's unit.
     pub(crate) min_value: f64,
     /// Returns the number's field in a robot's ground.
     field: fn(&mut GroundContact) -> &mut f64,
@@ -123,6 +124,7 @@ impl Key {
         *(self.field)(&mut { *ground })
     }
 
+    /// Writes the key's value into a robot's ground.
     pub(crate) fn write_value(&self, ground: &mut GroundContact, value: f64) {
         *(self.field)(ground) = value;
     }

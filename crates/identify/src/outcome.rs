@@ -13,7 +13,7 @@ pub struct Identification {
     pub card: CardPose,
     /// Standard errors of the card's parameters.
     pub card_error: CardPose,
-    /// Pairs of keys whose errors are correlated by more than 0.8, with the correlation.
+    /// Pairs of keys whose errors have a correlation above 0.8 or below -0.8, with the correlation.
     pub correlated_pairs: Vec<(&'static Key, &'static Key, f64)>,
     /// Agreement of the model with the measured movements.
     pub goodness: GoodnessOfFit,
@@ -55,7 +55,7 @@ pub struct GoodnessOfFit {
     /// Number of measured values.
     pub value_count: usize,
     /// Sums of the squared residuals, each residual in units of its standard error: with the file's values, with the
-    /// new values, and with all keys free.
+    /// new values, and with all keys free. The card's pose is free in all three.
     pub chi_squares: [f64; 3],
     /// Number of measured values minus the effective number of parameters in the fit of all keys.
     pub degrees_of_freedom: f64,
@@ -76,9 +76,9 @@ pub struct MovementResult {
     /// The measured movement. A component that the model cannot predict has an infinite error and no weight; two feet
     /// then pull against the other two.
     pub measured: MeasuredMovement,
-    /// The model's movement with the file's values.
+    /// The card's movement in the model with the file's values: forward and left in mm, turn in deg.
     pub predicted_before: [f64; 3],
-    /// The model's movement with the new values.
+    /// The card's movement in the model with the new values, in the same units.
     pub predicted_after: [f64; 3],
 }
 

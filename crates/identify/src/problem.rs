@@ -1,9 +1,10 @@
 //! The least-squares problem: residuals of the measured movements against the model, in units of their standard errors.
 //!
-//! The model takes tens of milliseconds for one movement. Therefore each result is cached, and derivatives with respect
-//! to the keys are reused for nearby values. Prior knowledge counts as a measurement: each key has the file's value,
-//! with the prior standard deviation as its error, and the tag card is near its nominal place on the deck. A key that
-//! the movements do not determine keeps the file's value, and its uncertainty enlarges the errors of the other keys.
+//! For each set of values, the model simulates every gait again. Therefore each result is cached, and derivatives with
+//! respect to the keys are reused for nearby values. Prior knowledge counts as a measurement: each key has the file's
+//! value, with the prior standard deviation as its error, and the tag card is near its nominal place on the deck. A key
+//! that the movements do not determine keeps the file's value, and its uncertainty enlarges the errors of the other
+//! keys.
 
 use std::cell::RefCell;
 
@@ -72,8 +73,8 @@ impl<'a> Problem<'a> {
         file_values: Values,
         predict: &'a dyn Fn(&Values) -> Vec<Travel>,
     ) -> Self {
-        let keys = KEYS.iter().map(|key| key.prior_error());
-        let mut prior_errors = keys.chain(CardPose::PRIOR_ERRORS);
+        let key_errors = KEYS.iter().map(|key| key.prior_error());
+        let mut prior_errors = key_errors.chain(CardPose::PRIOR_ERRORS);
         Self {
             movements,
             start: std::array::from_fn(|i| file_values.get(i).copied().unwrap_or_default()),

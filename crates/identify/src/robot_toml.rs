@@ -9,7 +9,7 @@ impl Identification {
     /// Writes the changed keys, each with a comment, into the text of robot.toml. All other bytes stay unchanged.
     ///
     /// # Errors
-    /// Fails if the text does not contain a key, or if the new values make robot.toml invalid.
+    /// Fails if a key cannot be written into the text, or if the new values make robot.toml invalid.
     pub fn updated_robot_toml(&self, text: &str) -> Result<String, IdentifyError> {
         let mut new_text = text.to_owned();
         let mut names: Vec<&str> = self.changed_keys().map(|result| result.key.name).collect();

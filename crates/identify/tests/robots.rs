@@ -95,7 +95,6 @@ impl Trial {
     }
 }
 
-/// Run by `make measure-test`.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
 fn nine_of_ten_altered_keys_are_found_within_two_standard_errors_and_nine_of_ten_unaltered_keys_stay()

@@ -211,16 +211,16 @@ mod tests {
 
         #[test]
         fn quarter_turns_only_swap_sine_and_cosine_and_change_their_signs(
-            degrees in -44.99..44.99f64, turns in -1_000_000..1_000_000i32,
+            degrees in -44.99..44.99f64, quarter_turns in -1_000_000..1_000_000i32,
         ) {
             // Adding quarter turns to a multiple of 1/4096 degree is exact.
             let rounded = (degrees * 4096.0).round() / 4096.0;
             // At 45 degrees, either of the two neighbouring quadrants may be used.
             prop_assume!(rounded.abs() < 45.0);
             let (sin, cos) = sin_cos(rounded);
-            let quarters = [(sin, cos), (cos, -sin), (-sin, -cos), (-cos, sin)];
-            let expected = quarters[turns.rem_euclid(4) as usize];
-            let computed = sin_cos(rounded + 90.0 * f64::from(turns));
+            let expected_pairs = [(sin, cos), (cos, -sin), (-sin, -cos), (-cos, sin)];
+            let expected = expected_pairs[quarter_turns.rem_euclid(4) as usize];
+            let computed = sin_cos(rounded + 90.0 * f64::from(quarter_turns));
             prop_assert_eq!(computed, expected);
         }
 

@@ -1,4 +1,5 @@
-//! The values of a safe pose's conditions, which [`crate::Limits`] compares with the robot's limits.
+//! The values of a pose (margins, slider travels, distances of crank tips) that [`crate::Limits`] compares with the
+//! robot's limits.
 
 use core::iter::zip;
 
@@ -10,7 +11,7 @@ use crate::margins::Check;
 use crate::real::Real;
 
 impl Solution {
-    /// The values of all conditions for a safe pose: margins, slider travels, and the distances of
+    /// The values for all conditions of a safe pose: margins, slider travels, and the distances of
     /// the crank tips from crossing.
     pub fn conditions(&self) -> impl Iterator<Item = (Check, f64)> + use<> {
         let travels = zip(Check::STROKE, [self.left.s, self.right.s]);
@@ -20,7 +21,7 @@ impl Solution {
 }
 
 impl<T: Real> FiveBarPose<T> {
-    /// The values of the conditions that depend only on this end: the type-2 margin, the type-1 margins, the leg
+    /// The values for the conditions that depend only on this end: the type-2 margin, the type-1 margins, the leg
     /// margins, and the distance of the crank tips from crossing. In each pair the left crank's margin comes first.
     pub fn conditions(&self, end: End) -> [(Check, T); 6] {
         let pick_check = |[head, tail]: [Check; 2]| match end {

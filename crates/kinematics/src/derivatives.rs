@@ -2,8 +2,8 @@
 //!
 //! The paper announces an acceleration analysis but does not contain one. The differentiated loop
 //! equations are linear in the unknown rates and in the unknown accelerations, both with the matrix
-//! K*. Projecting the equation of a five-bar onto one coupler eliminates the other coupler's unknown,
-//! so the 2x2 system needs only two divisions by sin(theta3 - theta2).
+//! K* (see `constraints.rs`). Projecting the equation of a five-bar onto a coupler eliminates this
+//! coupler's own unknown, so the 2x2 system needs only two divisions by sin(theta3 - theta2).
 
 use crate::end::End;
 use crate::five_bar::FiveBarPose;
@@ -133,7 +133,8 @@ fn solve_loop_derivatives(
     let r4 = pose.right_crank * pose.five_bar.right_crank_length;
     let (u2, u3) = (pose.left_coupler, pose.right_coupler);
     // The unknown rates x of theta2 and y of theta3 obey x rot(r2) - y rot(r3) = c, where rot turns a vector by +90
-    // degrees. The dot product with u3 isolates x, that with u2 isolates y.
+    // degrees. The dot product with u3 isolates x, that with u2 isolates y. The same holds for the accelerations.
+    // Below, w is a rate (rad/s) and e an acceleration (rad/s^2), numbered like their links.
     let solve_couplers = |c: Vector| {
         (
             c.dot(u3) / (pose.five_bar.left_coupler_length * pose.type2),
@@ -277,16 +278,16 @@ mod tests {
             // The errors of the five-point formulas are of fourth order in the step.
             let values_at = |steps: f64| solve_after(&robot, pose, &motion, steps * step).map(|s| passive_values(&s));
             let start_values = passive_values(&solution);
-            let [Some(a), Some(b), Some(d), Some(e)] = [-2.0, -1.0, 1.0, 2.0].map(values_at) else {
+            let [Some(first), Some(before), Some(after), Some(last)] = [-2.0, -1.0, 1.0, 2.0].map(values_at) else {
                 return Err(TestCaseError::fail("a loop does not close in a neighbouring pose"));
             };
             for i in 0..12 {
                 let difference_from_start = |value: f64| {
                     if i < 6 { wrap(value - start_values[i]) } else { value - start_values[i] }
                 };
-                let [a, b, d, e] = [a[i], b[i], d[i], e[i]].map(difference_from_start);
-                let rate = (a - 8.0 * b + 8.0 * d - e) / (12.0 * step);
-                let acceleration = (16.0 * (b + d) - a - e) / (12.0 * step * step);
+                let [a, b, c, d] = [first[i], before[i], after[i], last[i]].map(difference_from_start);
+                let rate = (a - 8.0 * b + 8.0 * c - d) / (12.0 * step);
+                let acceleration = (16.0 * (b + c) - a - d) / (12.0 * step * step);
                 prop_assert!((rate - rates[i]).abs() < 1e-6 * max_rate, "quantity {i}: rate {rate}, expected {}", rates[i]);
                 prop_assert!(
                     (acceleration - accelerations[i]).abs() < 1e-6 * max_acceleration.max(100.0),

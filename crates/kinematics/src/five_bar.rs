@@ -40,8 +40,8 @@ pub struct FiveBar {
 /// change its assembly mode without passing through a type-2 singularity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AssemblyMode {
-    /// End point to the left of the line from the left crank tip to the right one, which is ahead as long as the cranks
-    /// are not crossed. The robot is built in this mode; in the paper's theta3 it is the root with -sqrt.
+    /// End point to the left of the line from the left crank tip to the right one; this side is ahead as long as the
+    /// cranks are not crossed. The robot is built in this mode. In the paper's theta3, the root with -sqrt gives it.
     Ahead,
     /// End point to the right of the line from the left crank tip to the right one.
     Behind,
@@ -182,13 +182,13 @@ impl FiveBar {
         right: Vector,
     ) -> Result<FiveBarPose, Fault> {
         let pose = self.pose_unchecked(mode, left, right);
-        self.check(&pose)?;
+        self.check_pose(&pose)?;
         Ok(pose)
     }
 
     /// Checks that the loop of a pose closes.
     #[inline]
-    pub(crate) fn check(&self, pose: &FiveBarPose) -> Result<(), Fault> {
+    pub(crate) fn check_pose(&self, pose: &FiveBarPose) -> Result<(), Fault> {
         self.check_closure(pose.gap.length(), pose.finiteness_probe())
     }
 

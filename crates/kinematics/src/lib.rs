@@ -9,7 +9,7 @@
 //! # When not to use it
 //! - For mechanisms with other loops: it solves only five-bars, sliders between two arms, and
 //!   parallelograms.
-//! - For forces, masses or contact with the floor: it computes geometry and rates only.
+//! - For forces, masses or contact with the floor: it computes geometry, rates and accelerations only.
 //! - On a microcontroller: it computes in f64. The firmware of this robot has its own integer
 //!   arithmetic.
 //! - To plan a path or to choose a working mode: it solves one pose at a time, and returns all
@@ -67,9 +67,9 @@
 //!
 //! # Determinism
 //! The crate uses only basic IEEE operations, including the square root, and `libm`. The results are therefore
-//! bit-identical on every host, and programs, tests and the web page agree. The square root comes from the
-//! standard library. `libm` would use an SSE instruction in inline assembly, which the compiler cannot vectorise and
-//! which is a hundred times slower among AVX instructions.
+//! bit-identical on every host, and programs, tests and the web page agree. To solve poses, the crate uses the square
+//! root of the standard library. That of `libm` is an SSE instruction in inline assembly, which the compiler cannot
+//! vectorise and which is a hundred times slower among AVX instructions.
 
 #[cfg(test)]
 extern crate self as lizard_kinematics;

@@ -12,10 +12,11 @@ use crate::side::Side;
 use crate::slider::{Slider, SliderPose};
 use crate::vector::Vector;
 
-/// A pose of the robot: four servo angles in degrees, chassis frame, declared in servo order.
+/// A pose of the robot: four servo angles in degrees, chassis frame, declared in servo order. Each may be any finite
+/// angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Angle of A1, left front. All four may be any finite angle.
+    /// Angle of A1, left front.
     pub theta1: f64,
     /// Angle of A2, right front.
     pub theta4: f64,
@@ -211,21 +212,21 @@ impl Lizard {
     #[inline]
     pub fn solve(&self, pose: &Pose) -> Result<Solution, InfeasiblePose> {
         let solution = self.solve_unchecked(pose);
-        self.check(&solution)?;
+        self.check_loops(&solution)?;
         Ok(solution)
     }
 
     /// Checks that every loop of a solution closes.
     #[inline]
-    fn check(&self, solution: &Solution) -> Result<(), InfeasiblePose> {
+    fn check_loops(&self, solution: &Solution) -> Result<(), InfeasiblePose> {
         let infeasible_at =
             |mechanism: Mechanism| move |fault: Fault| InfeasiblePose { mechanism, fault };
         for end in End::ALL {
-            let closure = self.end(end).check(solution.end(end));
+            let closure = self.end(end).check_pose(solution.end(end));
             closure.map_err(infeasible_at(Mechanism::End(end)))?;
         }
         for side in Side::ALL {
-            let closure = self.side(side).check(solution.side(side));
+            let closure = self.side(side).check_pose(solution.side(side));
             closure.map_err(infeasible_at(Mechanism::Side(side)))?;
         }
         Ok(())

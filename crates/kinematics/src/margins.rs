@@ -1,4 +1,4 @@
-//! The names of a safe pose's conditions, and the margins among these conditions.
+//! The conditions of a safe pose, and the ten margins to which most of them apply.
 
 use core::fmt;
 use core::iter::zip;

@@ -205,8 +205,8 @@ mod tests {
         }
         let are_frequent = kind_counts.iter().all(|count| *count > 100);
         assert!(are_frequent, "counts by kind: {kind_counts:?}");
-        let lefts = (0..360).map(f64::from);
-        let mut poses = lefts.flat_map(|left| PAPER_HEAD.find_singular_poses(left));
+        let left_angles = (0..360).map(f64::from);
+        let mut poses = left_angles.flat_map(|left| PAPER_HEAD.find_singular_poses(left));
         assert!(
             poses.all(|pose| pose.kind != Singularity::Couplers),
             "the paper's couplers line up, although the crank tips are at most 80 mm apart, less than 100 mm"
@@ -258,9 +258,9 @@ mod tests {
                     _ => crossed_count += 1,
                 }
                 let back = CELLS_PER_SIDE - 1;
-                for (dl, dr) in [(1, 0), (back, 0), (0, 1), (0, back)] {
-                    let next_cell = (left + dl) % CELLS_PER_SIDE * CELLS_PER_SIDE
-                        + (right + dr) % CELLS_PER_SIDE;
+                for (left_step, right_step) in [(1, 0), (back, 0), (0, 1), (0, back)] {
+                    let next_cell = (left + left_step) % CELLS_PER_SIDE * CELLS_PER_SIDE
+                        + (right + right_step) % CELLS_PER_SIDE;
                     if grid[next_cell].is_some() && !is_visited[next_cell] {
                         is_visited[next_cell] = true;
                         cells_to_visit.push(next_cell);

@@ -11,7 +11,7 @@ use crate::fault::Fault;
 use crate::real::{Lanes, Real};
 use crate::vector::Vector;
 
-/// The loop of one side (front arm, slider, rear arm, chassis): its dimensions, in a frame with its origin on the rear
+/// The dimensions of one side's loop (front arm, slider, rear arm, chassis), in a frame with its origin on the rear
 /// shaft and the axes of the chassis frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slider {
@@ -75,13 +75,13 @@ impl Slider {
     #[inline]
     pub fn close(&self, rear: Vector, front: Vector) -> Result<SliderPose, Fault> {
         let pose = self.pose_unchecked(rear, front);
-        self.check(&pose)?;
+        self.check_pose(&pose)?;
         Ok(pose)
     }
 
     /// Checks that the slider of a pose has a direction.
     #[inline]
-    pub(crate) fn check(&self, pose: &SliderPose) -> Result<(), Fault> {
+    pub(crate) fn check_pose(&self, pose: &SliderPose) -> Result<(), Fault> {
         check_direction(pose.d, pose.s)
     }
 

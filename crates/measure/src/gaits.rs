@@ -237,6 +237,7 @@ impl<'a> Gaits<'a> {
     }
 }
 
+/// Returns the predicted paths of candidates.
 fn predicted_gaits(candidates: &[Candidate]) -> Vec<Gait> {
     let to_gait = |candidate: &Candidate| candidate.predicted_gait.clone();
     candidates.iter().map(to_gait).collect()

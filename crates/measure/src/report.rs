@@ -127,7 +127,7 @@ struct LargestDeviation {
     agrees: bool,
 }
 
-/// The movement in one cycle: mm, mm, deg.
+/// The movement in one cycle: forward and left in mm, turn in deg.
 #[derive(Debug, Serialize)]
 struct CycleMovement {
     forward: f64,
@@ -192,7 +192,7 @@ impl LargestDeviation {
 }
 
 impl<'a> GaitReport<'a> {
-    /// Computes the mean over all walks of a gait.
+    /// Combines all walks of a gait into a report.
     fn compute(
         robot_toml: &str,
         gaits: &Gaits<'a>,
@@ -308,8 +308,8 @@ impl<'a> GaitReport<'a> {
 
 impl<'a> Report<'a> {
     /// Reports the walks in videos, and combines walks of the same gait. The ranges of the predictions take a second
-    /// for each gait. The movements according to MuJoCo are known at full pace for the project's own robots, which
-    /// `robot_toml`, the text of the robot's file, identifies.
+    /// for each gait. `robot_toml` is the text of the robot's file: for the project's own robots at full pace, the
+    /// report also has the movements according to MuJoCo.
     pub fn compute(
         robot_toml: &str,
         setup: Setup,

@@ -103,7 +103,7 @@ fn draw_page(paper_size: PaperSize) -> Content {
     content
 }
 
-/// Draws a strip with its lower left corner at a position.
+/// Draws a strip with its lower left corner at a position, mm.
 fn draw_strip(content: &mut Content, strip: usize, [x, y]: Point) {
     draw_cut_rectangle(content, [x, y], STRIP_SIZE);
     let centre = [x + STRIP_SIZE[0] / 2.0, y + STRIP_SIZE[1] / 2.0];
@@ -130,7 +130,7 @@ fn draw_strip(content: &mut Content, strip: usize, [x, y]: Point) {
     write_text(content, text, [ruler_start, centre[1] - 10.0]);
 }
 
-/// Draws the deck's card with its lower left corner at a position.
+/// Draws the deck's card with its lower left corner at a position, mm.
 fn draw_card(content: &mut Content, [x, y]: Point) {
     draw_cut_rectangle(content, [x, y], CARD_SIZE);
     let centre_x = x + CARD_SIZE[0] / 2.0;
@@ -146,7 +146,7 @@ fn draw_card(content: &mut Content, [x, y]: Point) {
     write_text(content, FORWARD_WORD, [centre_x + 6.0, arrow_base + 2.0]);
 }
 
-/// Draws a tag around its centre: one black square with the white cells on it. If each black cell were drawn
+/// Draws a tag around its centre (mm): one black square with the white cells on it. If each black cell were drawn
 /// separately, printers and viewers might leave a seam between adjacent cells.
 fn draw_tag(content: &mut Content, id: usize, [x, y]: Point) {
     let cell_edge = tag_edge(id) / CELLS_PER_SIDE as f64;

@@ -137,8 +137,8 @@ fn build_body(lizard: &Lizard, solution: &Solution) -> Mechanism {
     }
 }
 
-/// Builds a leg's four-bar in the leg's frame: ground 0, crank 1, coupler 2, follower 3. The spring to the body imposes
-/// no rigid constraint, so the spring is not a link.
+/// Builds a leg's four-bar: ground 0, crank 1, coupler 2, follower 3. The origin is the crank's pivot, the axes are
+/// those of the chassis frame. The spring between leg and body imposes no rigid constraint, so it is not a link.
 fn build_leg(lizard: &Lizard, solution: &Solution, servo: usize) -> Mechanism {
     let crank = solution.legs[servo].direction * lizard.leg.crank;
     let ground_vector = Vector::new(lizard.leg.ground, 0.0);

@@ -62,20 +62,21 @@ pub struct Item {
     #[serde(rename = "what")]
     pub name: String,
     /// Mass of one piece, g.
-    #[serde(serialize_with = "decimals::one::<10, _>")]
+    #[serde(serialize_with = "decimals::rounded::<10, _>")]
     pub grams: f64,
     /// Price class of the row; `None` for printed parts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub price: Option<PriceClass>,
     /// Hours to print one piece; `None` for bought items.
     #[serde(
-        serialize_with = "decimals::optional::<100, _>",
+        serialize_with = "decimals::rounded_option::<100, _>",
         skip_serializing_if = "Option::is_none"
     )]
     pub hours: Option<f64>,
 }
 
 impl Item {
+    /// Creates the row of a printed part.
     fn printed(part: &Part) -> Self {
         let density = match part.is_flexible {
             true => PAD_DENSITY,
@@ -91,6 +92,7 @@ impl Item {
         }
     }
 
+    /// Creates the row of a bought item; `grams` is the mass of one piece.
     fn bought(count: usize, name: String, grams: f64, price: PriceClass) -> Self {
         Self {
             count,
@@ -124,10 +126,10 @@ pub struct Bill {
     /// Sum of the price classes of all items to buy except options: lower and upper bound, euros.
     pub euros: [u32; 2],
     /// Mass of the robot, g.
-    #[serde(serialize_with = "decimals::one::<1, _>")]
+    #[serde(serialize_with = "decimals::rounded::<1, _>")]
     pub grams: f64,
-    /// Centre of mass at the bill's pose: forward, left and up from the plate's middle, mm.
-    #[serde(rename = "centre", serialize_with = "decimals::each::<10, _>")]
+    /// Centre of mass at the pose given to [`Bill::compute`]: forward, left and up from the plate's middle, mm.
+    #[serde(rename = "centre", serialize_with = "decimals::rounded_list::<10, _>")]
     pub centre_of_mass: [f64; 3],
     /// Effect of the springs on the legs; `None` if the struts are rigid.
     #[serde(rename = "hold")]
@@ -137,9 +139,9 @@ pub struct Bill {
     battery_space: [f64; 3],
 }
 
-/// Returns the text of the bill's row for a bought body; empty for a body that is printed or sold as a part of another
+/// Formats the name of the bill's row for a bought body; empty for a body that is printed or sold as a part of another
 /// body.
-fn format_row(body: &Body, parts: &Parts, spring_effect: Option<&SpringEffect>) -> String {
+fn format_item_name(body: &Body, parts: &Parts, spring_effect: Option<&SpringEffect>) -> String {
     let diameter = parts.screw.diameter;
     match body.kind {
         Kind::Servo => "servo SG-90 with its horn and screws".to_owned(),
@@ -149,7 +151,7 @@ fn format_row(body: &Body, parts: &Parts, spring_effect: Option<&SpringEffect>) 
             let size = format!("1.7 to 2 mm thick, exactly {length} mm long");
             format!("self-tapping screw, {size}, for the horns")
         }
-        Kind::Fitting(fitting) => fitting.format_bill_row(),
+        Kind::Fitting(fitting) => fitting.format_item_name(),
         Kind::Nut => format!("lock nut M{diameter} (DIN 985)"),
         Kind::Standoff(length) => {
             format!("standoff M{diameter}, {length} mm, thread in both ends")
@@ -247,7 +249,7 @@ impl Bill {
         let mut items_by_name: BTreeMap<String, Item> = BTreeMap::new();
         let (mut grams, mut moment) = (0.0, [0.0; 3]);
         for body in assembly.bodies() {
-            let name = format_row(body, robot.parts(), spring_effect.as_ref());
+            let name = format_item_name(body, robot.parts(), spring_effect.as_ref());
             let body_mass = body_grams(body, assembly);
             if !name.is_empty() {
                 let price = price_class(body.kind);

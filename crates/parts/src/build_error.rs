@@ -30,7 +30,7 @@ pub enum BuildError {
         second: String,
         /// Overlap of the bodies, mm.
         mm: f64,
-        /// What may keep the bodies apart.
+        /// Change that may keep the bodies apart, as the end of the message.
         advice: &'static str,
     },
     /// A dimension in robot.toml with which the parts cannot be made, as a message.
@@ -55,7 +55,7 @@ pub struct CollidingPair {
     pub first: String,
     /// Name of the other body.
     pub second: String,
-    /// Distance between the bodies, mm; negative if they overlap. If the proof was not completed, its lower bound.
+    /// Distance between the bodies, mm; negative if they overlap. For an unproved pair, the distance's lower bound.
     pub mm: f64,
     /// Servo angles at that distance, deg, servo order; `None` if no pose is known or the bodies overlap at every pose.
     pub pose: Option<[f64; 4]>,
@@ -86,7 +86,7 @@ impl BuildError {
     }
 }
 
-/// Smallest gap between servos and floor, mm.
+/// Smallest allowed gap between servos and floor, mm.
 const MIN_SERVO_FLOOR_GAP: f64 = 8.0;
 /// The shortest sleeve that guides a rod, mm.
 const MIN_SLEEVE_LENGTH: f64 = 25.0;
@@ -218,8 +218,8 @@ impl Assembly {
         Ok(())
     }
 
-    /// The layers of a body that must not overlap others: all its layers, or only the head if it is a self-tapping
-    /// screw.
+    /// The layers of a body that must not overlap others: all its layers, or only the head of a screw that is added
+    /// without a nut, since another body has the thread for it.
     fn layers_without_thread<'a>(&self, body: &'a Body) -> &'a [Prism] {
         let nut_name = body.name.replacen("screw", "nut", 1);
         match (body.kind, &body.prisms[..]) {
@@ -261,8 +261,8 @@ fn compute_min_layer_gap(a: &[Prism], b: &[Prism]) -> f64 {
         depths.fold(gap_beside, f64::max)
     };
     let mut min_gap = f64::INFINITY;
-    let layers = a.iter().flat_map(|p| b.iter().map(move |q| (p, q)));
-    for (p, q) in layers.filter(|(p, q)| p.z[0] <= q.z[1] - 1e-6 && q.z[0] <= p.z[1] - 1e-6) {
+    let pairs = a.iter().flat_map(|p| b.iter().map(move |q| (p, q)));
+    for (p, q) in pairs.filter(|(p, q)| p.z[0] <= q.z[1] - 1e-6 && q.z[0] <= p.z[1] - 1e-6) {
         for first in &p.filled_shapes {
             for second in &q.filled_shapes {
                 let gap = shape_gap(first, &q.cut_shapes, first.distance(second));

@@ -4,7 +4,7 @@ use lizard_robot::Body;
 
 use crate::bill::Bill;
 
-/// Offset in x and in y below which the centre of mass counts as centred, mm.
+/// Offset from the plate's middle, both lengthwise and sideways, below which the centre of mass counts as centred, mm.
 const CENTRED_TOLERANCE: f64 = 1.0;
 /// Largest difference between the masses in robot.toml and in the bill, as a fraction of the bill's mass.
 const MASS_TOLERANCE: f64 = 0.05;

@@ -1,5 +1,5 @@
 //! The effect of the springs in the legs' struts: the torque above which a leg lags behind its servo, and the torque
-//! on the servo when a foot is caught.
+//! on the servo when a foot is caught. A leg that lags moves its screw along the strut's slot, up to the slot's end.
 
 use std::fmt;
 
@@ -12,32 +12,32 @@ use crate::decimals;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SpringEffect {
     /// Length of the mounted spring inside its hooks, mm.
-    #[serde(rename = "installed", serialize_with = "decimals::one::<1000, _>")]
+    #[serde(rename = "installed", serialize_with = "decimals::rounded::<1000, _>")]
     pub installed_length: f64,
     /// Tension of the mounted spring, N.
-    #[serde(rename = "force", serialize_with = "decimals::one::<1000, _>")]
+    #[serde(rename = "force", serialize_with = "decimals::rounded::<1000, _>")]
     pub preload_force: f64,
     /// Rate of the spring, N/mm.
-    #[serde(rename = "rate", serialize_with = "decimals::one::<1000, _>")]
+    #[serde(rename = "rate", serialize_with = "decimals::rounded::<1000, _>")]
     pub spring_rate: f64,
     /// Smallest and largest lever arm of the strut's pull about the leg's pivot, over all legs and gaits, mm. The lever
     /// arm varies because the pull is perpendicular to the anchor's arm at only one pose.
-    #[serde(rename = "lever", serialize_with = "decimals::each::<1000, _>")]
+    #[serde(rename = "lever", serialize_with = "decimals::rounded_list::<1000, _>")]
     pub lever_arm_range: [f64; 2],
     /// Torque up to which the leg follows its servo exactly in all gaits, N mm.
-    #[serde(rename = "preload", serialize_with = "decimals::one::<1000, _>")]
+    #[serde(rename = "preload", serialize_with = "decimals::rounded::<1000, _>")]
     pub preload_torque: f64,
     /// Smallest and largest lag of a leg at the slot's end, over all gaits, deg.
-    #[serde(rename = "way", serialize_with = "decimals::each::<1000, _>")]
+    #[serde(rename = "way", serialize_with = "decimals::rounded_list::<1000, _>")]
     pub lag_range: [f64; 2],
     /// Smallest and largest torque on a leg at the slot's end, over all gaits, N mm.
-    #[serde(rename = "end", serialize_with = "decimals::each::<1000, _>")]
+    #[serde(rename = "end", serialize_with = "decimals::rounded_list::<1000, _>")]
     pub torque_range: [f64; 2],
     /// Torque of a pad's friction on its leg, N mm.
-    #[serde(rename = "friction", serialize_with = "decimals::one::<1000, _>")]
+    #[serde(rename = "friction", serialize_with = "decimals::rounded::<1000, _>")]
     pub friction_torque: f64,
     /// Stall torque of the leg's servo, N mm.
-    #[serde(rename = "stall", serialize_with = "decimals::one::<1000, _>")]
+    #[serde(rename = "stall", serialize_with = "decimals::rounded::<1000, _>")]
     pub stall_torque: f64,
 }
 

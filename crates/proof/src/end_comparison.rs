@@ -68,13 +68,13 @@ impl<'a> EndComparison<'a> {
         let Lanes(type2) = pose.type2;
         let Lanes(type1_left) = pose.type1_left();
         let Lanes(type1_right) = pose.type1_right();
-        let Lanes(gap_across_mm) = pose.gap.x;
+        let Lanes(crank_tip_distance_mm) = pose.gap.x;
         for (lane, column) in columns.into_iter().take(valid_count).enumerate() {
             let float_values = FloatEndValues {
                 is_closed: are_closed[lane],
                 type2: type2[lane],
                 type1: [type1_left[lane], type1_right[lane]],
-                crank_tip_distance_mm: gap_across_mm[lane],
+                crank_tip_distance_mm: crank_tip_distance_mm[lane],
             };
             let cranks = [left.guard_directions[row], right.guard_directions[column]];
             let margins = self.guard_five_bar.margins(&cranks[0], &cranks[1]);
@@ -119,7 +119,7 @@ impl<'a> EndComparison<'a> {
         let is_accepted = self.accepts(margins);
         let type2 = q15_to_sine(margins.type2.0);
         let type1 = [margins.type1_left, margins.type1_right].map(|margin| q15_to_sine(margin.0));
-        // A pose whose couplers nearly fold is rejected, regardless of its other margins.
+        // The guard rejects other poses in any case: the loop does not close, or the type-2 margin is too small.
         if float_values.is_closed && float_values.type2 > self.limits[0] - self.margin_band {
             let type2_error = (type2.abs() - float_values.type2).abs();
             Tally::raise(&mut tally.max_type2_error, type2_error);
@@ -142,7 +142,7 @@ impl<'a> EndComparison<'a> {
             };
             tally.record_difference(kind, distance, band, || {
                 format!(
-                    "{}: {} according to the guard, {} in floating point: margins {:.5} {:.5} {:.5}, exactly {:.5} {:.5} {:.5}, distance across from tip to tip {:+.4} mm",
+                    "{}: {} according to the guard, {} in floating point: margins {:.5} {:.5} {:.5}, in floating point {:.5} {:.5} {:.5}, distance across from tip to tip {:+.4} mm",
                     describe_pair(),
                     if is_accepted { "safe" } else { "unsafe" },
                     if is_safe { "safe" } else { "unsafe" },
@@ -178,8 +178,8 @@ impl FloatEndValues {
         if !self.is_closed {
             return -min_type2;
         }
-        let type1 = self.type1[0].min(self.type1[1]) - min_type1;
-        (self.type2 - min_type2).min(type1)
+        let type1_distance = self.type1[0].min(self.type1[1]) - min_type1;
+        (self.type2 - min_type2).min(type1_distance)
     }
 }
 

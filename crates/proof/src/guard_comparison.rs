@@ -43,7 +43,8 @@ impl<'a> GuardComparison<'a> {
         self.positions[servo].get_or_init(|| Positions::compute(self.core_robot, servo))
     }
 
-    /// Compares the pairs of one piece, whose index is below [`PIECE_COUNT`].
+    /// Compares the pairs of one piece, whose index is below [`PIECE_COUNT`]. Calls `report_progress` with the number
+    /// of rows completed since the last call.
     pub fn compare_piece(&self, index: usize, report_progress: &(dyn Fn(u64) + Sync)) -> Tally {
         let part_index = index / PIECES_PER_PART;
         let piece_in_part = index % PIECES_PER_PART;

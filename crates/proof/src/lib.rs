@@ -1,9 +1,9 @@
 //! The firmware's integer guard compared with floating point at every pair of positions that two servos can take.
 //!
-//! Every condition of a safe pose depends on one servo (a leg), on an end's two servos or on a side's two servos. It is
-//! therefore enough to try every pair of positions of each end and each side, in the firmware's angle steps. This
-//! decides every possible pose: 1.2e18 poses for servos with a travel of half a turn. Only a [`PairSample`] leaves out
-//! pairs.
+//! Every condition of a safe pose depends on one servo (a leg), on the two servos of an end (head or tail) or on the
+//! two servos of a side (left or right slider). It is therefore enough to try every pair of positions of each end and
+//! each side, in the firmware's angle steps. This decides every possible pose: 1.2e18 poses for servos with a travel of
+//! half a turn. Only a [`PairSample`] whose `one_in` is above 1 leaves out pairs.
 //!
 //! [`Proof::compute`] computes the whole proof. The pieces of a [`GuardComparison`] can also be computed on several
 //! machines; [`Proof::from_tallies`] then combines their tallies. The crate reads, stores and prints nothing; a piece

@@ -1,5 +1,5 @@
-//! The pairs of positions of two servos: a row is a position of the first, a column one of the second. Rows are
-//! distributed over all cores, and a row's columns are computed eight at a time.
+//! The pairs of positions of two servos: a row is a position of the first servo, a column a position of the second.
+//! Rows are distributed over all cores, and a row's columns are computed eight at a time.
 
 use std::array::from_fn;
 
@@ -30,12 +30,12 @@ pub struct PairSample {
 /// sample. The others fill the group.
 pub type Group = ([usize; LANE_COUNT], usize);
 
-/// Compares the pairs of a row, given by its index, and a group of columns, and adds them to a tally.
+/// A function that compares the pairs of a row (given by its index) and a group of columns, and adds them to a tally.
 pub type CompareGroup<'a> = dyn Fn([&Positions; 2], &mut Tally, usize, Group) + Sync + 'a;
 
-/// Compares the pairs of a piece that belong to a sample: calls `compare_group` with each row of the piece, on all
-/// cores, and with each group of its columns. Calls `report_progress` with the number of rows completed since the last
-/// call. Returns the sum of the rows' tallies.
+/// Compares the pairs of a piece that belong to a sample: calls `compare_group` for each row of the piece and each
+/// group of the row's columns. Calls `report_progress` with the number of rows completed since the last call. Returns
+/// the sum of the rows' tallies.
 pub fn tally_rows(
     positions: [&Positions; 2],
     sample: PairSample,

@@ -53,7 +53,7 @@ impl<'a> SideComparison<'a> {
         };
         let guard_front_crank = to_side_frame(front.guard_directions[row]);
         let front_arm = Vector::constant(self.side.front_arm(front.float_directions[row]));
-        // Positions are in the frame of their end, arms in the frame of the chassis.
+        // The directions in `Positions` are in the frame of their end, the arms in the frame of the chassis.
         let float_rear_crank = End::Tail.mirror(gather_lanes(&rear.float_directions, columns));
         let rear_arm = self.side.rear_arm(float_rear_crank);
         let pose = self.float_slider.pose_unchecked(rear_arm, front_arm);

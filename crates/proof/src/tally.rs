@@ -11,7 +11,7 @@ pub const MARGIN_BAND: f64 = 0.002;
 /// decisions may differ, in steps of the mechanism's lengths. A step is 1/256 mm for a robot of the paper's size.
 pub const LENGTH_BAND_STEPS: f64 = 4.0;
 
-/// Distance from the limit of a type-2 or type-1 margin within which decisions about an end may differ. It is
+/// Distance (a sine) from the limit of a type-2 or type-1 margin within which decisions about an end may differ. It is
 /// [`MARGIN_BAND`] or, if larger, the angle by which an error of [`LENGTH_BAND_STEPS`] steps of `step_mm` turns the
 /// couplers. The angle is large if the couplers nearly line up: it is inversely proportional to the sine of the angle
 /// between the couplers, which is at least `min_type2`.
@@ -126,7 +126,7 @@ impl Tally {
 /// The result of comparing the guard with floating point at one end, one side or one leg.
 #[derive(Clone, Debug, Serialize)]
 pub struct Finding {
-    /// `head`, `tail`, `left side`, `right side`, or the leg of a servo.
+    /// `head`, `tail`, `left side`, `right side`, or a leg such as `leg LF`.
     pub part: String,
     /// The servos that move the part.
     pub servos: Vec<&'static str>,

@@ -40,8 +40,8 @@ static RECEIVE_RING: [SharedByte; 16] = [const { SharedByte::new(0) }; 16];
 /// many.
 static RECEIVED_COUNT: SharedByte = SharedByte::new(0);
 
-/// Computes the width of a servo's pulse in a frame, cycles: a triangle wave from 1000 to 2000 us. The width of each
-/// servo changes by another number of cycles per frame.
+/// Computes the width of a servo's pulse in a frame, in cycles: a triangle wave from 1000 to 2000 us, which changes by
+/// a different number of cycles per frame for each servo.
 fn width_cycles(servo: u8, frame: u16) -> u16 {
     let cycles_per_frame = 16 * u16::from(servo) + 5;
     let ramp = frame.wrapping_mul(cycles_per_frame) % 32_000;

@@ -1,5 +1,5 @@
-//! The pulse engine: its variables, and the planning of the slots. The functions that its interrupt handlers call
-//! are in `registers`.
+//! The pulse engine: its variables, and the planning of the slots. The functions that access registers are in
+//! `registers`.
 
 use crate::cells::{SharedByte, SharedCounter, SharedWord};
 #[cfg(any(test, target_arch = "avr"))]
@@ -62,9 +62,9 @@ impl<const SERVO_COUNT: usize, const SIZE: usize> Engine<'_, SERVO_COUNT, SIZE> 
     /// Submits the widths of the next frame, in CPU cycles of 62.5 ns and in the order of the pins, as `u16` or as a
     /// type that converts to it.
     ///
-    /// The engine takes over all widths together, before the first slot opens. If another frame is submitted before
-    /// that, it replaces the first, see [`Engine::is_taken`]. If no frame is submitted, the last widths repeat. A
-    /// width of 0, or a width that does not fit into a slot, results in no pulse, see
+    /// The engine takes over all widths together, before the next frame's first slot opens. If another frame is
+    /// submitted before that, it replaces the waiting frame, see [`Engine::is_taken`]. If no frame is submitted, the
+    /// last widths repeat. A width of 0, or a width that does not fit into a slot, results in no pulse, see
     /// [`MIN_WIDTH_CYCLES`](crate::MIN_WIDTH_CYCLES) and [`max_width_cycles`](crate::max_width_cycles).
     #[inline(always)]
     pub fn submit<W: Into<u16>>(&self, widths: [W; SERVO_COUNT]) {

@@ -46,11 +46,11 @@
 //!
 //! The engine occupies Timer1, and its interrupt handlers spend about one per cent of the processor's time waiting. Two
 //! servos on pins 9 and 10 do not require the engine, because the timer's own compare outputs are exact without any
-//! code. The engine does not run on other chips or at other clock rates.
+//! code. The engine is only for the ATmega328P at 16 MHz.
 //!
 //! # Late edges
 //!
-//! A late edge must not cause a wrong angle:
+//! A late edge moves the horn as little as possible:
 //!
 //! - A late rising edge is not made. The servo misses one of its 50 pulses per second, and holds its position.
 //! - A late falling edge is made at once, because it cannot be omitted. The pulse is longer by the delay of the edge:
@@ -124,7 +124,7 @@ macro_rules! engine {
         const SIZE: usize = SERVO_COUNT.next_power_of_two();
 
         // These are separate variables, so that their addresses are part of the instructions. All but constant pins are
-        // zero until `start`, so that they require no initial values in flash.
+        // initially zero, so that they require no initial values in flash.
         static PINS: [[$crate::cells::SharedByte; 2]; SIZE] = $pins;
         static FRAMES: [[$crate::cells::SharedWord; SIZE]; 2] =
             [const { [const { $crate::cells::SharedWord::new(0) }; SIZE] }; 2];

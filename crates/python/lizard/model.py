@@ -216,7 +216,8 @@ class Model:
         """Computes the body's degrees of freedom for servo angles (..., 4), deg; -1 where a loop does not close."""
         active, passive = self.jacobians(angles)
         closes = np.asarray(np.isfinite(passive).all(axis=(-2, -1)))
-        # Scaled to the size of sines, so that a singular pose given to seven digits still counts as singular.
+        # Lengths are divided by 50 mm, about the length of a link, so that the elements are of the size of sines: then
+        # a singular pose given to seven digits still counts as singular.
         scale = np.array([50.0, 50, 50, 50, 50, 1, 50, 1])
         passive = np.where(closes[..., None, None], passive, 0) / scale
         active = np.where(closes[..., None, None], active, 0) / 50

@@ -53,7 +53,7 @@ class GaitVelocity:
 
 
 class Driver:
-    """Drives a robot from velocities, such as those of `cmd_vel`, with the gait and the pace nearest to them."""
+    """Drives a robot at given velocities, such as those of `cmd_vel`, with the gait and the pace nearest to them."""
 
     def __init__(self, robot: Robot, model: Model) -> None:
         """Prepares the model's gaits for a connected robot with the same robot.toml."""

@@ -32,7 +32,7 @@ impl Board {
         core::mem::take(&mut running.board.transmitter.text)
     }
 
-    /// Resets the board like its reset button.
+    /// Resets the board as its reset button does.
     fn reset(&self) {
         let mut running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         running.reset(Cause::External);

@@ -95,8 +95,8 @@ impl Robot {
         })
     }
 
-    /// Computes the left and right servo angles of an end in all four working modes from the end's points (mm, chassis
-    /// frame); NaN where a point is out of reach.
+    /// Computes the left and right servo angles in all four working modes from points (mm, chassis frame) of the head
+    /// if `head`, otherwise of the tail; NaN where a point is out of reach.
     fn solve_inverse<'py>(
         &self,
         py: Python<'py>,
@@ -156,8 +156,9 @@ impl Robot {
         ))
     }
 
-    /// Predicts the movement of one cycle: forward (mm), left (mm) and turn (deg, counter-clockwise). A component is
-    /// NaN if two feet pull against the other two, so that it is undetermined.
+    /// Predicts the movement of one cycle, with the servos in robot.toml if `with_servos`, otherwise with ideal servos:
+    /// forward (mm), left (mm) and turn (deg, counter-clockwise). A component is NaN if two feet pull against the other
+    /// two, so that it is undetermined.
     fn predict(&self, py: Python<'_>, name: &str, with_servos: bool) -> PyResult<[f64; 3]> {
         let gait = self.find_gait(name)?;
         let prediction = py.detach(|| {
@@ -177,13 +178,13 @@ impl Robot {
         PyBytes::new(py, &py.detach(|| self.0.section()))
     }
 
-    /// Builds the image for a board as Intel HEX: the firmware with this robot, or the robot alone.
+    /// Builds the image for a board as Intel HEX: the firmware with this robot, or, if `only_robot`, the robot alone.
     fn image(&self, py: Python<'_>, only_robot: bool) -> PyResult<String> {
         let image = py.detach(|| image_source::build_image(&self.0, only_robot));
         image.map(|image| image.to_hex()).map_err(to_value_error)
     }
 
-    /// Builds the MuJoCo model as MJCF. Without the parts' shapes, it is a fiftieth as long.
+    /// Builds the MuJoCo model as MJCF, with the parts' shapes if `shapes`. Without them, it is a fiftieth as long.
     fn mjcf(&self, py: Python<'_>, shapes: bool) -> PyResult<String> {
         py.detach(|| {
             let assembly = Assembly::new(&self.0);

@@ -1,4 +1,4 @@
-"""Tests of the environment: Gymnasium's check, and movements as with the engine's smallest time step."""
+"""Tests of the environment: Gymnasium's check, and movements as with the time step of `lizard model`."""
 
 import importlib.util
 import warnings
@@ -36,15 +36,15 @@ def test_the_seed_determines_the_rewards():
 
     def drive(seed: int) -> list[float]:
         env.reset(seed=seed)
-        random = np.random.default_rng(0)
-        actions = random.uniform(-1, 1, (30, 4)).astype(np.float32)
+        rng = np.random.default_rng(0)
+        actions = rng.uniform(-1, 1, (30, 4)).astype(np.float32)
         return [float(env.step(action)[1]) for action in actions]
 
     assert drive(1) == drive(1) != drive(2)
 
 
 @pytest.mark.parametrize("name", EXPECTED_MOVEMENTS)
-def test_gaits_move_the_robot_as_far_as_with_the_smallest_time_step(model, name):
+def test_gaits_move_the_robot_as_far_as_with_the_time_step_of_0_2_ms(model, name):
     env = LizardEnv(friction_spread=0)
     gait = model.gait(name)
     sweeps = (gait.angles[:-1] - model.neutral + 180) % 360 - 180
@@ -62,9 +62,9 @@ def test_gaits_move_the_robot_as_far_as_with_the_smallest_time_step(model, name)
 def test_targets_are_safe_and_within_the_speed_limit_of_gaits(model):
     env = LizardEnv()
     env.reset(seed=3)
-    random, held_count, previous = np.random.default_rng(3), 0, np.zeros(4)
+    rng, held_count, previous = np.random.default_rng(3), 0, np.zeros(4)
     for _ in range(200):
-        action = random.choice([-1.0, 1.0], 4).astype(np.float32)
+        action = rng.choice([-1.0, 1.0], 4).astype(np.float32)
         held_count += env.step(action)[4]["held"]
         target = np.degrees(env.data.ctrl)
         assert model.solve(model.neutral + target).safe

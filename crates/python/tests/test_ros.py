@@ -72,8 +72,8 @@ def test_the_chosen_gait_and_pace_are_closest_to_the_velocity(robot, model):
     )
     # In `look`, two feet pull against the other two, so its direction is undetermined.
     assert "look" not in nominal_velocities
-    random = np.random.default_rng(2)
-    for forward, turn in random.uniform(-1, 1, (200, 2)) * (0.06, 0.5):
+    rng = np.random.default_rng(2)
+    for forward, turn in rng.uniform(-1, 1, (200, 2)) * (0.06, 0.5):
         target = (forward, TURN_LEVER_ARM * turn)
         min_distance = min(
             math.dist(target, (pace / 100 * x, pace / 100 * y))

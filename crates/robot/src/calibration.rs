@@ -213,13 +213,13 @@ impl Calibration {
         text
     }
 
-    /// Parses the text of a calibration file; errors name the file as `name`.
+    /// Parses the text of a calibration file; errors name the file as `file_name`.
     ///
     /// # Errors
     /// Returns the first error, with its line and key.
-    pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
+    pub fn parse(text: &str, file_name: &str) -> Result<Self, Error> {
         parse(text, Self::from_document).map_err(|error| Error {
-            file: name.to_owned(),
+            file: file_name.to_owned(),
             ..error
         })
     }
@@ -236,7 +236,7 @@ impl Calibration {
         let root = Table::root(document, &["format", "boot", "deadman", "servo"])?;
         let boot = root.text("boot")?;
         if !is_gait_name(boot) {
-            return Err(root.error("boot", "is not the name of a gait"));
+            return Err(root.error("boot", "must be the name of a gait, or \"rest\""));
         }
         let deadman = root.number("deadman", (0.0, f64::from(MAX_DEADMAN_MS)), "ms")?;
         if deadman.fract() != 0.0 {

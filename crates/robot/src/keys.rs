@@ -1,7 +1,7 @@
-//! The reference for all keys, docs/robot-toml.md, generated from the reader.
+//! Tests that the reference for all keys, docs/robot-toml.md, agrees with the reader, the code that reads robot.toml.
 //!
 //! keys.txt contains the meaning of each key. Each key's range, unit and default are recorded while the reader reads a
-//! robot with every table.
+//! robot with every table. With the environment variable `BLESS_KEYS`, a test writes the page instead of comparing it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -46,7 +46,7 @@ fn robot_text_with_every_table() -> String {
 }
 
 /// Converts a key to its name in keys.txt, in which the names that an author chooses, the four servos, the four legs,
-/// and both ends share one entry each.
+/// both ends, and the harmonics of both coordinates share one entry each.
 fn to_generic_name(key: &str) -> String {
     let names: Vec<&str> = key.split('.').collect();
     let parts = names.iter().enumerate().map(|(index, name)| {
@@ -104,7 +104,7 @@ fn record_keys() -> BTreeMap<String, RecordedCells> {
     }
     let is_table = |key_use: &&(String, KeyUse)| matches!(key_use.1, KeyUse::Table);
     for (table, _) in key_uses.iter().filter(is_table) {
-        // Lists of harmonics are recorded as tables, but are keys, too.
+        // A list of harmonics is recorded as a table, but is also a key of the reference.
         if !table.ends_with(".x") && !table.ends_with(".y") {
             keys.remove(&to_generic_name(table));
         }

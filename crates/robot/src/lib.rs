@@ -6,14 +6,16 @@
 //! robot in the core's integers ([`CoreRobot`]) and the section of flash that carries these to the board
 //! ([`Robot::section`]).
 //!
-//! A file passes through the folders in this order: `file/` parses the text and reports errors in it,
-//! `config/` checks the ranges of dimensions and parameters, `gaits/` computes the gaits in floating point, `tables/`
-//! rounds them to the integers of the chip, `checks/` checks every sample, and `reports/` formats tables for people.
-//! `lizard-contact` computes the movement over the floor; its types are exported here, too.
+//! A file passes through the folders in this order: `file/` parses the text and reports errors in it, `config/` checks
+//! the ranges of dimensions and parameters, `gaits/` computes the gaits in floating point, `tables/` rounds them to the
+//! integers of the chip, `checks/` checks every sample, and `reports/` formats tables for people. `lizard-contact`
+//! computes the movement over the floor; its types are exported here, too. Three modules serve programs that talk to a
+//! board: `banner.rs` and `status.rs` parse its lines, and `calibration.rs` reads and transfers its settings.
 //!
-//! The whole file except its gaits becomes a `RobotConfig`. The `RobotConfig` and the gaits' `Tables` become the
-//! integers, [`lizard_core::numbers::section::Content`]. A [`Robot`] holds all three, and a [`CoreRobot`] is the core's
-//! view of the robot. docs/firmware.md lists the types of other crates that also describe a robot.
+//! The whole file except its name, gaits and routines becomes a `RobotConfig`. The `RobotConfig`, the gaits' `Tables`
+//! and the routines are converted to the integers of a section, [`lizard_core::numbers::section::Content`]. A [`Robot`]
+//! holds all of these, and a [`CoreRobot`] is the core's view of the robot. docs/firmware.md lists the types of other
+//! crates that also describe a robot.
 //!
 //! # When not to use it
 //! For the geometry alone use `lizard-kinematics`, and for feet on a floor `lizard-contact`; neither needs a file. On a
@@ -59,5 +61,5 @@ pub use reports::{
 };
 pub use robot::Robot;
 pub use status::{Status, parse_pose_report};
-pub use tables::{CellMaps, CoreRobot, flash};
+pub use tables::{CellMaps, CoreRobot, keep_section};
 pub use units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE, STILL_FRAMES};

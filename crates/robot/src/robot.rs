@@ -17,7 +17,7 @@ use crate::config::{
 };
 use crate::file::{self, Error, ReadResult, Table};
 use crate::gaits::{Routine, define, routine};
-use crate::tables::{CellMaps, CoreRobot, Tables, flash, numbers};
+use crate::tables::{CellMaps, CoreRobot, Tables, keep_section, numbers};
 
 /// A robot, all of whose values and gaits have been checked.
 #[derive(Debug, Clone)]
@@ -73,16 +73,17 @@ impl Robot {
     /// # Errors
     /// Fails if the table is invalid, if the gait violates a limit, or if the robot's section is too large.
     pub fn with_gait(&self, table: &str) -> Result<Self, Error> {
-        // The table is first parsed alone, because the message of a syntax error may contain a second line number.
+        // The message of a syntax error may contain a second line number, which is not corrected below. The table is
+        // therefore first parsed alone.
         file::parse(table, |_| Ok(()))?;
-        let robot = file::parse(&format!("{STAND}{table}"), |table| {
-            let root = Table::root(table, &["gait"])?;
+        let robot = file::parse(&format!("{STAND}{table}"), |document| {
+            let root = Table::root(document, &["gait"])?;
             Self::with_config(self.name(), self.config.clone(), &root)
         });
         robot.map_err(|mut error| {
-            let added_lines = STAND.lines().count();
-            let line = error.line.filter(|line| *line > added_lines);
-            error.line = line.map(|line| line - added_lines);
+            let added_line_count = STAND.lines().count();
+            let line = error.line.filter(|line| *line > added_line_count);
+            error.line = line.map(|line| line - added_line_count);
             error
         })
     }
@@ -164,7 +165,7 @@ impl Robot {
         self.section_with_maps().is_some()
     }
 
-    /// An upper bound of the CPU cycles in which the console finds the name of the last gait or routine. A test
+    /// An upper bound on the CPU cycles in which the console finds the name of the last gait or routine. A test
     /// compares the bound with the simulated UNO.
     #[must_use]
     pub fn max_search_cycles(&self) -> usize {
@@ -321,7 +322,7 @@ impl Robot {
         self.gaits.iter().find(|gait| gait.name() == name)
     }
 
-    /// Finds the gait whose name a console line contains. A space and a number of cycles may follow the name.
+    /// Finds the gait that a console line names. A space and a number of cycles may follow the name.
     pub fn find_gait_in_line(&self, line: &str) -> Option<&CheckedGait> {
         let name = line.trim_end_matches(|c: char| c.is_ascii_digit());
         let counted_gait = || name.ends_with(' ').then(|| self.gait(name.trim_end()))?;
@@ -338,8 +339,9 @@ impl Robot {
     /// The core's view of this robot for a simulation of the core. Its section stays in memory until the program
     /// ends; the view from [`Robot::core`] borrows the section from this robot instead.
     pub fn firmware(&self) -> &CoreRobot {
-        self.firmware
-            .get_or_init(|| CoreRobot::unchecked(flash(&self.section)).unwrap_or(CoreRobot::NONE))
+        self.firmware.get_or_init(|| {
+            CoreRobot::unchecked(keep_section(&self.section)).unwrap_or(CoreRobot::NONE)
+        })
     }
 
     /// Returns the robot with routines as if no contact ever closed: a wait takes one frame, a gait that only a contact
@@ -363,7 +365,7 @@ impl Robot {
         }
     }
 
-    /// Computes the cells in which the guard accepts every pose, as proven.
+    /// Computes the maps of certified cells, in which the guard provably accepts every pose.
     pub fn cell_maps(&self) -> CellMaps {
         CellMaps::new(self.lizard(), &self.content)
     }
@@ -406,7 +408,7 @@ impl Robot {
     }
 }
 
-/// The first gait of every valid robot.
+/// A table that defines `stand`, the first gait of every valid robot.
 pub(crate) const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
 
 /// The top-level keys of the file: its tables, and `name`.

@@ -1,4 +1,4 @@
-//! Helpers for unit tests, which read the robot files in robots/.
+//! Helpers for unit tests: robots from the files in robots/, and assertions.
 
 use crate::{CheckedGait, Error, Robot};
 

@@ -16,10 +16,10 @@ pub const STILL_FRAMES: u64 = 12;
 /// Processor cycles per microsecond.
 pub(crate) const CYCLES_PER_US: f64 = units::CYCLES_PER_US as f64;
 
-/// The value that represents 1.0 in a sine table.
+/// The value that represents 1.0 in one of the core's sines.
 pub(crate) const ONE_Q15: f64 = units::ONE_Q15 as f64;
 
-/// The value that represents 1.0 in a gain.
+/// The value that represents 1.0 in one of the core's gains.
 pub(crate) const ONE_Q14: f64 = units::ONE_Q14 as f64;
 
 /// Number of phases in one cycle of a gait's table.

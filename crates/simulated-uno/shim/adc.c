@@ -171,7 +171,7 @@ void adc_correct(struct adc *adc, struct interrupts *interrupts, const struct su
 	hook_read_and_write(avr, REG_ADCH, read_result, ignore_write, adc);
 }
 
-void adc_set_pin(struct adc *adc, uint8_t pin, uint16_t mv)
+void adc_set_pin_mv(struct adc *adc, uint8_t pin, uint16_t mv)
 {
 	adc->pin_mv[pin % ADC_PIN_COUNT] = mv;
 	avr_raise_irq(adc->stock->io.irq + ADC_IRQ_ADC0 + pin % ADC_PIN_COUNT, mv);

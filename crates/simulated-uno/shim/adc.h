@@ -35,9 +35,10 @@ struct adc {
 	uint16_t result;                /* contents of the ADC Data Register, right adjusted */
 };
 
-/* Finds simavr's ADC, which adc_set_pin needs. The stock fidelity needs nothing else. */
+/* Finds simavr's ADC, which adc_set_pin_mv needs. The stock fidelity needs nothing else. */
 void adc_attach(struct adc *adc, avr_t *avr);
 /* Replaces simavr's callbacks for the ADC's registers. */
 void adc_correct(struct adc *adc, struct interrupts *interrupts, const struct supply *supply);
-void adc_set_pin(struct adc *adc, uint8_t pin, uint16_t mv);
+/* Sets the voltage at the pin ADC0 + `pin` % 8. */
+void adc_set_pin_mv(struct adc *adc, uint8_t pin, uint16_t mv);
 void adc_reset(struct adc *adc);

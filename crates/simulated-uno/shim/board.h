@@ -29,7 +29,7 @@ struct uno {
 
 	uint64_t now;             /* current cycle; ahead of avr->cycle only while the CPU sleeps */
 	uint64_t sleep_cycles;    /* cycles up to avr->cycle in which the CPU slept */
-	uint64_t watchdog_resets; /* number of resets by the watchdog */
+	uint64_t watchdog_reset_count; /* resets by the watchdog so far */
 	bool is_powered_off;      /* true from a power cut until the power is restored */
 	uint16_t data_end;        /* first SRAM address after the firmware's static data */
 	char error_message[256];  /* the last error that simavr logged; empty if none */

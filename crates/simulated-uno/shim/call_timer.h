@@ -15,7 +15,7 @@ struct call {
 
 struct call_timer {
 	const struct handlers *handlers;
-	bool is_enabled;         /* true: simavr must run one instruction at a time */
+	bool is_enabled;         /* true while calls are timed, one instruction at a time */
 	bool is_in_call;         /* true between the entry and the return of a timed call */
 	uint32_t entry_address;  /* byte address of the function in flash */
 	/* The timed call in progress: */

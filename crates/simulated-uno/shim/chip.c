@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct chip_pin chip_pin(uint8_t number)
+struct chip_pin chip_find_pin(uint8_t number)
 {
 	if (number < 8)
 		return (struct chip_pin){ 'D', number };

@@ -50,7 +50,7 @@ enum {
 struct chip_pin { char port; uint8_t bit; };
 
 /* Returns the pin with this Arduino number. */
-struct chip_pin chip_pin(uint8_t number);
+struct chip_pin chip_find_pin(uint8_t number);
 
 /* Returns simavr's peripheral of this kind, such as "eeprom". Aborts if this libsimavr has none. */
 avr_io_t *chip_find_peripheral(avr_t *avr, const char *kind);

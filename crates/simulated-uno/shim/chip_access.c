@@ -80,7 +80,7 @@ void uno_set_bandgap(struct uno *uno, double mv) { uno->adc.bandgap_mv = mv; }
 
 void uno_set_analog(struct uno *uno, uint8_t channel, uint16_t mv)
 {
-	adc_set_pin(&uno->adc, channel, mv);
+	adc_set_pin_mv(&uno->adc, channel, mv);
 }
 
 void uno_set_contact(struct uno *uno, uint8_t number, bool is_closed)

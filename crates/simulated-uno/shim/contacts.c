@@ -23,7 +23,7 @@ void contacts_attach(struct contacts *contacts, avr_t *avr)
 
 void contacts_set(struct contacts *contacts, uint8_t number, bool is_closed)
 {
-	struct chip_pin pin = chip_pin(number);
+	struct chip_pin pin = chip_find_pin(number);
 	unsigned port = pin.port - 'B';
 	contacts->contact_bits[port] |= 1 << pin.bit;
 	contacts->closed_bits[port] &= ~(1 << pin.bit);

@@ -10,7 +10,7 @@
 struct disturbance {
 	avr_t *avr;
 	const struct handlers *handlers;
-	uint64_t foreign_cycles_left; /* in the foreign interrupt; 0 if none is pending */
+	uint64_t foreign_cycles_left; /* rest of the foreign interrupt; 0 if none is pending */
 	uint64_t stalled_until;       /* the main program executes nothing before this cycle */
 };
 

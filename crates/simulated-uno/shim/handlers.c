@@ -23,7 +23,7 @@ static void account_cycles(struct handlers *handlers, uint64_t cycle)
 static void on_vector(struct avr_irq_t *irq, uint32_t is_running, void *param)
 {
 	struct handlers *handlers = param;
-	uint8_t vector = irq->irq / 256;
+	uint8_t vector = irq->irq / 256; /* simavr numbers the irqs of vector v from 256 v on */
 	account_cycles(handlers, handlers->avr->cycle + (is_running ? 0 : RETI_CYCLES));
 	if (!is_running) {
 		if (handlers->depth)

@@ -1,4 +1,4 @@
-/* A list that grows, and the bytes of a serial line in such a list. A reader may read a list's
+/* A list that grows, and the bytes of a serial line in such a list. A list's owner may read its
  * `items` and `count`, and may empty it by setting `count` to 0.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
@@ -18,12 +18,12 @@ struct list {
 void list_push(struct list *list, const void *item);
 
 /* A byte on the serial line, with the cycle at which it was complete. */
-struct serial_byte { uint64_t cycle; uint8_t byte; };
+struct serial_byte { uint64_t cycle; uint8_t value; };
 
 /* The bytes of one direction of the serial line. */
 struct serial_record {
 	struct list bytes;  /* struct serial_byte */
-	bool has_line_ended; /* set by each line feed; only the reader clears it */
+	bool has_line_ended; /* set by each line feed; only the owner clears it */
 };
 
 void serial_record_init(struct serial_record *record);

@@ -28,7 +28,7 @@ static void on_mark(avr_t *avr, avr_io_addr_t address, uint8_t value, void *para
 
 static avr_irq_t *pin_irq(avr_t *avr, int number)
 {
-	struct chip_pin pin = chip_pin(number);
+	struct chip_pin pin = chip_find_pin(number);
 	return avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(pin.port), pin.bit);
 }
 

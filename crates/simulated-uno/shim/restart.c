@@ -20,7 +20,7 @@ void restart(struct uno *uno, uint8_t causes)
 	if (causes & RESET_POWER_ON)
 		reset_fill_sram(&uno->reset);
 	if (causes & RESET_WATCHDOG)
-		uno->watchdog_resets++;
+		uno->watchdog_reset_count++;
 	/* Must precede avr_reset, in which watchdog_reset reads WDRF. */
 	reset_record(&uno->reset, causes, uno->avr->cycle);
 	avr_reset(uno->avr);

@@ -27,7 +27,7 @@ struct receiver {
 struct sender {
 	avr_t *avr;
 	struct receiver receiver;
-	double cycles_per_bit;
+	double cycles_per_bit;          /* the length of a bit of the next byte */
 	double line_free_at;            /* cycle at which the last stop bit ends */
 	struct list queue;              /* struct line_byte */
 	size_t next_index;              /* index of the first unsent byte in the queue */
@@ -35,7 +35,7 @@ struct sender {
 	size_t flood_position;          /* index of the next byte in `flood` */
 	uint64_t sent_count;            /* number of bytes put on the line so far */
 	struct line_byte current_byte;  /* the byte on the line while `is_busy` */
-	double current_cycles_per_bit;  /* the length of its bits */
+	double current_cycles_per_bit;  /* the length of a bit of `current_byte` */
 	bool is_busy;                   /* a byte is on the line, and the receiver has not read it yet */
 	struct serial_record delivered;  /* bytes that have arrived at the receiver */
 };

@@ -12,7 +12,7 @@
 
 struct stock_uart {
 	avr_uart_t *uart;                       /* simavr's USART0 */
-	const struct instruction *instruction;  /* the current one, for the cycle of a transmitted byte */
+	const struct instruction *instruction;  /* gives the cycle of a transmitted byte */
 	struct serial_record *transmitted;       /* record of the transmitted bytes */
 };
 

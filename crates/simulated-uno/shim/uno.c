@@ -290,11 +290,11 @@ enum stop_reason uno_run(struct uno *uno, uint64_t until, bool stops_at_line)
 			break;
 	}
 	restart_if_requested(uno); /* requested in the last cycle */
-	bool has_line_ended = uno->transmitted.has_line_ended && stops_at_line;
+	bool stopped_at_line = uno->transmitted.has_line_ended && stops_at_line;
 	bool is_alive = avr->state == cpu_Running || avr->state == cpu_Sleeping;
 	/* The CPU sleeps and nothing is due before `until`, so `until` is the current cycle, ahead
 	 * of simavr's. */
-	bool is_simavr_behind = is_alive && !has_line_ended && !uno->is_powered_off &&
+	bool is_simavr_behind = is_alive && !stopped_at_line && !uno->is_powered_off &&
 	                        avr->cycle < until;
 	uno->now = is_simavr_behind ? until : avr->cycle;
 	if (uno->is_powered_off)
@@ -303,7 +303,7 @@ enum stop_reason uno_run(struct uno *uno, uint64_t until, bool stops_at_line)
 		return STOP_HALTED;
 	if (!is_alive)
 		return STOP_CRASHED;
-	return has_line_ended ? STOP_LINE_SENT : STOP_CYCLE_REACHED;
+	return stopped_at_line ? STOP_LINE_SENT : STOP_CYCLE_REACHED;
 }
 
 uint64_t uno_sleep_cycles(const struct uno *uno)
@@ -357,7 +357,7 @@ size_t uno_unsent_count(const struct uno *uno) { return sender_unsent_count(&uno
 uint64_t uno_sent_count(const struct uno *uno) { return uno->sender.sent_count; }
 uint64_t uno_now(const struct uno *uno) { return uno->now; }
 uint32_t uno_pc(const struct uno *uno) { return uno->avr->pc; }
-uint64_t uno_watchdog_resets(const struct uno *uno) { return uno->watchdog_resets; }
+uint64_t uno_watchdog_reset_count(const struct uno *uno) { return uno->watchdog_reset_count; }
 uint64_t uno_overrun_count(const struct uno *uno) { return uno->usart.overrun_count; }
 uint32_t uno_pin_levels(const struct uno *uno) { return uno->recorder.levels; }
 const char *uno_error_message(const struct uno *uno) { return uno->error_message; }

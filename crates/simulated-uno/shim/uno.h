@@ -59,7 +59,7 @@ uint64_t uno_sleep_cycles(const struct uno *uno);
 /* The byte address in flash of the next instruction. */
 uint32_t uno_pc(const struct uno *uno);
 /* The number of resets by the watchdog. */
-uint64_t uno_watchdog_resets(const struct uno *uno);
+uint64_t uno_watchdog_reset_count(const struct uno *uno);
 /* The number of bytes that the chip's USART has lost. */
 uint64_t uno_overrun_count(const struct uno *uno);
 /* The recorded pins that are high, bit n = Arduino pin n. */

@@ -40,7 +40,7 @@ static void update_receive_flags(struct usart *usart)
 	avr_t *avr = usart->interrupts->avr;
 	uint8_t *status = &avr->data[REG_UCSR0A];
 	*status &= ~(RXC | FE | DOR);
-	if (usart->received_count && usart->received[0].has_frame_error)
+	if (usart->received_count && usart->received[0].has_framing_error)
 		*status |= FE;
 	if (usart->has_overrun)
 		*status |= DOR;
@@ -70,11 +70,11 @@ static uint8_t receive_byte(void *param, struct line_byte byte, double sender_cy
 	if (!(avr->data[REG_UCSR0B] & RXEN))
 		return byte.value;
 	double ratio = usart_cycles_per_bit(avr) / sender_cycles_per_bit;
-	bool has_frame_error = byte.is_stop_bit_low || fabs(ratio - 1.0) > BAUD_TOLERANCE;
+	bool has_framing_error = byte.is_stop_bit_low || fabs(ratio - 1.0) > BAUD_TOLERANCE;
 	uint8_t value = usart_sample_byte(byte.value, ratio);
-	usart->received[usart->received_count++] = (struct received_byte){ value, has_frame_error };
+	usart->received[usart->received_count++] = (struct received_byte){ value, has_framing_error };
 	update_receive_flags(usart);
-	return has_frame_error ? 0xff : value;
+	return has_framing_error ? 0xff : value;
 }
 
 static uint8_t read_data(avr_t *avr, avr_io_addr_t addr, void *param)

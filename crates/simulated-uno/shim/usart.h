@@ -18,7 +18,7 @@ struct usart {
 	/* simavr's USART0, for its interrupt vectors and the record of the transmitted bytes. */
 	const struct stock_uart *stock;
 	struct interrupts *interrupts;
-	struct received_byte { uint8_t value; bool has_frame_error; } received[RECEIVE_CAPACITY];
+	struct received_byte { uint8_t value; bool has_framing_error; } received[RECEIVE_CAPACITY];
 	uint8_t received_count;           /* number of bytes in `received` */
 	bool has_overrun;                 /* DOR: a byte was lost after UDR0 was last read */
 	uint8_t sent_byte;                /* byte in the transmit shift register */

@@ -65,7 +65,7 @@ unsafe extern "C" {
     pub fn uno_now(uno: *const RawUno) -> u64;
     pub fn uno_sleep_cycles(uno: *const RawUno) -> u64;
     pub fn uno_pc(uno: *const RawUno) -> u32;
-    pub fn uno_watchdog_resets(uno: *const RawUno) -> u64;
+    pub fn uno_watchdog_reset_count(uno: *const RawUno) -> u64;
     pub fn uno_overrun_count(uno: *const RawUno) -> u64;
     pub fn uno_pin_levels(uno: *const RawUno) -> u32;
     pub fn uno_lowest_stack_address(uno: *const RawUno) -> u16;

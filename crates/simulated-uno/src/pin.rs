@@ -60,8 +60,8 @@ impl std::fmt::Display for Pin {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
 pub struct Edge {
-    /// The last cycle of the instruction that stores to the port register, counted from power-on, for every kind of
-    /// store instruction and both kinds of edges. A cycle takes 62.5 ns.
+    /// The cycle since power-on at which the instruction that stores to the port register ends, whichever instruction
+    /// that is (`sbi`, `out`, `sts`); for an edge caused by a reset, the cycle of the reset. A cycle takes 62.5 ns.
     pub cycle: u64,
     /// The pin that changed.
     pub pin: Pin,

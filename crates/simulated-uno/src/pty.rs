@@ -43,8 +43,8 @@ pub(crate) struct Pty {
     path: PathBuf,
     /// True if a program had the port open at the last check.
     pub(crate) is_open: bool,
-    /// True if a program has closed the port but the port is still open. The system may report a new opening as late as
-    /// at the next check.
+    /// True if a program had closed the port at the last check, but the port was open again: the system may report the
+    /// new opening as late as at the next check.
     may_be_reopened: bool,
 }
 

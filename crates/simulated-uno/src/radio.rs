@@ -81,7 +81,7 @@ impl PacketQueue {
         }
     }
 
-    /// Removes and returns the bytes that have arrived by now.
+    /// Removes and returns the bytes that have arrived by the cycle `now`.
     fn take_arrived(&mut self, now: u64) -> Vec<u8> {
         let mut bytes = Vec::new();
         while let Some((_, packet)) = self.packets.pop_front_if(|(cycle, _)| *cycle <= now) {
@@ -179,8 +179,8 @@ impl Radio {
         sent_bytes.iter().map(read_byte).collect()
     }
 
-    /// Takes the bytes that the module has received from the chip, and returns the bytes that have arrived by now at
-    /// the chip and at the phone.
+    /// Takes the bytes that the module has received from the chip. Returns the bytes that have arrived at the chip by the
+    /// cycle `now`, and those that have arrived at the phone. Must be called every millisecond of the chip's time.
     pub fn pass(&mut self, received: &[u8], now: u64) -> [Vec<u8>; 2] {
         if self.next_link_change.is_some_and(|change| change <= now) {
             return self.toggle_link(now);

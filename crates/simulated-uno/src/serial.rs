@@ -38,7 +38,7 @@ impl Uno {
             return None;
         }
         let bytes = self.take_transmitted();
-        let bytes: Vec<u8> = bytes.iter().map(|byte| byte.byte).collect();
+        let bytes: Vec<u8> = bytes.iter().map(|byte| byte.value).collect();
         let text = String::from_utf8_lossy(&bytes);
         Some(text.trim_end_matches(['\r', '\n']).to_owned())
     }
@@ -115,7 +115,7 @@ impl Uno {
     pub(crate) fn take_bytes_at(&mut self, baud: f64) -> Vec<u8> {
         let chip_baud = self.chip_baud();
         let sent_bytes = self.take_transmitted().into_iter();
-        let read_bytes = sent_bytes.map(|sent| sample_byte(sent.byte, chip_baud, baud));
+        let read_bytes = sent_bytes.map(|sent| sample_byte(sent.value, chip_baud, baud));
         read_bytes.collect()
     }
 

@@ -11,7 +11,7 @@ pub struct SerialByte {
     /// Cycle since power-on.
     pub cycle: u64,
     /// The value of the byte.
-    pub byte: u8,
+    pub value: u8,
 }
 
 /// A store to GPIOR0, with which firmware marks an event at the cost of one cycle.

@@ -25,9 +25,10 @@ pub enum Fidelity {
 /// The state of the simulated chip and its firmware.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum State {
-    /// Running, or asleep with interrupts enabled.
+    /// Running, asleep until an interrupt or a reset, or held in reset by the supply.
     Alive,
-    /// Asleep with interrupts disabled: only a reset ends this.
+    /// Asleep with interrupts disabled, while neither the watchdog nor the supply is about to reset the chip: only
+    /// [`Uno::reset`], [`Uno::power_cycle`] or a sudden drop of the supply below the brown-out level ends this.
     Halted,
     /// Stopped by an invalid instruction or address.
     Crashed {
@@ -151,12 +152,12 @@ impl Uno {
         true
     }
 
-    /// Runs until the cycle `end_cycle` or, if `stop_at_line`, until the firmware has sent a complete line. Returns
+    /// Runs until the cycle `end_cycle` or, if `stops_at_line`, until the firmware has sent a complete line. Returns
     /// true if a line ended the run.
-    pub(crate) fn run_until_cycle_or_line(&mut self, end_cycle: u64, stop_at_line: bool) -> bool {
+    pub(crate) fn run_until_cycle_or_line(&mut self, end_cycle: u64, stops_at_line: bool) -> bool {
         // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim stops at any cycle, and every
         // value that it returns is one of `StopReason`.
-        let stop_reason = unsafe { ffi::uno_run(self.raw, end_cycle, stop_at_line) };
+        let stop_reason = unsafe { ffi::uno_run(self.raw, end_cycle, stops_at_line) };
         match stop_reason {
             // A supply that was too low may have restarted a halted or crashed chip.
             ffi::StopReason::CycleReached | ffi::StopReason::LineSent => self.state = State::Alive,
@@ -239,9 +240,9 @@ impl Uno {
 
     /// The number of resets by the watchdog so far. [`Uno::reset_events`] lists all resets.
     #[must_use]
-    pub fn watchdog_resets(&self) -> u64 {
+    pub fn watchdog_reset_count(&self) -> u64 {
         // SAFETY: `raw` is valid (see `Uno`); the shim reads a number.
-        unsafe { ffi::uno_watchdog_resets(self.raw) }
+        unsafe { ffi::uno_watchdog_reset_count(self.raw) }
     }
 
     /// The largest size of the stack since power-on, bytes. At power-on, SRAM contains noise; a byte that differs from

@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_byte_has_no_stop_bit_if_the_other_sender_starts_during_it() {
+    fn a_byte_lacks_its_stop_bit_if_the_other_sender_starts_during_that_bit() {
         let writes: [(usize, &[u8], u64); 2] = [(0, &[0xff], 0), (1, &[0x0f], BYTE_CYCLES - 138)];
         assert_eq!(receive_all(&writes)[0], None);
     }

@@ -8,7 +8,7 @@ use lizard_time_limit::TIME_LIMIT;
 use simulated_uno::avr_gcc;
 
 /// Program that sends `ready` at its start and answers every line with `got` and the line's first letter.
-const ECHO_PROGRAM: &str = r#"
+const ANSWER_PROGRAM: &str = r#"
     #include <avr/io.h>
     static void put(const char *text) {
         for (; *text; text++) { while (!(UCSR0A & 1 << UDRE0)) {} UDR0 = *text; }
@@ -107,7 +107,7 @@ fn sent_lines_and_answers_are_printed_with_their_times() {
     for extra_arguments in [&["--stock"][..], &[]] {
         let mut arguments = vec!["--ms", "60", "--say", "40:stop", "--say", "20:walk"];
         arguments.extend(extra_arguments);
-        let output = run_source(ECHO_PROGRAM, &arguments);
+        let output = run_source(ANSWER_PROGRAM, &arguments);
         let output_text = to_text(&output.stdout);
         let lines: Vec<(f64, &str)> = output_text
             .lines()
@@ -154,7 +154,7 @@ fn a_crash_is_reported_and_ends_with_exit_code_1() {
 
 #[test]
 fn control_characters_in_serial_text_are_escaped() {
-    let source = ECHO_PROGRAM.replace("ready\\r\\n", "\\033[2Jblank\\n");
+    let source = ANSWER_PROGRAM.replace("ready\\r\\n", "\\033[2Jblank\\n");
     let output_text = to_text(&run_source(&source, &["--ms", "5"]).stdout);
     assert!(output_text.contains("\\u{1b}[2Jblank"), "{output_text}");
     assert!(!output_text.contains('\u{1b}'), "{output_text}");

@@ -114,7 +114,7 @@ impl GaitPerformance {
 mod tests {
     use super::*;
 
-    fn compare(given_speed: f64, tuned_speed: f64) -> Comparison {
+    fn make_comparison(given_speed: f64, tuned_speed: f64) -> Comparison {
         let [gait, tuned] = [given_speed, tuned_speed].map(|speed| GaitPerformance {
             name: "x".to_owned(),
             period: 1.0,
@@ -137,9 +137,9 @@ mod tests {
 
     #[test]
     fn only_a_gait_with_a_positive_speed_is_a_base_for_a_gain() {
-        assert_eq!(compare(2.0, 5.0).gain(), Some(1.5));
+        assert_eq!(make_comparison(2.0, 5.0).gain(), Some(1.5));
         for given_speed in [0.0, -0.1] {
-            let comparison = compare(given_speed, 5.0);
+            let comparison = make_comparison(given_speed, 5.0);
             assert!(comparison.is_better());
             assert_eq!(comparison.gain(), None);
         }

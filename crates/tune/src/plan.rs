@@ -3,8 +3,8 @@
 //! A straight gait is symmetrical in Hildebrand's sense (*Symmetrical gaits of horses*, Science 150, 1965): the two
 //! legs of a pair make the same movement half a cycle apart, so the body walks straight. The pairs of a straight gait
 //! are the hind legs and the front legs. The pairs of a turn on the spot are diagonally opposite legs, so the body
-//! stays in place. The remaining parameters of a wave gait are the duty factor, the lag of the front foot behind the
-//! hind foot of one side, and an amplitude for each pair of legs.
+//! stays in place. The parameters of a wave gait are the duty factor, the lag of the front foot behind the hind foot of
+//! one side, the amplitude, and its balance between the two pairs of legs.
 
 use lizard_robot::Bars;
 
@@ -94,8 +94,8 @@ fn round_to_decimals(value: f64, decimals: i32) -> f64 {
     (value * scale).round() / scale
 }
 
-/// Returns each leg's rank, 0 to 3, in one of the 24 orders of four legs, which `position`, 0 to 1, selects; in servo
-/// order.
+/// Selects one of the 24 orders in which four legs can swing by `position`, 0 to 1. Returns each leg's rank in it, 0 to
+/// 3, in servo order.
 fn swing_ranks_at(position: f64) -> [usize; 4] {
     let mut remaining_legs = vec![3, 0, 2, 1];
     let mut order_index = ((position * 24.0) as usize).min(23);

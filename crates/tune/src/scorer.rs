@@ -134,19 +134,20 @@ impl Scorer {
         }
     }
 
-    /// Computes the speed of a gait on each random robot, mm/s or deg/s.
+    /// Computes the speed of a gait on each random robot, mm/s or deg/s, if a cycle takes `period` seconds.
     pub fn compute_speeds(&self, gait: &CheckedGait, period: f64) -> Vec<f64> {
         let variations = self.variations.iter();
         let speeds = variations.map(|variation| self.compute_speed(variation, gait, period));
         speeds.collect()
     }
 
-    /// Computes the speed of a gait on the robot without variation, mm/s or deg/s.
+    /// Computes the speed of a gait on the robot without variation, mm/s or deg/s, if a cycle takes `period` seconds.
     pub fn compute_nominal_speed(&self, gait: &CheckedGait, period: f64) -> f64 {
         self.compute_speed(&Variation::nominal(&self.ground), gait, period)
     }
 
-    /// Simulates a cycle frame by frame with servos of [`SERVO_MODEL`], and computes the speed, mm/s or deg/s.
+    /// Simulates a cycle frame by frame with servos of [`SERVO_MODEL`], and computes the speed, mm/s or deg/s, if the
+    /// cycle takes `period` seconds.
     fn compute_speed(&self, variation: &Variation, gait: &CheckedGait, period: f64) -> f64 {
         let movement = variation.simulate_cycle(&self.robot, gait, SERVO_MODEL);
         self.goal.progress(&movement) / period

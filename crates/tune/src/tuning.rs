@@ -49,10 +49,10 @@ pub struct Tuning {
 }
 
 impl Tuning {
-    /// Prepares the search for a faster gait on `ground`. The servo speed is limited to `max_servo_speed` (deg/s), or
-    /// without it to that of the given gait. The tuned gait gets the name `name`, which must be valid in a robot.toml.
-    /// The call takes as long as a few calls of [`Tuning::score`], because it finds the largest amplitude within the
-    /// robot's limits.
+    /// Prepares the search for a faster gait on `ground`. The servo speed is limited to `max_servo_speed` (deg/s) or,
+    /// if that is `None`, to the largest servo speed of the given gait. The tuned gait gets the name `name`, which must
+    /// be valid in a robot.toml. The call takes as long as a few calls of [`Tuning::score`], because it finds the
+    /// largest amplitude within the robot's limits.
     ///
     /// # Errors
     /// Fails if the gait neither walks straight nor turns on the spot, or if the servo speed is out of range.
@@ -143,6 +143,7 @@ impl Tuning {
         Comparison::simulate(&scorer, self.max_servo_speed, &self.gait, tuned_gait)
     }
 
+    /// Builds the gait for parameters of the search; returns `None` if it violates a limit of the robot.
     fn build(&self, kind: GaitKind, parameters: &[f64]) -> Option<BuiltGait> {
         let name = &self.tuned_gait_name;
         let planned_gait = kind.plan_gait(self.goal(), self.max_amplitude, name, parameters);

@@ -38,8 +38,8 @@ impl ServoModel {
         Self::Motors(robot.motors())
     }
 
-    /// Computes the sweep at the end of a frame of a servo without load from the sweep `start` and the pulse's sweep
-    /// `target`, all in deg; `us_per_degree` is the servo's gain.
+    /// Computes the sweep that a servo without load has at the end of a frame, from its sweep `start` at the beginning
+    /// and the sweep `target` of its pulse, all in deg; `us_per_degree` is the servo's gain.
     pub fn compute_end_sweep(&self, start: f64, target: f64, us_per_degree: f64) -> f64 {
         let Self::Unloaded {
             max_rate_deg_per_s,

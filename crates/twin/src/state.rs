@@ -16,7 +16,8 @@ pub struct State {
     pub angles: [f64; 4],
     /// Servo speeds, deg/s, counter-clockwise positive.
     pub rates: [f64; 4],
-    /// Servo errors: pulse angles minus actual angles, deg.
+    /// Servo errors, deg: the angle of the pulse, limited to the servo's travel, minus the actual angle; 0 without a
+    /// pulse.
     pub errors: [f64; 4],
     /// Lag of each leg behind its servo, deg, foot forward positive.
     pub lags: [f64; 4],

@@ -1,4 +1,4 @@
-//! Board chips, identified by their signatures. An image built for one chip type does not run on another.
+//! Board chips, identified by their signatures. An image built for one chip type may not run on another.
 
 use std::fmt;
 

@@ -44,8 +44,8 @@ pub struct ImageTooLong {
 }
 
 impl Target {
-    /// The boot loaders that the board may have, in the order of the attempts.
-    pub fn loaders(self) -> &'static [LoaderKind] {
+    /// The kinds of boot loader that the board may have, in the order of the attempts.
+    pub fn loader_kinds(self) -> &'static [LoaderKind] {
         match self.model {
             Some(Model::Uno) => &[LoaderKind::Optiboot],
             Some(Model::Nano) | None => &[LoaderKind::Optiboot, LoaderKind::AtmegaBoot],
@@ -56,8 +56,8 @@ impl Target {
     ///
     /// # Errors
     /// Fails if the board has too little room, or may have too little room.
-    pub fn check_room(self, image: &Image, loader: LoaderKind) -> Result<(), ImageTooLong> {
-        let is_nano = self.model == Some(Model::Nano) || loader == LoaderKind::AtmegaBoot;
+    pub fn check_room(self, image: &Image, kind: LoaderKind) -> Result<(), ImageTooLong> {
+        let is_nano = self.model == Some(Model::Nano) || kind == LoaderKind::AtmegaBoot;
         let is_model_uncertain = !is_nano && self.model.is_none() && self.may_be_nano;
         let room = if is_nano || is_model_uncertain {
             NANO_BOOT_ADDRESS

@@ -175,7 +175,7 @@ pub async fn upload<B: Board>(
         flash_state: FlashState::Unchanged,
         written_addresses: BTreeSet::new(),
     };
-    let mut kinds = target.loaders().iter().copied().cycle();
+    let mut kinds = target.loader_kinds().iter().copied().cycle();
     let mut kind = kinds.next().unwrap_or_default();
     for attempt in 1.. {
         let error = match upload.run_attempt(kind).await {
@@ -210,7 +210,7 @@ pub async fn identify<B: Board>(loader: &mut Loader<B>) -> Result<LoaderKind, Up
         error,
         flash_state: FlashState::Unchanged,
     };
-    for &kind in Target::default().loaders() {
+    for &kind in Target::default().loader_kinds() {
         match loader.reset_and_sync(kind).await {
             Ok(()) => {
                 let chip = Chip(loader.read_signature().await.map_err(connection_error)?);

@@ -1,5 +1,5 @@
-//! Simulation of a person who drives the robot by radio while other people send lines by cable. The person's phone uses
-//! the session logic of `lizard console`.
+//! Simulation of a person who drives the robot by radio while the scenario sends lines by cable. The person's phone
+//! uses the session logic of `lizard console`.
 
 use std::time::{Duration, Instant};
 

@@ -349,8 +349,8 @@ fn check_stops_are_answered(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks that before each `status`, since the last change, the LED flashes the code of the fault that this `status`
-/// reports. A change is a reported fault, a motion command or a start of the program.
+/// Checks that the LED flashes the code of the fault that a `status` reports, from the last change before this `status`
+/// on. A change is a reported fault, a motion command or a start of the program.
 fn check_led(record: &Record) -> Result<(), String> {
     let led_edges = record.edges.iter().filter(|edge| edge.pin == LED_PIN);
     let led_edges = led_edges.map(|edge| (edge.cycle as Time, edge.is_rising));

@@ -15,7 +15,7 @@ use super::random_commands;
 use super::record::MS;
 use super::step::Step;
 
-/// A pose beyond every servo's travel, which is always refused.
+/// A pose that is always refused, because it is beyond the travel of A1 and A4.
 pub(super) const REFUSED_POSE: &str = "pose 0 0 0 0";
 
 /// A random scenario.

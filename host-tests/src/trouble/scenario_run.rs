@@ -241,7 +241,7 @@ impl ScenarioRun<'_> {
         let bytes = self.uno.take_transmitted();
         self.record.printed_lines.extend(self.reader.read(&bytes));
         if let Some(drive) = &mut self.drive {
-            let bytes: Vec<u8> = bytes.iter().map(|sent| sent.byte).collect();
+            let bytes: Vec<u8> = bytes.iter().map(|sent| sent.value).collect();
             drive.pass_bytes(&bytes, &mut self.uno, &mut self.record);
         }
         let edges = self.uno.take_edges();
@@ -281,7 +281,7 @@ impl ScenarioRun<'_> {
         let mut line_bytes = Vec::new();
         for byte in self.uno.received_by_uno() {
             record.byte_cycles.push(byte.cycle);
-            match byte.byte {
+            match byte.value {
                 b'\r' | b'\n' => {
                     let line = parse_received_line(&line_bytes, byte.cycle, self.robot);
                     record.received_lines.push(line);

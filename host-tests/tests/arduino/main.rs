@@ -18,7 +18,7 @@ const FLOOD: &[u8] = b"The quick brown fox jumps over the lazy dog. ";
 fn load_sketch(name: &str) -> Uno {
     let path = format!("target/arduino/{name}/{name}.ino.elf");
     Uno::load(root().join(path), Fidelity::DataSheet)
-        .unwrap_or_else(|error| panic!("`make arduino-test` builds it: {error}"))
+        .unwrap_or_else(|error| panic!("run `make arduino-test` to build {name}: {error}"))
 }
 
 /// Returns all edges of the servos' pins, each with the number of cycles since the first edge.
@@ -53,7 +53,7 @@ fn compute_jitter(widths: &[u64]) -> u64 {
 fn edges_of_eight_servos_match_the_rust_engine_to_the_cycle() {
     let path = FirmwareBench::elf_path().with_file_name("examples/sweep.elf");
     let mut rust_uno = Uno::load(path, Fidelity::DataSheet)
-        .unwrap_or_else(|error| panic!("`make sweep` builds it: {error}"));
+        .unwrap_or_else(|error| panic!("run `make sweep` to build the example: {error}"));
     let mut cpp_uno = load_sketch("EightServos");
     for uno in [&mut rust_uno, &mut cpp_uno] {
         uno.run_ms(20_000);

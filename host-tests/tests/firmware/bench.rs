@@ -1,4 +1,5 @@
-//! Tests of the bench itself, with a small program that, like the firmware, answers lines and drives four servos.
+//! Tests of the test bench, [`FirmwareBench`], with a small program that, like the firmware, answers lines and drives
+//! four servos.
 
 use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, avr_gcc::compile_c};
 use simulated_uno::{Fidelity, Uno};

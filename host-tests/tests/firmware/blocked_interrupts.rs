@@ -142,7 +142,7 @@ fn interrupts_blocked_for_most_of_a_slot_drop_only_its_pulse() {
                 }
                 assert_eq!(frame.widths, expected, "A{} and {length}", servo + 1);
                 // Each pulse starts exactly at the start of its slot.
-                for (slot, pulse_start) in (0..).zip(frame.starts) {
+                for (slot, pulse_start) in (0..).zip(frame.pulse_starts) {
                     let slot_start = frame.start + slot * SLOT_CYCLES;
                     let is_exact = pulse_start.is_none_or(|start| start == slot_start);
                     assert!(is_exact, "{frame:?}");

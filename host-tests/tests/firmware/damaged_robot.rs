@@ -198,7 +198,7 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
     for pin in (2..=12).chain(14..=19).map(Pin::arduino) {
         assert!(!bench.uno.is_high(pin), "{pin}");
     }
-    assert_eq!(bench.uno.watchdog_resets(), 0);
+    assert_eq!(bench.uno.watchdog_reset_count(), 0);
     assert_eq!(bench.uno.reset_events().len(), 1);
     assert_eq!(bench.uno.eeprom_operations(), []);
     assert!(bench.uno.eeprom().iter().all(|byte| *byte == 0xff));

@@ -119,8 +119,8 @@ fn the_error_for_an_image_that_does_not_fit_names_the_excess_and_the_largest_fun
     let image = FirmwareBench::image();
     let symbol = |name: &str| image.symbol(name).expect("the ELF has the symbol");
     let code_end = symbol("__code_end").address;
-    // The script takes the bounds of the robot's section from two symbols. Moving a symbol makes the code or the robot
-    // too large.
+    // `scripts/size` takes the bounds of the robot's section from two symbols. Moving a symbol makes the code or the
+    // robot too large.
     let check_with_symbol = |symbol: &str, address: u64| {
         let status = Command::new("avr-objcopy")
             .arg(format!("--strip-symbol={symbol}"))

@@ -13,7 +13,7 @@ use crate::{FRAMES_PER_SECOND, Status, frame_angles, run_in_both_simulations};
 
 /// The button's pin in docs/gaits.md.
 const BUTTON_PIN: Pin = Pin::a(1);
-/// The obstacle switch's pin in docs/gaits.md.
+/// The pin of the obstacle switch in docs/gaits.md, where this input is named `nose`.
 const OBSTACLE_PIN: Pin = Pin::a(2);
 
 /// The shortest time for which a contact must be closed to count for certain, ms: three frames.

@@ -78,9 +78,9 @@ fn a_power_cut_at_any_byte_of_a_save_leaves_the_old_or_the_new_settings() {
         let address = usize::from(operation.address);
         assert_eq!(contents[address], operation.old_value);
         // In a torn byte, some bits are 1 that are 0 in the old or in the new value.
-        for stuck_bits in 0..=255u8 {
+        for ones in 0..=255u8 {
             for whole_byte in [operation.old_value, operation.new_value] {
-                let torn_byte = whole_byte | stuck_bits;
+                let torn_byte = whole_byte | ones;
                 let mut contents = contents;
                 contents[address] = torn_byte;
                 let (settings, saved_state) = load_settings(&contents);
@@ -113,7 +113,7 @@ fn a_power_cut_in_any_eeprom_operation_of_a_save_leaves_the_old_or_the_new_setti
     let contents_after = board.bench.uno.eeprom();
     let mut outcome_counts = [0, 0];
     for operation in 0..operation_count {
-        for (cut, stuck_bits) in [
+        for (cut, ones) in [
             (PowerCut::InErase(operation), 0x00),
             (PowerCut::InErase(operation), 0x5a),
             (PowerCut::InWrite(operation), 0x00),
@@ -124,7 +124,7 @@ fn a_power_cut_in_any_eeprom_operation_of_a_save_leaves_the_old_or_the_new_setti
             for line in CHANGES {
                 board.bench.say(line);
             }
-            board.bench.uno.cut_power(cut, stuck_bits);
+            board.bench.uno.cut_power(cut, ones);
             board.bench.send("save");
             board.bench.uno.run_ms(400);
             assert_eq!(*board.bench.uno.state(), simulated_uno::State::Off);
@@ -132,7 +132,7 @@ fn a_power_cut_in_any_eeprom_operation_of_a_save_leaves_the_old_or_the_new_setti
             let calibration = read_calibration(&mut board.bench);
             let is_new = calibration == board.calibrations[1];
             let is_whole = is_new || calibration == board.calibrations[0];
-            assert!(is_whole, "{cut:?} {stuck_bits:02x}: {calibration:?}");
+            assert!(is_whole, "{cut:?} {ones:02x}: {calibration:?}");
             outcome_counts[usize::from(is_new)] += 1;
         }
     }

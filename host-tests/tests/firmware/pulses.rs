@@ -23,7 +23,7 @@ fn assert_on_slot_grid(bench: &FirmwareBench, frames: &[Frame]) {
     for frame in frames {
         // Each servo has a slot of 4 ms, counted from A1's slot.
         let slot_starts = [0, 1, 2, 3].map(|slot| Some(frame.start + slot * SLOT_CYCLES));
-        assert_eq!(frame.starts, slot_starts, "{frame:?}");
+        assert_eq!(frame.pulse_starts, slot_starts, "{frame:?}");
     }
     let edges = servo_edges(bench);
     assert_eq!(edges.len(), 8 * frames.len(), "too many or too few edges");

@@ -23,7 +23,7 @@ pub struct ReferenceRun<'a> {
 }
 
 impl ReferenceRun<'static> {
-    /// Starts the robot's first gait and runs for a second.
+    /// Starts the robot's first gait that moves, and runs for a second.
     pub fn start_walking(fidelity: Fidelity) -> Self {
         Self::start(&first_moving_gait(), fidelity)
     }

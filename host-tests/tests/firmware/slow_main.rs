@@ -12,8 +12,8 @@ use crate::{
 };
 
 /// Upper bound of the cycles that the main loop takes to hand over a computed frame and to set the LED. The test tries
-/// each delay up to this number, with three frames per delay: an odd multiple of the 32 frames between two changes of
-/// the LED, so the LED's state in the second pass is the opposite of its state in the first.
+/// each delay up to this number twice, with three frames per delay. One pass over all delays has 57 * 32 frames, and
+/// the LED changes every 32 frames, so its state in the second pass is the opposite of its state in the first.
 const MAX_HAND_OVER_CYCLES: u64 = 608;
 
 /// Waits until `Controller::compute_frame` has returned the frame whose A1 pulse begins at `rise_cycle`, waits another
@@ -196,13 +196,13 @@ fn pulses_stay_within_the_slew_limit_after_any_stall_in_any_gait() {
             // Spreads the stalls evenly over the frame, because 7 919 is prime.
             let delay_cycles = stall_index as u64 * 7_919 % FRAME_CYCLES;
             bench.uno.run_cycles(FRAME_CYCLES + delay_cycles);
-            let resets_before = bench.uno.watchdog_resets();
+            let resets_before = bench.uno.watchdog_reset_count();
             bench.uno.stall_main(length_ms * CYCLES_PER_MS);
             // Once the watchdog's first stage has ended the pulses, the reset is certain.
             let may_reset = length_ms >= POSSIBLE_RESET_MS;
             let wait_ms = if may_reset { 350 } else { length_ms };
             bench.uno.run_ms(wait_ms + 60);
-            let was_reset = bench.uno.watchdog_resets() > resets_before;
+            let was_reset = bench.uno.watchdog_reset_count() > resets_before;
             assert!(length_ms < CERTAIN_RESET_MS || was_reset, "{length_ms} ms");
             assert!(may_reset || !was_reset, "{length_ms} ms");
             println!("{gait}, stalled for {length_ms} ms");

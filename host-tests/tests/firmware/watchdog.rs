@@ -31,9 +31,9 @@ fn hold_pose() -> (FirmwareBench, [u64; 4]) {
 
 /// Runs until the watchdog resets the chip, ends the stall of the main loop, and returns the cycles that passed.
 pub fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
-    let (start, resets_before) = (bench.uno.cycle(), bench.uno.watchdog_resets());
+    let (start, resets_before) = (bench.uno.cycle(), bench.uno.watchdog_reset_count());
     let limit_cycles = MAX_TIMEOUT_MS * CYCLES_PER_MS;
-    let was_reset = |uno: &Uno| uno.watchdog_resets() > resets_before;
+    let was_reset = |uno: &Uno| uno.watchdog_reset_count() > resets_before;
     let is_in_time = bench.uno.run_until(limit_cycles, 1_000, was_reset);
     assert!(is_in_time, "no reset");
     // The restarted program must not be stalled.
@@ -57,8 +57,8 @@ fn a_main_loop_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
         bench.uno.run_ms(300);
         for (servo, pulses) in recorded_pulses(&bench).iter().enumerate() {
             for pulse in pulses {
-                let name = servo + 1;
-                assert_eq!(pulse.width, widths[servo], "A{name} in round {round}");
+                let number = servo + 1;
+                assert_eq!(pulse.width, widths[servo], "A{number} in round {round}");
             }
             let gaps = pulses.windows(2).map(|pair| pair[1].start - pair[0].start);
             let gap = gaps.max().expect("the servo has pulses");
@@ -74,9 +74,9 @@ fn a_main_loop_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
 
 #[test]
 fn a_hang_during_a_walk_holds_the_last_pose_until_a_command() {
-    for hang_ms in [3, 137, 411, 893] {
+    for walk_ms in [3, 137, 411, 893] {
         let mut bench = boot_to_walk(Fidelity::DataSheet);
-        bench.run_ms(hang_ms);
+        bench.run_ms(walk_ms);
         let widths_before = measure_widths(&mut bench);
         bench.uno.stall_main(2_000 * CYCLES_PER_MS);
         run_until_reset(&mut bench);
@@ -108,7 +108,7 @@ fn assert_reset_in_pose(mut bench: FirmwareBench, widths: [u64; 4], case: &str) 
 }
 
 #[test]
-fn a_stopped_timer_or_disabled_interrupts_are_detected() {
+fn a_stopped_timer_or_disabled_timer_interrupts_are_detected() {
     for (register, value) in [(TCCR1B, 0), (TIMSK1, 0), (TIMSK1, 0x02), (TIMSK1, 0x04)] {
         let (mut bench, widths) = hold_pose();
         // Runs to the tick's slot, in which no pin is high.
@@ -216,10 +216,10 @@ fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
     let (mut bench, widths) = hold_pose();
     // The stalls range from shorter than the watchdog's first stage of 125 ms to longer than both stages.
     for ms in (90..300).step_by(10) {
-        let resets_before = bench.uno.watchdog_resets();
+        let resets_before = bench.uno.watchdog_reset_count();
         bench.uno.stall_main(ms * CYCLES_PER_MS);
         bench.uno.run_ms(ms + 150);
-        let was_reset = bench.uno.watchdog_resets() > resets_before;
+        let was_reset = bench.uno.watchdog_reset_count() > resets_before;
         let servo_pulses = run_and_record_pulses(&mut bench, 200);
         for (servo, pulses) in servo_pulses.iter().enumerate() {
             let is_steady =
@@ -246,10 +246,10 @@ fn a_resting_robot_that_hangs_restarts_without_a_pulse() {
             if is_blank {
                 bench.uno.set_eeprom(&[0xff; EEPROM_SIZE]);
             }
-            let resets_before = bench.uno.watchdog_resets();
+            let resets_before = bench.uno.watchdog_reset_count();
             bench.uno.stall_main(ms * CYCLES_PER_MS);
             bench.uno.run_ms(ms + 150);
-            assert!(bench.uno.watchdog_resets() > resets_before);
+            assert!(bench.uno.watchdog_reset_count() > resets_before);
             assert_no_pulse(&mut bench, 6000, &format!("{ms} ms"));
             Status::read(&mut bench).assert_has("gait=rest fault=watchdog");
             let answer = bench.say(&first_moving_gait());

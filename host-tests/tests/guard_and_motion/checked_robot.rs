@@ -1,4 +1,4 @@
-//! A robot that runs the core, is commanded through its console, and whose every frame is checked.
+//! A robot that runs the core, is commanded through its console, and has each of its frames checked.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -160,8 +160,8 @@ impl<'a> CheckedRobot<'a> {
         self.motion().hazard().is_none()
     }
 
-    /// Commands a pose. Returns false if the robot refuses the pose, because rounding to hundredths of a degree moves it
-    /// beyond a limit.
+    /// Commands a pose. Returns false if the robot refuses the pose, because rounding to hundredths of a degree moves
+    /// it beyond a limit.
     pub fn try_pose(&mut self, pose: &Pose) -> bool {
         let answer = self.say(&pose_command(self.robot.firmware(), pose));
         answer.starts_with("ok")

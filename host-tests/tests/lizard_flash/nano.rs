@@ -56,9 +56,9 @@ fn after_a_hang_an_old_nano_moves_no_servo_until_its_power_is_cut() {
     // The boot loader leaves the watchdog on, which resets the chip again before the boot loader ends. A reset with the
     // RESET pin does not clear WDRF, and while WDRF is set, WDE remains set (data sheet, 11.9.2).
     board.uno.reset();
-    let resets_before = board.uno.watchdog_resets();
+    let resets_before = board.uno.watchdog_reset_count();
     board.uno.run_ms(3000);
-    let reset_count = board.uno.watchdog_resets() - resets_before;
+    let reset_count = board.uno.watchdog_reset_count() - resets_before;
     assert!(
         (150..200).contains(&reset_count),
         "expected about one reset every 16 ms, got {reset_count} in 3 s"

@@ -3,10 +3,10 @@
 
 use super::*;
 
-/// Sends a line, runs the board for `ms` simulated milliseconds, and returns its output.
-fn send_line(board: &mut ConnectedBoard, line: &str, ms: u64) -> String {
+/// Sends a text, which may be empty, runs the board for `ms` simulated milliseconds, and returns the board's output.
+fn send_text(board: &mut ConnectedBoard, text: &str, ms: u64) -> String {
     board.uno.take_transmitted();
-    board.uno.send(line.as_bytes());
+    board.uno.send(text.as_bytes());
     board.uno.run_ms(ms);
     decode_text(&board.uno.take_transmitted())
 }
@@ -23,9 +23,9 @@ fn only_the_robot_is_written_to_a_board_with_the_firmware_and_its_trims_are_kept
     let (name, other_robot) = load_another_robot();
     let mut board = prepare_board_with_firmware();
     board.uno.power_cycle();
-    assert!(send_line(&mut board, "", 2500).contains("# lizard "));
-    assert!(send_line(&mut board, "trim 1 3.5\n", 200).contains("ok"));
-    assert!(send_line(&mut board, "save\n", 500).contains("ok"));
+    assert!(send_text(&mut board, "", 2500).contains("# lizard "));
+    assert!(send_text(&mut board, "trim 1 3.5\n", 200).contains("ok"));
+    assert!(send_text(&mut board, "save\n", 500).contains("ok"));
     replug(&mut board);
     let eeprom_before = board.uno.eeprom();
 
@@ -57,7 +57,7 @@ fn only_the_robot_is_written_to_a_board_with_the_firmware_and_its_trims_are_kept
     assert!(json_line.is_some_and(is_expected), "{screen}");
     assert!(!screen.contains("\n# lizard"), "{screen}");
     assert_eeprom_kept(&board, &eeprom_before);
-    let answer = send_line(&mut board, "cal\n", 500);
+    let answer = send_text(&mut board, "cal\n", 500);
     assert!(answer.contains("3.5"), "{answer}");
 }
 
@@ -82,11 +82,11 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     // After the board is plugged in again, the firmware reports the missing robot, and no servo moves.
     board.uno.power_cycle();
     board.uno.take_edges();
-    let output_text = send_line(&mut board, "", 2500);
+    let output_text = send_text(&mut board, "", 2500);
     assert_contains(&output_text, "no robot in the flash");
-    let output_text = send_line(&mut board, "walk\n", 300);
+    let output_text = send_text(&mut board, "walk\n", 300);
     assert!(output_text.contains("err "), "{output_text}");
-    assert!(send_line(&mut board, "status\n", 300).contains("fault=robot"));
+    assert!(send_text(&mut board, "status\n", 300).contains("fault=robot"));
     let edges = board.uno.take_edges();
     let pins = servo_pins(&other_robot);
     let has_pulse = edges.iter().any(|edge| pins.contains(&edge.pin));

@@ -17,7 +17,7 @@ use lizard_core::numbers::section::{
 use lizard_core::numbers::units::{CYCLES_PER_US, PulseWidth, Sine, Sweep};
 use lizard_core::virtual_board::RunningRobot;
 use lizard_host_tests::rng;
-use lizard_robot::flash;
+use lizard_robot::keep_section;
 
 use crate::sections;
 
@@ -212,7 +212,8 @@ fn a_gait_that_would_leave_the_travel_is_held() {
         for channel in gaits.flat_map(|gait| &mut gait.channels) {
             channel.gain = rng.i16(..);
         }
-        let robot = Robot::open(flash(&content.section_bytes())).expect("every number is in range");
+        let robot =
+            Robot::open(keep_section(&content.section_bytes())).expect("every number is in range");
         for id in GaitId::all(robot.gait_count()).skip(1) {
             let mut running_robot = RunningRobot::power_on(robot);
             run_frames(&mut running_robot, 30);
@@ -280,7 +281,7 @@ fn change_random_number(rng: &mut Rng, section: &mut [u8]) {
 /// Runs a robot with an accepted section and random commands. Checks that every frame completes and that no servo turns
 /// beyond its travel.
 fn check_motion(rng: &mut Rng, section: &[u8]) {
-    let robot = Robot::open(flash(section)).expect("the section is accepted");
+    let robot = Robot::open(keep_section(section)).expect("the section is accepted");
     let mut running_robot = RunningRobot::power_on(robot);
     run_frames(&mut running_robot, 30);
     let gaits: Vec<GaitId> = GaitId::all(robot.gait_count()).collect();

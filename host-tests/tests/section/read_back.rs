@@ -202,7 +202,8 @@ fn the_link_lengths_and_the_sliders_are_read_back() {
     });
 }
 
-/// The function in a coupler table of a five-bar. Each function has its own argument.
+/// The function in a coupler table of a five-bar, as `lizard_core::numbers::couplers` defines it: the rise, the
+/// stretched rise, the folded rise or the skew. Each function has its own argument.
 #[derive(Clone, Copy, PartialEq)]
 enum CurveKind {
     Rise,

@@ -1,5 +1,4 @@
-//! Tests that functions compute the same results with shared prologues and epilogues as with their own prologues and
-//! epilogues.
+//! Tests that functions compute the same results with shared prologues and epilogues as with their own.
 
 use lizard_host_tests::avr_gcc::{
     assemble, compile_to_object, link, ram_address, run_to_end, shrink,

@@ -1,4 +1,4 @@
-//! Commands and faults that the search applies, and their descriptions in reports.
+//! Commands and faults that the search applies, and their descriptions in reports. Main is the core's main loop.
 
 use std::fmt;
 
@@ -96,8 +96,8 @@ impl Action {
         actions.extend(LINES.map(Self::Line));
         actions.extend(BaudRate::ALL.map(Self::SenderRate));
         actions.extend(other_words.map(|word| Self::Line(word.example())));
-        // Main handed the last frame to the board 16 ms ago. During these stalls, main misses zero, one, three or five
-        // frames, or the watchdog ends the pulses, or the watchdog resets the processor.
+        // At the end of a frame, 19 ms have passed since main handed the frame to the board. During these stalls, main
+        // misses zero, one, three or five frames, or the watchdog ends the pulses, or it resets the processor.
         actions.extend([3, 15, 60, 100, 120, 130, 200, 229, 240].map(Self::Stall));
         actions.extend([5_000, 4_100, 3_900, 3_500].map(Self::SupplyMv));
         actions.extend([Self::WeakSupply(true), Self::WeakSupply(false)]);

@@ -1,10 +1,10 @@
 //! Fingerprints of states. Two states count as equal if their fingerprints are equal.
 //!
 //! A fingerprint is a hash of the core's own `Debug` output. The core derives `Debug` for all its structs, so
-//! every new field is included automatically, and the core needs no code for the search. `RULES` lists the exceptions.
-//! A field without effect, such as some counters, is left out. A field that the core compares with only a few values,
-//! such as a countdown, is rounded. If rounding makes several states equal, the search explores only the state that it
-//! reaches first.
+//! every new field is included automatically, and the core needs no code for the search. `FIELD_RULES` lists the
+//! exceptions. A field without effect, such as some counters, is left out. A field that the core compares with only a
+//! few values, such as a countdown, is rounded. If rounding makes several states equal, the search explores only the
+//! state that it reaches first.
 
 use std::fmt::{self, Write};
 
@@ -24,7 +24,7 @@ use Treatment::{Round, Skip};
 type FieldRule = (&'static str, &'static str, Treatment);
 
 /// The fields that are left out or rounded in a state's fingerprint.
-const RULES: &[FieldRule] = &[
+const FIELD_RULES: &[FieldRule] = &[
     ("Main", "last_tick", Skip),
     // The next byte begins a new line, so the previous line has no effect.
     ("Console", "line", Skip),
@@ -88,6 +88,7 @@ const LINE_ARRIVAL_FIELDS: &[FieldRule] = &[
     ("Controller", "is_unattended", Skip),
 ];
 
+/// Returns the class of a countdown: exact for 0 and 1, coarse for more frames.
 fn countdown_class(frames: u64) -> u64 {
     match frames {
         0 | 1 => frames,
@@ -98,13 +99,14 @@ fn countdown_class(frames: u64) -> u64 {
     }
 }
 
+/// Returns 0 if the motion stands still, 2 at full pace (1024), and 1 between.
 fn pace_class(pace: u64) -> u64 {
     u64::from(pace > 0) + u64::from(pace >= 1024)
 }
 
-/// Returns the fingerprint of a value, with the fields in `RULES` rounded or left out.
+/// Returns the fingerprint of a value, with the fields in `FIELD_RULES` rounded or left out.
 pub fn coarse_fingerprint(value: &impl fmt::Debug) -> u64 {
-    fingerprint(value, RULES)
+    fingerprint(value, FIELD_RULES)
 }
 
 /// Returns the fingerprint of a value without rounding, and without the fields that record a line's arrival.
@@ -258,7 +260,7 @@ mod tests {
     };
 
     #[test]
-    fn a_fingerprint_skips_counters_rounds_coarse_fields_and_includes_all_others() {
+    fn a_coarse_fingerprint_rounds_the_listed_fields_and_includes_all_others_exactly() {
         let fingerprint = coarse_fingerprint(&MOTION);
         type Change = fn(&mut Motion);
         let changes: [(Change, bool); 6] = [
@@ -297,7 +299,7 @@ mod tests {
                 states.push((world.running_robot.main, restart));
             }
         }
-        for (name, field, _) in RULES.iter().chain(LINE_ARRIVAL_FIELDS) {
+        for (name, field, _) in FIELD_RULES.iter().chain(LINE_ARRIVAL_FIELDS) {
             let rule = [(*name, *field, Skip)];
             let mut states = states.iter();
             let is_skipped =

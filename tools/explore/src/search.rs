@@ -40,7 +40,7 @@ pub struct SearchResult {
 /// A step of a sequence.
 #[derive(Clone, Copy)]
 struct Step {
-    /// The index of the previous step; `u32::MAX` if the step is an initial state.
+    /// The index of the previous step; `u32::MAX` if this entry stands for an initial state.
     previous_step: u32,
     action_index: u8,
 }

@@ -7,7 +7,7 @@ use lizard_core::numbers::robot::Robot;
 use lizard_core::numbers::section::Content;
 use lizard_core::numbers::slew::Slew;
 use lizard_core::numbers::units::Sweep;
-use lizard_robot::flash;
+use lizard_robot::keep_section;
 
 /// The slew limit, 1/65536 turn per frame. This is a third of the paper's limit, so a servo that wakes in a wrong
 /// position exceeds the limit.
@@ -44,7 +44,7 @@ pub fn straying_robot() -> Robot<'static> {
 }
 
 fn open(content: &Content) -> Robot<'static> {
-    Robot::open(flash(&content.section_bytes())).expect("the section is valid")
+    Robot::open(keep_section(&content.section_bytes())).expect("the section is valid")
 }
 
 fn small_content() -> Content {

@@ -1,4 +1,5 @@
 //! A state of the search: the firmware, its board, and an observer that checks the robot against the rules.
+//! Main is the core's main loop.
 
 mod checks;
 mod lines;
@@ -20,7 +21,7 @@ use crate::action::Action;
 use crate::fingerprint::{Fingerprint, coarse_fingerprint};
 use crate::small_robot::{BUTTON_PIN, NOSE_PIN};
 
-/// The verdict of the rules.
+/// The verdict of the rules: `Ok`, or the first violation.
 pub type Verdict = Result<(), Violation>;
 
 fn violation(rule: Rule, observation: impl Into<String>) -> Verdict {
@@ -51,7 +52,7 @@ pub struct World {
     late_edge_at: Time,
     /// True if main was late for the last frame.
     was_main_late: bool,
-    /// The last line that was sent, until its answer has been checked, which may be before it is printed; then `None`.
+    /// The last line that was sent; `None` once its answer has been checked, which may be before the answer is printed.
     unchecked_line: Option<&'static str>,
     /// The baud rate at which lines are sent.
     sender_rate: BaudRate,
@@ -160,7 +161,7 @@ impl World {
     /// # Errors
     /// Returns the first violation that the action causes.
     pub fn apply(&mut self, action: Action) -> Verdict {
-        // After a pulse, the record must be invalidated as soon as the supply allows it.
+        // After a pulse, the saved rest pose must be invalidated as soon as the supply allows it.
         let must_keep_rest_pose = self.observer.must_rest()
             && !self.observer.has_pulsed_since_rest()
             && self.is_rest_pose_saved();

@@ -29,7 +29,7 @@ fn observer_limits(robot: &Robot) -> Limits {
     Limits {
         width_ranges: servos.map(|servo| {
             let [min, max] = [servo.min_us, servo.max_us].map(us_to_cycles);
-            (min - 3, max + 3)
+            (min - 3, max + 3) // a tolerance for rounding, cycles
         }),
         ..Limits::default()
     }
@@ -195,7 +195,7 @@ impl ObservedBoard {
         let has_rest_pose = copies::read_rest_pose(robot, self.memory()).is_some();
         assert!(is_rest_pose_blank || has_rest_pose, "{rule}: the rest pose");
         // No record reaches these addresses.
-        let is_rest_blank = (192..1024).all(|address| self.memory().read(address) == 0xff);
-        assert!(is_rest_blank, "{rule}");
+        let is_remainder_blank = (192..1024).all(|address| self.memory().read(address) == 0xff);
+        assert!(is_remainder_blank, "{rule}");
     }
 }

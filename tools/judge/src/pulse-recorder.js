@@ -1,7 +1,10 @@
 /** Arduino's pin number of each port's bit 0. Port D has D0 to D7, B has D8 to D13, C has A0 to A5 as 14 to 19. */
 const FIRST_PIN = { D: 0, B: 8, C: 14 };
 
-/** Watches the pins of an Uno like an oscilloscope; calls `onPulse(pin, rise, width)` when a pulse ends. */
+/**
+ * Watches the pins of an Uno like an oscilloscope. Calls `onPulse(pin, rise, width)` when a pulse ends; `rise` is the
+ * cycle of the rising edge, and `width` is in cycles.
+ */
 export function recordPulses(uno, onPulse) {
   const riseCycles = [];
   const changes = [];

@@ -27,7 +27,7 @@ const program = (erasesPage) => `
 
 test('SPM fills, erases and writes a page', () => {
   const runForWords = (corrections) => runProgram(corrections, program(true), 100).cpu.progMem.subarray(0x100, 0x102);
-  assert.equal(runForWords([])[0], 0xffff, 'avr8js itself can do it now: self-programming.js can go');
+  assert.equal(runForWords([])[0], 0xffff, 'avr8js now simulates SPM: remove self-programming.js');
   assert.deepEqual([...runForWords([addSelfProgramming])], [0x1234, 0xffff]);
 });
 

@@ -5,9 +5,9 @@ import { ignoreCompareBeyondTop } from '../src/corrections/compare-beyond-top.js
 import { wakeTimersAtTheirFlags } from '../src/timer-events.js';
 import { readState, runProgram } from './program.js';
 
-// Two interrupts of timer 1: their handlers store the timer's count in SRAM from X on and change OCR1B by an odd
-// step, so that every distance occurs. (A second timer would delay timer 1 in plain avr8js, which handles one event per
-// instruction.)
+// Two interrupts of timer 1: their handlers store the timer's count in SRAM from X on, and the second also changes
+// OCR1B by an odd step, so that every distance occurs. (A second timer would delay timer 1 in plain avr8js, which
+// handles one event per instruction.)
 const program = (mode, clock) => `
     jmp main
     _LOC 0x2c         ; TIMER1_COMPA

@@ -25,8 +25,8 @@ pub struct Code {
 }
 
 impl Code {
-    /// Decodes code. Returns `None` if the code ends inside an instruction, or if a jump has no reference: the jump's
-    /// target is then unknown, so nothing may be moved.
+    /// Decodes a function's code. Returns `None` if the code ends inside an instruction, or if a jump has no reference:
+    /// the jump's target is then unknown, so nothing may be moved.
     pub fn decode(bytes: &[u8], references: Vec<Relocation>) -> Option<Self> {
         let mut instructions = Vec::new();
         let mut offset = 0;

@@ -1,4 +1,4 @@
-; The prologues and epilogues that all functions share.
+; The prologues and epilogues that functions share.
 ;
 ; __frame_save_K is called with a number of bytes in r26. It saves the registers from rK to
 ; r17 and r28, r29, makes room for that many bytes, and points r29:r28 to them.

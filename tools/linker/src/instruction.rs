@@ -1,5 +1,5 @@
-//! Properties of AVR instructions that determine how code may be edited, from the AVR Instruction Set Manual. Each
-//! function takes the first word of an instruction.
+//! Properties of AVR instructions that determine how code may be edited, from the AVR Instruction Set Manual. A
+//! parameter `word` is the first word of an instruction.
 
 /// The opcode of `ret`.
 pub const RET: u16 = 0x9508;

@@ -1,5 +1,5 @@
 //! `lizard-linker ARGUMENTS` shrinks the object files among the arguments, then calls avr-gcc with the new files in
-//! their place. rustc calls this program, because .cargo/config.toml names scripts/link as the linker.
+//! their place. rustc calls this program through scripts/link, which .cargo/config.toml names as the linker.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -38,7 +38,7 @@ fn run() -> Result<bool, String> {
     }
     let result = status.map(|status| status.success());
     result.map_err(|error| {
-        format!("avr-gcc, which links the firmware, could not be started: {error}")
+        format!("avr-gcc, which links the firmware, does not start: {error}; install gcc-avr")
     })
 }
 

@@ -17,7 +17,7 @@ pub struct Savings {
     pub frame_bytes: i64,
     /// The bytes saved by replacing a branch over a jump with the opposite branch, see [`branch`].
     pub branch_bytes: i64,
-    /// The bytes saved by placing functions near their callers, which short calls then reach, estimated before linking.
+    /// The bytes saved by placing functions near their callers, so that calls are short; estimated before linking.
     pub call_bytes: i64,
 }
 

@@ -77,7 +77,7 @@ impl Assumption {
     /// Loads the paper's robot with this change.
     ///
     /// # Panics
-    /// If robots/paper.toml does not have a replaced text.
+    /// If a text to replace is not in robots/paper.toml.
     pub fn load_robot(&self) -> Robot {
         crate::load_changed_paper(self.description, self.replacements)
     }

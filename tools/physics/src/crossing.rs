@@ -11,8 +11,8 @@ use crate::table::Component;
 /// The minimum distance between the feet and the edge before and after the measured cycles, mm. Feet swing by 15 mm,
 /// and a dome touches an edge of 2 mm when the dome's middle is 11 mm away.
 const CLEARANCE_MM: f64 = 25.0;
-/// The turn at which the measurement ends, deg: after half a turn, other feet are at the edge. Only gaits that turn on
-/// the spot are expected to reach this limit.
+/// The turn at which the measurement ends, deg: after half a turn, the opposite feet are at the edge. Only gaits that
+/// turn on the spot are expected to reach this limit.
 const MAX_TURN_DEG: f64 = 180.0;
 
 /// An edge across the path of a gait, and the cycles in which it is crossed.

@@ -64,7 +64,7 @@ fn find_hardest_gait(robot: &Robot) -> (&CheckedGait, f64) {
         (gait, fraction)
     });
     let hardest = utilisations.max_by(|(_, a), (_, b)| a.total_cmp(b));
-    hardest.expect("every robot stands")
+    hardest.expect("every robot has the gait `stand`")
 }
 
 /// Returns the largest fraction of the torque-speed line of `servo` that a gait uses.

@@ -78,7 +78,7 @@ pub fn simulate_all(robot: &Robot) -> Result<GrainResults, MujocoError> {
     });
     batch.add(&assembly, scenes)?;
     let mujoco_displacements = batch.simulate()?;
-    let grains = gaits.iter().map(|gait| {
+    let results_by_gait = gaits.iter().map(|gait| {
         let ratios = FRICTION_RATIOS.into_iter().enumerate();
         let results = ratios.map(|(index, ratio)| DisplacementPair {
             model: simulate_model(robot, gait, ratio),
@@ -86,7 +86,7 @@ pub fn simulate_all(robot: &Robot) -> Result<GrainResults, MujocoError> {
         });
         (gait.name().to_owned(), results.collect())
     });
-    Ok(grains.collect())
+    Ok(results_by_gait.collect())
 }
 
 /// Returns the number of cycles until a gait's motion repeats from cycle to cycle.
@@ -102,10 +102,10 @@ pub(crate) fn find_results_at_own_ratio(results: &[DisplacementPair]) -> Displac
 }
 
 /// Returns a message for each of MuJoCo's results that differs too much from the model's.
-pub fn describe_disagreements(grains: &GrainResults) -> Vec<String> {
+pub fn describe_disagreements(grain_results: &GrainResults) -> Vec<String> {
     let mut messages = Vec::new();
     for (gait, is_against_grain) in GAITS {
-        for (ratio, results) in FRICTION_RATIOS.into_iter().zip(&grains[gait]) {
+        for (ratio, results) in FRICTION_RATIOS.into_iter().zip(&grain_results[gait]) {
             let Some(model) = results.model else {
                 continue;
             };
@@ -128,7 +128,7 @@ pub fn describe_disagreements(grains: &GrainResults) -> Vec<String> {
 ///
 /// # Panics
 /// If a gait is missing.
-pub fn format_table(robot: &Robot, grains: &GrainResults) -> String {
+pub fn format_table(robot: &Robot, grain_results: &GrainResults) -> String {
     let mut text = format!("{:16}", "model, MuJoCo");
     for ratio in FRICTION_RATIOS {
         let heading = format!("r = {ratio:.1}");
@@ -145,7 +145,7 @@ pub fn format_table(robot: &Robot, grains: &GrainResults) -> String {
         let period = robot.gait(gait).expect("the robot has this gait").period();
         let unit = if component == 0 { "mm/s" } else { "deg/s" };
         _ = write!(text, "{gait:10}{unit:>6}");
-        for results in &grains[gait] {
+        for results in &grain_results[gait] {
             let format_speed = |displacement: Displacement| {
                 format!("{:+.1}", displacement.0[component] / period + 0.0)
             };

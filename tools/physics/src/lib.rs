@@ -49,7 +49,7 @@ pub fn load_robot(name: &str) -> Robot {
 /// change in error messages.
 ///
 /// # Panics
-/// If robots/paper.toml does not have a replaced text.
+/// If a text to replace is not in robots/paper.toml.
 fn load_changed_paper(description: &str, replacements: &[(&str, &str)]) -> Robot {
     let text = std::fs::read_to_string(crate_dir().join("../../robots/paper.toml"));
     let mut text = text.expect("robots/paper.toml is readable");

@@ -13,7 +13,7 @@ use crate::case::{Case, LegDrive};
 use crate::crate_dir;
 use crate::results::Displacement;
 
-/// An error that prevents MuJoCo's result.
+/// A reason why there is no result from MuJoCo.
 #[derive(Debug, thiserror::Error)]
 pub enum MujocoError {
     /// Python does not start.

@@ -66,8 +66,8 @@ impl PadShape {
 /// Returns the table in Markdown: mm forward per cycle, or a dash if a walk is missing.
 pub fn format_table(shapes: &GroupedDisplacements) -> String {
     let headings = SURFACES.map(|surface| format!(" {surface} |")).concat();
-    let lines = "---|".repeat(SURFACES.len());
-    let mut text = format!("| radius, mm |{headings}\n|---|{lines}\n");
+    let separators = "---|".repeat(SURFACES.len());
+    let mut text = format!("| radius, mm |{headings}\n|---|{separators}\n");
     for shape in PadShape::ALL {
         let by_surface = shapes.get(&shape.name());
         let cells = SURFACES.map(|surface| {

@@ -67,7 +67,7 @@ pub enum Surface {
     Edge(u8),
     /// Blocks of this height that cover a quarter of the floor; tenths of a mm.
     Blocks(u8),
-    /// A slope of this angle that rises in the forward direction, deg.
+    /// A slope of this angle, deg, which rises forward, or backward for a gait that walks backward.
     Slope(u8),
     /// A floor with a friction of 0.4 for the left feet and 0.8 for the right feet.
     UnequalFriction,
@@ -268,8 +268,8 @@ pub fn format_surfaces_table(
     let robot_surfaces = Surface::for_robot(robot);
     let headings = robot_surfaces.iter().map(|surface| format!(" {surface} |"));
     let headings = headings.collect::<String>();
-    let lines = "---|".repeat(robot_surfaces.len());
-    let mut text = format!("| gait | level |{headings}\n|---|---|{lines}\n");
+    let separators = "---|".repeat(robot_surfaces.len());
+    let mut text = format!("| gait | level |{headings}\n|---|---|{separators}\n");
     for (gait, level_displacement) in list_walking_gaits(walk_results, robot) {
         let stored = surfaces.get(robot).and_then(|by_gait| by_gait.get(&gait));
         for component in list_gait_purposes(level_displacement) {

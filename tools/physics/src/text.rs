@@ -62,7 +62,7 @@ pub fn check_or_update_block(path: &str, begin: &str, end: &str, expected_text: 
     } else {
         assert_eq!(
             text, new_text,
-            "{path} is out of date; run with BLESS_PHYSICS=1"
+            "{path} is out of date; `make docs` updates it"
         );
     }
 }

@@ -17,7 +17,8 @@ use lizard_physics::{
     format_expected_results_table, list_walks, load_robot,
 };
 
-/// Compares the text between a marker and the next end marker of a page with `expected_text`.
+/// Compares the text between a marker and the next end marker of a page with `expected_text`, or updates it; see
+/// [`check_or_update_block`].
 fn check_page(page: &str, marker: &str, expected_text: &str) {
     let begin = format!("<!-- {marker} -->\n");
     check_or_update_block(page, &begin, "<!-- end -->", expected_text);
@@ -242,7 +243,7 @@ fn the_stored_results_of_the_model_are_up_to_date() {
 }
 
 #[test]
-fn a_foot_1_mm_too_long_costs_less_than_a_tenth_of_the_distance() {
+fn a_foot_1_mm_too_long_costs_less_than_a_tenth_of_the_distance_or_of_the_turn() {
     let walk_results = WalkResults::load_stored();
     let legs = LegDrive::Rigid;
     let distance_and_turn = |Displacement([forward, left, turn])| (forward.hypot(left), turn.abs());

@@ -21,7 +21,7 @@ const MAX_SAVE_TIME: Time = 400 * MS;
 /// Time before or after an answer to `status` without a fault in which a servo must get a pulse.
 pub(crate) const MAX_TIME_TO_PULSE: Time = 200 * MS;
 
-/// Time before such an answer for which the robot must have been undisturbed, otherwise the answer promises nothing.
+/// Time before such an answer for which the robot must have been undisturbed; otherwise the answer promises nothing.
 pub(crate) const CALM_TIME: Time = 400 * MS;
 
 /// Lines that every robot must refuse.

@@ -21,9 +21,9 @@ pub struct Observer {
     pub(crate) start_cause: Cause,
     /// The time at which the program was last interrupted: RESET was pulled low, or power was lost.
     pub(crate) cut_at: Time,
-    /// End of the last disturbance: a stall of main, or blocked interrupts.
+    /// End of the last disturbance: a stall of the main loop, or blocked interrupts.
     pub(crate) disturbed_until: Time,
-    /// Start and end of each recent stall of main.
+    /// Start and end of each recent stall of the main loop.
     pub(crate) stalls: Vec<(Time, Time)>,
     /// The time of the last motion, stop or rest command that was not refused.
     pub(crate) last_motion_command_at: Time,
@@ -33,7 +33,7 @@ pub struct Observer {
     pub(crate) boot_rest_at: Time,
     pub(crate) unanswered_line_count: i32,
     pub(crate) last_command_at: Time,
-    /// True if main was late when the last command arrived.
+    /// True if the main loop was late when the last command arrived.
     pub(crate) was_command_delayed: bool,
     /// The `deadman` time; 0 if it is off or not known.
     pub(crate) deadman_time: Time,
@@ -161,7 +161,7 @@ impl Observer {
         !self.permission.is_granted
     }
 
-    /// The time at which a fault stopped the robot; `None` without a fault, or if a command has ended the stop.
+    /// Returns the time at which a fault stopped the robot; `None` without a fault, or if a command has ended the stop.
     pub const fn stop_time(&self) -> Option<Time> {
         self.reports.stopped_at
     }
@@ -179,7 +179,7 @@ impl Observer {
         self.supply.time_below(mv, since, self.now + 1) > 0
     }
 
-    /// The time until the last pending promise is due; `None` if no promise is pending.
+    /// Returns the time until the last pending promise is due; `None` if no promise is pending.
     pub fn time_until_promises_due(&self) -> Option<Time> {
         let promises = &self.pending_promises;
         let pulses_after_status = promises.pulses_after_status.as_ref();
@@ -197,7 +197,7 @@ impl Observer {
         self.pending_promises = PendingPromises::default();
     }
 
-    /// The time since the last reset.
+    /// Returns the time since the last reset.
     pub const fn time_since_start(&self) -> Time {
         self.now - self.started_at
     }
@@ -223,7 +223,7 @@ impl Observer {
         self.has_pulsed_since(self.started_at.max(rest_at + MAX_TIME_TO_REST))
     }
 
-    /// True if no stall has delayed main since a time. After a stall, main is late for about a frame.
+    /// True if no stall has delayed the main loop since a time. After a stall, the loop is late for about a frame.
     pub(crate) fn was_main_punctual_since(&self, time: Time) -> bool {
         self.disturbed_until + 25 * MS <= time
     }
@@ -359,7 +359,7 @@ impl Observer {
         self.reports.record_start(cause, now);
     }
 
-    /// Returns the total time for which main was stalled in the 300 ms before `time`.
+    /// Returns the total duration, up to `time`, of the stalls of the main loop that end after `time` minus 300 ms.
     pub(crate) fn stalled_time_before(&self, time: Time) -> Time {
         let recent = self.stalls.iter().filter(|(_, end)| *end > time - 300 * MS);
         recent.map(|(start, end)| end.min(&time) - start).sum()
@@ -369,7 +369,7 @@ impl Observer {
         let now = self.now;
         if cause == Cause::Watchdog {
             let stalled_time = self.stalled_time_before(now);
-            // 100 ms is the first stage of the watchdog minus the frame in which main last reset the watchdog. The
+            // 100 ms is the first stage of the watchdog minus the frame in which the main loop last fed it. The
             // pulses end after the first stage, and the reset follows after the second stage.
             if stalled_time < 100 * MS {
                 let observation = format!("main was stalled for only {} ms", stalled_time / MS);

@@ -247,7 +247,7 @@ impl Observer {
         let silence = self.now - self.last_command_read_at;
         // New settings move a servo even while the robot stands still.
         let may_settle = self.now - self.recalibrated_at < MAX_SETTLING_TIME;
-        // The unread answer may be that of a line that changes `deadman`.
+        // An answer that is still missing may be that of a line that changes `deadman`.
         if self.is_gait_or_routine
             && self.deadman_time > 0
             && !self.has_unanswered_lines()

@@ -158,8 +158,8 @@ impl Observer {
         if !has_fault && self.reports.stopped_at.is_some_and(is_due) {
             self.record_violation(Rule::StopReported, answer);
         }
-        let is_watchdog_reset_due = self.start_cause == Cause::Watchdog && is_due(self.started_at);
-        if is_watchdog_reset_due && status_value("reset") != Some("watchdog") {
+        let is_watchdog_report_due = self.start_cause == Cause::Watchdog && is_due(self.started_at);
+        if is_watchdog_report_due && status_value("reset") != Some("watchdog") {
             self.record_violation(Rule::StopReported, answer);
         }
         let stop_mv = self.limits.levels_mv[1].saturating_sub(self.limits.supply_error_mv);

@@ -12,7 +12,7 @@ macro_rules! rules {
             /// All rules, in the order of this list.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
-            /// The rule as a sentence.
+            /// Returns the rule as a sentence.
             pub const fn sentence(self) -> &'static str {
                 match self { $(Self::$name => $sentence),* }
             }

@@ -81,28 +81,28 @@ impl LiftedBoard {
         mut use_frame: impl FnMut(f64, &Frame),
     ) {
         let mut rng = Rng::with_seed(11);
-        let duration = self.lift_start_s
+        let duration_s = self.lift_start_s
             + (self.end_tilt_deg.min(45.0) - self.start_tilt_deg) / self.lift_deg_per_s
             + 0.5;
-        let distances = self.slide_distances(duration);
-        let distance_at = |seconds: f64| {
-            distances[((seconds.max(0.0) / STEP_S) as usize).min(distances.len() - 1)]
+        let distances_mm = self.slide_distances(duration_s);
+        let distance_mm_at = |seconds: f64| {
+            distances_mm[((seconds.max(0.0) / STEP_S) as usize).min(distances_mm.len() - 1)]
         };
         let mut seconds = 0.0;
-        while seconds < duration && distance_at(seconds - 0.1) < STOP_DISTANCE_MM {
+        while seconds < duration_s && distance_mm_at(seconds - 0.1) < STOP_DISTANCE_MM {
             let mut tilted_studio = studio.clone();
             tilted_studio.board_tilt = self.tilt_deg_at(seconds);
             // Downhill is to the left in the scene.
             let heading = PI + self.head_direction_deg.to_radians();
             let (sin, cos) = (PI + self.slide_direction_deg.to_radians()).sin_cos();
             let pose_at = |time: f64| {
-                let distance = distance_at(time);
-                [55.0 + distance * cos, 5.0 + distance * sin, heading]
+                let distance_mm = distance_mm_at(time);
+                [55.0 + distance_mm * cos, 5.0 + distance_mm * sin, heading]
             };
             let background = tilted_studio.render_background(&mut rng);
             let frame = background.render_frame(seconds, pose_at, &mut rng);
             use_frame(seconds, &frame);
-            seconds += match distance_at(seconds + 0.25) > 0.5 {
+            seconds += match distance_mm_at(seconds + 0.25) > 0.5 {
                 true => 1.0 / frames_per_s,
                 false => 0.2,
             };

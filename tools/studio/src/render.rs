@@ -21,7 +21,7 @@ const PAPER_GREY: f64 = 205.0;
 const BODY_HALF_SIZE: [f64; 2] = [75.0, 105.0];
 /// Grey of the robot's top.
 const BODY_GREY: f64 = 70.0;
-/// Height of the robot's top below its card, mm.
+/// Height of the robot's top above the floor, mm. The card is higher.
 const BODY_HEIGHT_MM: f64 = 55.0;
 /// x coordinate of the edge about which the board is tilted, mm.
 const TILT_EDGE_X_MM: f64 = -200.0;
@@ -443,7 +443,7 @@ fn cross_product(a: Vector, b: Vector) -> Vector {
     ]
 }
 
-/// Returns a random number with a standard normal distribution.
+/// Returns a random number with approximately a standard normal distribution.
 pub fn random_normal(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64()).sum::<f64>() - 6.0
 }

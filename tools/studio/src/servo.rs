@@ -18,7 +18,7 @@ pub const FULL_TORQUE_DEG: f64 = 3.0;
 /// Dry friction of the gears, as a fraction of the stall torque.
 pub const FRICTION_FRACTION: f64 = 0.02;
 
-/// A servo in the jig.
+/// A servo in the jig of docs/measure.md, with the sheet's card on its horn.
 #[derive(Clone)]
 pub struct Servo {
     /// Degrees that the servo turns per commanded degree.
@@ -135,9 +135,9 @@ impl Servo {
                 (last_index, start_pulse) = (index, pulse);
             }
             let commanded = commands[index].pulse_angle();
-            let is_flip =
+            let is_reversal =
                 index > 0 && commands[index].is_reversed != commands[index - 1].is_reversed;
-            pulse = if is_flip {
+            pulse = if is_reversal {
                 let max_step = self.slew_rate * PULSE_INTERVAL_S;
                 pulse + (commanded - pulse).clamp(-max_step, max_step)
             } else {

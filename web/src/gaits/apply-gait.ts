@@ -2,7 +2,7 @@
 import { type EditedGait, type Refusal, refuse } from '../robot';
 import type { Session } from '../session';
 
-/** Simulated time between a restart and standing, ms. */
+/** Simulated time after which a restarted robot stands, ms. */
 const WAKE_MS = 2500;
 
 /** Puts the gait into the session's robot. A real board has the gait only after the robot is written to it. */

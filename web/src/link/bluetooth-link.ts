@@ -56,7 +56,10 @@ export class BluetoothLink implements Link {
     return `board at ${this.device.name || 'a Bluetooth module'}`;
   }
 
-  /** Connects to a module that the user picks; null if the user picks none. Throws an error whose message is for the user. */
+  /**
+   * Connects to a module that the user picks; returns null if the user picks none. Throws an error with a message for
+   * the user.
+   */
   static async open(): Promise<BluetoothLink | null> {
     if (!bluetooth) throw new Error(findBluetoothProblem() ?? '');
     // False without a radio, and also if the page may not use the radio.

@@ -42,7 +42,10 @@ export class PortLink implements Link {
     return usbVendorId !== undefined && !ARDUINO_VENDOR_IDS.includes(usbVendorId);
   }
 
-  /** Opens a port that the user picks, which resets a UNO; null if the user cancels. Throws an error for the user. */
+  /**
+   * Opens a port that the user picks; this resets a UNO. Returns null if the user cancels. Throws an error with a
+   * message for the user.
+   */
   static async open(): Promise<PortLink | null> {
     if (!hasSerial()) throw new Error(NO_SERIAL_MESSAGE);
     const request = navigator.serial.requestPort({ allowedBluetoothServiceClassIds: [SERIAL_PROFILE] });

@@ -48,13 +48,13 @@ const escapeText = (text: string) => text.replace(/[&<>]/g, (character) => `&#${
 const formatTextElement = (x: number, y: number, content: string, attributes = '') => `<text x="${x}" y="${y}" ${attributes}>${escapeText(content)}</text>`;
 
 /** Draws the results of a robot's gaits as SVG. */
-export function drawResults(robotName: string, gaits: Report[]): string {
+export function drawResults(robotName: string, reports: Report[]): string {
   let y = TITLE_HEIGHT;
   const formatRowElements = (cells: string[], attributes = '') => {
     y += LINE_HEIGHT;
     return cells.map((cell, i) => formatTextElement(COLUMN_LEFTS[i] ?? 0, y, cell, attributes)).join('');
   };
-  const body = gaits
+  const body = reports
     .map((report) => {
       y += LINE_HEIGHT / 2;
       return formatRowElements([formatTitle(report)], 'font-weight="bold"') + formatRowElements(listColumnHeadings(report), 'fill="#5a5f57"') + formatRows(report).map((row) => formatRowElements(row)).join('') + formatRowElements([formatRange(report)], 'fill="#5a5f57" font-size="12"');
@@ -67,8 +67,8 @@ export function drawResults(robotName: string, gaits: Report[]): string {
 }
 
 /** Formats the results as CSV: a heading, and one line for each gait. */
-export function formatCsv(gaits: Report[]): string {
+export function formatCsv(reports: Report[]): string {
   const listCells = (report: Report) => [report.gait, report.speed, report.cycles, ...COMPONENT_KEYS.flatMap((key) => CSV_FIELDS.map((field) => report[key][field] ?? ''))];
   const headings = ['gait', 'speed', 'cycles', ...COMPONENT_KEYS.flatMap((key) => CSV_FIELDS.map((field) => `${key}_${field}`))];
-  return [headings, ...gaits.map(listCells)].map((cells) => `${cells.join(',')}\n`).join('');
+  return [headings, ...reports.map(listCells)].map((cells) => `${cells.join(',')}\n`).join('');
 }

@@ -21,8 +21,8 @@ const canvas = new OffscreenCanvas(1, 1);
 const context = canvas.getContext('2d', { willReadFrequently: true });
 
 /**
- * Copies the brightness plane of a frame, one byte per pixel; returns null if the frame has no such plane, or is scaled,
- * rotated or padded.
+ * Copies the brightness plane of a frame, one byte per pixel; returns null if the frame has no such plane, or is
+ * scaled, rotated or padded.
  */
 async function copyLuma(frame: VideoFrame): Promise<Uint8Array | null> {
   const { format, visibleRect, displayWidth, displayHeight } = frame;

@@ -57,8 +57,8 @@ export class PartsWorker extends CallableWorker<PartsWorkerApi> {
 }
 
 /**
- * Makes the model of a robot.toml and its solids, in the order of `BodyEntry.solid`, with the worker that computes their
- * places. Throws an {@link UnfitError} for a robot that cannot be built.
+ * Makes the model of a robot.toml and its solids, in the order of `BodyEntry.solid`, with the worker that computes
+ * their places. Throws an {@link UnfitError} for a robot that cannot be built.
  */
 export async function makeModel(toml: string): Promise<{ worker: PartsWorker; model: Model; solids: Solid[] }> {
   const worker = new PartsWorker();

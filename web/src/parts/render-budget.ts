@@ -29,7 +29,7 @@ export class RenderBudget {
 
   constructor(private readonly gl: WebGL2RenderingContext) {}
 
-  /** Returns true if a frame may be rendered now; must be called once per animation frame. */
+  /** Returns true if a frame may be rendered now; must be called in every animation frame. */
   mayRender(now = performance.now()): boolean {
     const { gl } = this;
     if (this.fence) {

@@ -6,7 +6,10 @@ import type { Edits, Point, Scene } from '../robot';
 export interface Joint {
   name: string;
   position: Point;
-  /** Returns the edits of lengths that move the joint to `to`. If `isSymmetric`, the lengths that must stay equal change, too. */
+  /**
+   * Returns the edits of lengths that move the joint to `to`. If `isSymmetric`, the lengths that must stay equal
+   * change, too.
+   */
   makeEdits(to: Point, isSymmetric: boolean): Edits;
 }
 
@@ -72,7 +75,7 @@ export function listBars({ shafts, tips, points, sliders, legs }: Scene) {
 export function listJoints({ shafts, tips, points, sliders, legs }: Scene, getLength: (key: string) => number): Joint[] {
   /**
    * Returns the edits that lengthen each half of a slider by half of `change`, the change of the distance between its
-   * arm tips, so that the slider keeps its travel.
+   * arm tips in mm, so that the slider keeps its travel.
    */
   const editHalves = (side: (typeof SIDES)[number], change: number): Edits =>
     [toLinkKey(side.rearHalf), toLinkKey(side.frontHalf)]

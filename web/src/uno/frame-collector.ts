@@ -19,12 +19,12 @@ export class FrameCollector {
   ) {}
 
   /** Adds a pulse: the Arduino number of its pin, the cycle of its rising edge, and its width in cycles. */
-  add(pin: number, rise: number, width: number): void {
+  add(pin: number, riseCycle: number, width: number): void {
     const servo = this.pins.indexOf(pin);
     if (servo < 0) return;
     // A pulse of the same servo, or of an earlier servo, starts a new frame.
     if (servo <= this.lastServo) this.closeFrame();
-    this.startCycle ??= rise;
+    this.startCycle ??= riseCycle;
     this.lastServo = servo;
     this.widths[servo] = width;
     if (servo === 3) this.closeFrame();

@@ -34,7 +34,7 @@ export class SimulatedBoard {
   /** Called with each byte that the UNO sends. */
   onByte: (byte: number) => void = () => {};
   /** Called at the end of each pulse: Arduino number of the pin, cycle of the rising edge, width in cycles. */
-  onPulse: (pin: number, rise: number, width: number) => void = () => {};
+  onPulse: (pin: number, riseCycle: number, width: number) => void = () => {};
   /** Called with each byte that arrives at the UNO, and its cycle. */
   onReceived: (byte: number, cycle: number) => void = () => {};
   /** The baud rate at the other end of the serial line. */
@@ -145,7 +145,7 @@ export class SimulatedBoard {
     for (const [pin, isClosed] of this.contacts) this.setPinLevel(pin, isClosed);
     uno.usart.onByteTransmit = (byte: number) => this.onByte(this.isGarbled ? UNREADABLE_BYTE : byte);
     const cyclesBefore = this.cyclesBeforeReset;
-    recordPulses(uno, (pin: number, rise: number, width: number) => this.onPulse(pin, cyclesBefore + rise, width));
+    recordPulses(uno, (pin: number, riseCycle: number, width: number) => this.onPulse(pin, cyclesBefore + riseCycle, width));
   }
 
   /** True if the baud rates of the chip and the other end differ too much. */

@@ -13,7 +13,7 @@ type ShowSettings = (settings: ServoSettings) => void;
 export function setUpCalibration(session: Session): void {
   const message = element('cal-message');
   /** For each servo, the function that shows its settings; empty before the first settings. */
-  let servos: ShowSettings[] = [];
+  let showSettingsByServo: ShowSettings[] = [];
   /** True if the robot's settings may differ from the shown ones: after a command without an answer, or a restart. */
   let mayBeOutdated = false;
   /** Number of lines that the panel has sent. */
@@ -32,8 +32,8 @@ export function setUpCalibration(session: Session): void {
     // The user has changed a setting meanwhile.
     if (sentCount !== previousCount) return read();
     mayBeOutdated = false;
-    if (servos.length === 0) servos = settings.servos.map((_, index) => addServo(index + 1, send));
-    settings.servos.forEach((servo, index) => servos[index](servo));
+    if (showSettingsByServo.length === 0) showSettingsByServo = settings.servos.map((_, index) => addServo(index + 1, send));
+    settings.servos.forEach((servo, index) => showSettingsByServo[index](servo));
   }
 
   async function send(line: string): Promise<void> {
@@ -50,7 +50,7 @@ export function setUpCalibration(session: Session): void {
   const panel = element<HTMLDetailsElement>('calibrate');
   panel.addEventListener('toggle', () => isShown(panel) && void read());
   const { link, bannerCount, status } = session.state;
-  follow([link, bannerCount], () => (mayBeOutdated ||= servos.length > 0));
+  follow([link, bannerCount], () => (mayBeOutdated ||= showSettingsByServo.length > 0));
   // The robot answers again.
   status.subscribe((newStatus) => newStatus && mayBeOutdated && void read());
 }

@@ -4,8 +4,8 @@ import type { TagTracker } from '../measure/tag-tracker';
 import { beginLines, prepareSurface } from './canvas';
 import { getPalette } from './palette';
 
-/** Length of the heading's arrow, relative to the size of the deck's tag. */
-const ARROW_LENGTH = 1.6;
+/** Length of the line that shows the heading, relative to the edge of the deck's tag. */
+const HEADING_LINE_LENGTH = 1.6;
 
 /**
  * Draws the tags, path and heading over the last frame, which is centred in its element and scaled as with
@@ -28,5 +28,5 @@ export function drawTracking(canvas: HTMLCanvasElement, tracker: TagTracker): vo
   drawLine(tracker.path, a2, 2);
   for (const { corners } of tracker.tags) drawLine([...corners, corners[0], corners[1]], accent, 3);
   const [from, heading] = [tracker.path.at(-1), tracker.headingVector];
-  if (from && heading) drawLine([from, [from[0] + ARROW_LENGTH * heading[0], from[1] + ARROW_LENGTH * heading[1]]], a2, 4);
+  if (from && heading) drawLine([from, [from[0] + HEADING_LINE_LENGTH * heading[0], from[1] + HEADING_LINE_LENGTH * heading[1]]], a2, 4);
 }

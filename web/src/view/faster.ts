@@ -10,7 +10,7 @@ import { element, setText, tableRow } from './elements';
 import { setUpNumberInput } from './number-input';
 import { formatResults } from './trial';
 
-/** Number of gaits between two reports of the best gait so far: a population of the search. */
+/** Number of gaits between two reports of the best gait so far: the size of the search's population. */
 const GAITS_PER_REPORT = 20;
 /**
  * Number of random robots on which gaits are compared, for a report during the search and for the final report, as in
@@ -35,6 +35,7 @@ export class FasterView {
   private readonly takeButton = element<HTMLButtonElement>('faster-take');
   private readonly progressBar = element<HTMLProgressElement>('faster-progress');
   private readonly resultBox = element('faster-result');
+  /** The inputs' numbers; `rate` is the highest allowed servo speed, deg/s, or null for that of the edited gait. */
   private readonly settings = { rate: null as number | null, rounds: 5, seed: 1 };
   /** The worker of the running search; null while there is none. */
   private worker: CallableWorker<FasterWorkerApi> | null = null;

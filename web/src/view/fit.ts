@@ -1,5 +1,5 @@
 // Checks that the robot's parts fit after a change of lengths, also during a drag. The proof runs in a web worker. The
-// 3D view shows two parts that come too close in red, and the page searches for the nearest lengths whose parts fit.
+// 3D view shows in red two parts that come too close, and the page searches for the nearest lengths whose parts fit.
 import type { CollidingPair } from '../parts/make-parts';
 import { type Length, Robot } from '../robot';
 import type { Session } from '../session';
@@ -30,8 +30,8 @@ export class FitView {
   private fittingLengths: Lengths = new Map();
   private rangeRequest: RangeRequest | null = null;
   private timer = 0;
-  /** The scheduled or running check of the parts, which the next change cancels. */
-  private check = new AbortController();
+  /** Cancels the scheduled or running check of the parts, as the next change does. */
+  private checkController = new AbortController();
 
   constructor(
     private readonly session: Session,
@@ -84,13 +84,13 @@ export class FitView {
   /** Cancels the scheduled or running check, and clears the message. */
   private cancelCheck(): void {
     clearTimeout(this.timer);
-    this.check.abort();
+    this.checkController.abort();
     this.setMessage('', null);
   }
 
   private schedule(run: (signal: AbortSignal) => Promise<void>): void {
-    this.check = new AbortController();
-    const { signal } = this.check;
+    this.checkController = new AbortController();
+    const { signal } = this.checkController;
     const runAndReport = () => run(signal).catch((error: unknown) => this.setMessage(`Cannot check the parts: ${getMessage(error)}.`, null));
     this.timer = setTimeout(() => void runAndReport(), CHECK_DELAY_MS);
   }

@@ -16,7 +16,7 @@ const OPPOSITE_LEGS = [1, 0, 3, 2] as const;
 const RING_RADII = [104, 82, 60, 38] as const;
 /** Width of a bar, in units of the SVG. */
 const BAR_WIDTH = 16;
-/** Fraction of the cycle that a bar covers in a gait whose legs hold still in between. */
+/** Fraction of the cycle that a bar covers in a gait whose legs swing one after the other and otherwise hold still. */
 const HELD_STANCE_FRACTION = 0.25;
 
 /** The keys of a gait's numbers that have an input. In index.html, each input has a range that robot.toml allows. */

@@ -1,4 +1,4 @@
-// The panel of the robot's status, which the page requests twice per second while it is visible.
+// The panel of the robot's status. While the page is visible, it requests the status twice per second.
 import type { Status } from '../robot';
 import type { Session } from '../session';
 import { element, make, setText } from './elements';

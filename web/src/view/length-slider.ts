@@ -1,5 +1,5 @@
-// The slider of one length. Its range has the values with which the robot walks; marks show the values with printable
-// parts.
+// The slider of one length. Its range has the values with which the robot walks; a bar below it covers the values with
+// printable parts.
 import type { Edits, Length } from '../robot';
 import { element } from './elements';
 import { makeEditsWithTwin } from './tried-lengths';
@@ -7,15 +7,15 @@ import { makeEditsWithTwin } from './tried-lengths';
 export class LengthSlider {
   private readonly slider = element<HTMLInputElement>('length-slide');
   private readonly symmetryBox = element<HTMLInputElement>('alike');
-  private readonly printableMarks = element('length-marks');
+  private readonly printableBar = element('length-marks');
   private lengths: Length[] = [];
   /** True once the user has chosen a length; only then does the page search for printable values. */
   hasUserChosen = false;
 
   /**
    * `tryLengths` is called with the new lengths while the slider is dragged; `isLast` is true at the end of the drag.
-   * `onChoice` is called when the user chooses another length or turns symmetry on or off. `chosenKey` is the key of the
-   * initial length.
+   * `onChoice` is called when the user chooses another length or turns symmetry on or off. `chosenKey` is the key of
+   * the initial length.
    */
   constructor(
     tryLengths: (edits: Edits, isLast: boolean) => void,
@@ -57,7 +57,7 @@ export class LengthSlider {
     this.onChoice();
   }
 
-  /** Shows the chosen length, without marks until they are known. */
+  /** Shows the chosen length, without the bar of the printable values until they are known. */
   private show(): void {
     const { chosenLength } = this;
     element('length-name').textContent = chosenLength?.label ?? '';
@@ -74,12 +74,12 @@ export class LengthSlider {
   /** Shows the range of printable values (null while it is unknown) and a message. */
   showPrintable(range: [number, number] | null, message: string): void {
     element('length-printed').textContent = message;
-    this.printableMarks.hidden = range === null;
+    this.printableBar.hidden = range === null;
     const { min, max } = this.slider;
     const toPercent = (value: number) => `${(100 * (value - Number(min))) / (Number(max) - Number(min))}%`;
     if (!range) return;
-    this.printableMarks.style.setProperty('--from', toPercent(range[0]));
-    this.printableMarks.style.setProperty('--to', toPercent(range[1]));
+    this.printableBar.style.setProperty('--from', toPercent(range[0]));
+    this.printableBar.style.setProperty('--to', toPercent(range[1]));
   }
 
   private showValue(value: number): void {

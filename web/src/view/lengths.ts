@@ -14,7 +14,7 @@ export function setUpLengths(session: Session, offerValidLengths: (edits: Edits)
     showMessage(element('lengths-refusal'), message);
     showOffers(null, session);
   };
-  /** Shows lengths of the robot in their inputs, and marks these inputs. */
+  /** Shows lengths of the robot in their inputs, and marks these inputs as invalid or valid. */
   const putLengths = (lengths: Length[], { isInvalid }: { isInvalid: boolean }) => {
     for (const { key, value } of lengths) {
       const input = inputs.get(key);

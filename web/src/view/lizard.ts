@@ -52,9 +52,9 @@ function drawSpring(context: Context, [x1, y1]: Point, [x2, y2]: Point): void {
 /** Draws the outline of a lizard from the head's point to the tail's point. */
 function drawSkin(context: Context, scene: Scene): void {
   const [[hx, hy], [tx, ty]] = scene.points;
-  const backY = Math.max(...scene.shafts.map(([, y]) => y));
-  const neckY = backY + 16;
-  const flankY = backY * 0.74;
+  const shoulderY = Math.max(...scene.shafts.map(([, y]) => y));
+  const neckY = shoulderY + 16;
+  const flankY = shoulderY * 0.74;
   context.beginPath();
   context.moveTo(hx, hy + 30);
   context.bezierCurveTo(hx + 18, hy + 30, hx + 27, hy + 2, 27, neckY);
@@ -75,7 +75,7 @@ function drawSkin(context: Context, scene: Scene): void {
 const SERVO_INDICES = [0, 1, 2, 3];
 
 /** Draws a leg's bodies next to and below the plate: foot, leaf spring and coupler. `slipMm` is the foot's slip. */
-function drawFoot(context: Context, scene: Scene, servo: number, slipMm: number): void {
+function drawLegBelowPlate(context: Context, scene: Scene, servo: number, slipMm: number): void {
   const colours = getPalette();
   const { joints, foot } = scene.legs[servo];
   drawBar(context, joints[1], foot, colours.steel, 2.2);
@@ -106,8 +106,8 @@ function drawChassis(context: Context, plate: Plate): void {
   });
 }
 
-/** Draws a leg's bodies above the plate: crank, follower and strut. */
-function drawLeg(context: Context, scene: Scene, servo: number): void {
+/** Draws a leg's bodies above the plate: crank, follower, strut, and the servo's link to the strut. */
+function drawLegAbovePlate(context: Context, scene: Scene, servo: number): void {
   const colours = getPalette();
   const { pivots, joints, strut, has_spring: hasSpring } = scene.legs[servo];
   const colour = getServoColour(servo);
@@ -153,9 +153,9 @@ function drawFiveBar(context: Context, scene: Scene, end: 0 | 1): void {
 /** Draws the robot, starting with the lowest bodies; `slips` are the feet's slips in this frame, mm. */
 export function drawLizard(context: Context, plate: Plate, scene: Scene, slips: readonly number[]): void {
   drawSkin(context, scene);
-  for (const servo of SERVO_INDICES) drawFoot(context, scene, servo, slips[servo] ?? 0);
+  for (const servo of SERVO_INDICES) drawLegBelowPlate(context, scene, servo, slips[servo] ?? 0);
   drawChassis(context, plate);
-  for (const servo of SERVO_INDICES) drawLeg(context, scene, servo);
+  for (const servo of SERVO_INDICES) drawLegAbovePlate(context, scene, servo);
   for (const side of [0, 1] as const) drawSlider(context, scene, side);
   for (const end of [0, 1] as const) drawFiveBar(context, scene, end);
   for (const { strut } of scene.legs) drawDisc(context, strut[0], 1.2, getPalette().card, getPalette().ink);

@@ -105,7 +105,7 @@ export class MeasureView {
     this.protocol?.stop('another robot was chosen');
     const movingGaits = gaits.filter(({ moves }) => moves);
     const gaitOptions = movingGaits.map(({ command, name }) => new Option(command, name));
-    replaceOptions(this.gaitList, [new Option('recognized by its path', ''), ...gaitOptions]);
+    replaceOptions(this.gaitList, [new Option('recognised by its path', ''), ...gaitOptions]);
     this.gaitBoxes.replaceChildren(
       make('legend', {}, 'Gaits'),
       ...movingGaits.map(({ command }) => {

@@ -1,7 +1,7 @@
 // The panel that records runs, saves pictures and videos, and makes a second robot walk next to the page's robot.
 import { Companion } from '../companion';
 import { restartWithGait } from '../gaits/apply-gait';
-import { MAX_SECONDS, Recording } from '../recording';
+import { MAX_RECORDING_SECONDS, Recording } from '../recording';
 import { type Bars, type Description, type Four, type Frame, Robot } from '../robot';
 import type { Session } from '../session';
 import { FRAME_SECONDS } from '../shown-robot';
@@ -99,7 +99,7 @@ export class RecordView {
   addFrame(frame: Frame, widths: Four<number> | null, seconds: number): void {
     if (this.isRecording && this.recording && !this.recording.add(frame, widths, this.session.board.gait, seconds)) {
       this.setRecording(false);
-      this.setMessage(`The recording is full: ${MAX_SECONDS} s.`);
+      this.setMessage(`The recording is full: ${MAX_RECORDING_SECONDS} s.`);
     }
     if (!this.companion || this.isWaiting) return;
     for (this.pendingSeconds += seconds; this.pendingSeconds > FRAME_SECONDS / 2; this.pendingSeconds -= FRAME_SECONDS) this.companion.step();
@@ -135,7 +135,7 @@ export class RecordView {
   }
 
   /** Saves the requested picture, if any; called after each drawing of the floor. */
-  afterDrawing(): void {
+  finishDrawing(): void {
     this.saveRequestedPicture?.();
     this.saveRequestedPicture = null;
     this.floor.drawsAlways = this.video !== null;

@@ -9,9 +9,9 @@ import { element, make, note, table } from './elements';
 const PNG_SCALE = 2;
 
 /** Sets the buttons up; returns a function that shows the given reports, or hides the section if there are none. */
-export function setUpResults(session: Session): (gaits: Report[]) => void {
-  let gaits: Report[] = [];
-  const drawPicture = () => drawResults(session.robot.description.name, gaits);
+export function setUpResults(session: Session): (reports: Report[]) => void {
+  let reports: Report[] = [];
+  const drawPicture = () => drawResults(session.robot.description.name, reports);
   const savePng = async () => {
     const image = new Image();
     image.src = `data:image/svg+xml,${encodeURIComponent(drawPicture())}`;
@@ -24,13 +24,13 @@ export function setUpResults(session: Session): (gaits: Report[]) => void {
   const onClick = (id: string, action: () => void) => element(`measured-${id}`).addEventListener('click', action);
   onClick('svg', () => saveFile('measured.svg', [drawPicture()], 'image/svg+xml'));
   onClick('png', () => void savePng());
-  onClick('csv', () => saveFile('measured.csv', [formatCsv(gaits)], 'text/csv'));
-  onClick('json', () => saveFile('measured.json', [JSON.stringify({ gaits }, null, 2)], 'application/json'));
+  onClick('csv', () => saveFile('measured.csv', [formatCsv(reports)], 'text/csv'));
+  onClick('json', () => saveFile('measured.json', [JSON.stringify({ gaits: reports }, null, 2)], 'application/json'));
   onClick('print', () => print());
-  return (newGaits) => {
-    gaits = newGaits;
-    element('measure-results').hidden = gaits.length === 0;
-    const sections = gaits.flatMap((report) => [make('h4', {}, formatTitle(report)), table(formatTitle(report), listColumnHeadings(report), formatRows(report)), note(formatRange(report))]);
+  return (newReports) => {
+    reports = newReports;
+    element('measure-results').hidden = reports.length === 0;
+    const sections = reports.flatMap((report) => [make('h4', {}, formatTitle(report)), table(formatTitle(report), listColumnHeadings(report), formatRows(report)), note(formatRange(report))]);
     element('measured').replaceChildren(...sections);
   };
 }

@@ -35,7 +35,10 @@ export function openRoom(hash: string): void {
 /** Returns true if a panel is unfolded and its room is open; other panels draw nothing. */
 export const isShown = (panel: HTMLDetailsElement) => panel.open && panel.closest<HTMLElement>('.room')?.hidden === false;
 
-/** Calls `show` once per robot.toml of the session with its floor and servos, as soon as the panel is shown. */
+/**
+ * Calls `show` when the panel is shown, and when the robot changes while the panel is shown, unless robot.toml, floor
+ * and servos are the same as in the last call.
+ */
 export function followShownRobot(panel: HTMLDetailsElement, session: Session, show: (description: Description) => void): void {
   let shownRobot = '';
   const update = () => {

@@ -36,13 +36,13 @@ export class RoutinesView {
   private recorder: DriveRecorder | null = null;
   /** The recorded steps until the user stores or drops them. */
   private recordedSteps: string[] = [];
-  /** The index of the dragged step, and its new index after a release now; null if no step is dragged. */
+  /** The index of the dragged step, and the index that a release now would give it; null if no step is dragged. */
   private drag: { from: number; to: number } | null = null;
   private readonly pathQueue = createRobotQueue((robot, request: RobotOnFloor & { routine: string }) => robot.simulateRound(request), (path) => this.drawPath(this.chosenRoutine && path));
 
   constructor(
     private readonly session: Session,
-    private readonly text: RobotTextView,
+    private readonly robotText: RobotTextView,
     writer: BoardWriter,
   ) {
     const onClick = (id: string, action: () => void) => element(`routine-${id}`).addEventListener('click', action);
@@ -52,7 +52,7 @@ export class RoutinesView {
     onClick('keep', () => void this.storeRecorded());
     onClick('drop', () => this.offerToStore([]));
     onClick('add', () => void this.addStep());
-    onClick('undo', () => void this.text.undo());
+    onClick('undo', () => void this.robotText.undo());
     onClick('start', () => void this.startRoutine());
     onClick('write', () => void this.useDraft().then((isAccepted) => isAccepted && writer.writeRobot('routine')));
     const { state } = session;
@@ -69,7 +69,7 @@ export class RoutinesView {
   /** Shows the text's routines, if the panel is shown. */
   show(): void {
     if (!isShown(this.panel)) return;
-    this.routines = Robot.routines(this.text.draft);
+    this.routines = Robot.routines(this.robotText.draft);
     replaceOptions(this.routineList, this.routines.map(({ name }) => new Option(name)));
     this.routineList.disabled = this.routines.length === 0;
     this.drag = null;
@@ -83,7 +83,7 @@ export class RoutinesView {
     const { chosenRoutine } = this;
     if (!chosenRoutine) return this.drawPath(null);
     const { floor, servos } = this.session.robot;
-    this.pathQueue.submit({ toml: Robot.putSteps(this.text.draft, chosenRoutine.name, chosenRoutine.steps).text, floor, servos, routine: chosenRoutine.name });
+    this.pathQueue.submit({ toml: Robot.putSteps(this.robotText.draft, chosenRoutine.name, chosenRoutine.steps).text, floor, servos, routine: chosenRoutine.name });
   }
 
   private readonly setMessage = (text: string): void => setText(element('routine-message'), text);
@@ -119,7 +119,7 @@ export class RoutinesView {
     element('routine-recorded').hidden = steps.length === 0;
     this.setMessage(steps.length === 0 ? '' : `Recorded: ${steps.join(', ')}`);
     if (steps.length === 0) return;
-    const takenNames = new Set(Robot.routines(this.text.draft).map(({ name }) => name));
+    const takenNames = new Set(Robot.routines(this.robotText.draft).map(({ name }) => name));
     const names = ['patrol', ...Array.from(takenNames, (_, n) => `patrol-${n + 2}`)];
     this.nameInput.value = names.find((name) => !takenNames.has(name)) ?? '';
     this.nameInput.select();
@@ -127,13 +127,13 @@ export class RoutinesView {
 
   private async storeRecorded(): Promise<void> {
     const name = this.nameInput.value.trim().replaceAll(' ', '-');
-    const { draft } = this.text;
+    const { draft } = this.robotText;
     if (Robot.routines(draft).some((routine) => routine.name === name)) return this.setMessage(`The routine ${name} already exists; choose another name.`);
     const { text, refusal } = Robot.putSteps(draft, name, this.recordedSteps);
     // A routine with an invalid step is stored, too: the step's block shows the error.
     if (refusal && refusal.key !== `routine.${name}.steps`) return this.setMessage(refusal.reason);
     this.offerToStore([]);
-    await this.text.loadText(text);
+    await this.robotText.loadText(text);
     this.routineList.value = name;
     this.show();
   }
@@ -148,7 +148,7 @@ export class RoutinesView {
   /** Replaces the steps of the routine `name`, by default the chosen routine. */
   private async replaceSteps(steps: string[], name = this.routineList.value): Promise<void> {
     this.setMessage('');
-    await this.text.loadText(Robot.putSteps(this.text.draft, name, steps).text);
+    await this.robotText.loadText(Robot.putSteps(this.robotText.draft, name, steps).text);
   }
 
   private async moveStep(from: number, to: number): Promise<void> {
@@ -157,10 +157,10 @@ export class RoutinesView {
     await this.replaceSteps(moveItem(chosenRoutine.steps, from, to));
   }
 
-  /** Makes the shown text the robot, unless it is already; returns true if the text is accepted. */
+  /** Makes the shown text the robot, unless it already is; returns true if the text is accepted. */
   private async useDraft(): Promise<boolean> {
-    const { draft } = this.text;
-    return draft === this.session.robot.toml || this.text.loadText(draft);
+    const { draft } = this.robotText;
+    return draft === this.session.robot.toml || this.robotText.loadText(draft);
   }
 
   private async startRoutine(): Promise<void> {
@@ -177,7 +177,7 @@ export class RoutinesView {
 
   private showSteps(): void {
     const { chosenRoutine, stepList } = this;
-    const { refusal, canUndo } = this.text;
+    const { refusal, canUndo } = this.robotText;
     const steps = chosenRoutine?.steps ?? [];
     while (stepList.children.length > steps.length) stepList.lastElementChild?.remove();
     while (stepList.children.length < steps.length) stepList.append(this.makeBlock(stepList.children.length));

@@ -33,7 +33,7 @@ impl Calibrator {
         self.0.has_unsaved_changes()
     }
 
-    /// Returns true if a reset of the robot was noticed since the last call; the robot has lost its unsaved settings.
+    /// Returns true if a reset of the robot was noticed since the last call. A reset loses the unsaved settings.
     #[wasm_bindgen(js_name = takeReset)]
     pub fn take_reset(&mut self) -> bool {
         self.0.take_reset()

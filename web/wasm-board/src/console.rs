@@ -7,7 +7,7 @@ use lizard_calibrate::{ConsoleError, Reply, ReplyError};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen(typescript_custom_section)]
-const CONSOLE: &str = "
+const TYPES: &str = "
 /** A connection to a robot's console. Times are in ms of the robot's clock, which may be slower than real time. */
 export interface Console {
   /** Sends a line; returns the answer, and the preceding `#` lines as `notes`. Rejects if there is no answer. */

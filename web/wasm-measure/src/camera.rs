@@ -86,8 +86,8 @@ impl Camera {
     /// Measures gaits in the video.
     ///
     /// # Errors
-    /// Fails if robot.toml is invalid, if the robot does not have a requested gait, if the video cannot be measured, or
-    /// if a walk without a requested gait does not clearly match one.
+    /// Fails if robot.toml is invalid, if a requested gait does not exist or does not move the robot, if the video
+    /// cannot be measured, or if a walk without a requested gait does not clearly match one.
     pub fn measure(&mut self, request: &MeasureRequest) -> Result<Results, Box<dyn Error>> {
         let robot = Robot::parse(&request.toml)?;
         let find_gait = |walk: &RequestedWalk| {

@@ -22,6 +22,7 @@ export interface Component {
   predicted: number | null;
   /** The mean minus the prediction, in standard errors. */
   differs: number | null;
+  /** True if the mean agrees with the prediction; null without a prediction. */
   agrees: boolean | null;
 }
 /** A gait as `lizard measure --json` prints it. */

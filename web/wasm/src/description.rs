@@ -300,7 +300,8 @@ fn list_lengths(robot: &Robot) -> Vec<LengthEntry> {
         make_entry("leg.follower", "leg follower", "leg.crank", leg.follower),
         make_entry(forward_key, "hip, fore and aft", forward_key, forward),
     ];
-    // Derived front and hind hips may differ. One number cannot describe both; therefore it is not offered.
+    // Hips that are computed from the legs may differ between front and hind. One number cannot describe both;
+    // therefore the page does not offer this length.
     let side_entry = (front_side == hind_side)
         .then(|| make_entry(side_key, "hip, sideways", side_key, front_side));
     let mount_entry = make_entry("leg.mount", "outward sweep of the legs", "leg.mount", mount);

@@ -81,6 +81,7 @@ impl GaitSearch {
     pub fn begin(twin: &Twin, task: &SearchTask) -> Result<Self, Refusal> {
         let robot = twin.robot().with_gait(&task.bars.to_toml());
         let robot = robot.map_err(Refusal::for_gait)?;
+        // The first gait of this robot is `stand`.
         let (gait, ground) = (&robot.gaits()[1], twin.ground());
         let tuning = Tuning::new(&robot, ground, gait, task.rate, &task.bars.name, task.seed);
         let tuning = tuning.map_err(|error| match error {
@@ -164,7 +165,7 @@ mod tests {
     }
 
     /// Returns the message with which a search is refused.
-    fn begin_refused(task: &SearchTask) -> String {
+    fn refusal_reason(task: &SearchTask) -> String {
         let (_, twin) = load_paper_robot_and_twin();
         let refusal = GaitSearch::begin(&twin, task).expect_err("the search is refused");
         refusal.reason
@@ -209,16 +210,16 @@ mod tests {
 
     #[test]
     fn the_refusal_of_a_search_names_the_reason() {
-        assert!(begin_refused(&make_task("arc-left")).contains("walks along a curve"));
+        assert!(refusal_reason(&make_task("arc-left")).contains("walks along a curve"));
         let mut fast_task = make_task("walk");
         fast_task.rate = Some(900.0);
         assert_eq!(
-            begin_refused(&fast_task),
+            refusal_reason(&fast_task),
             "servo speed 900: must be between 10 and 310 deg/s (limits.gait_slew in robot.toml)"
         );
         let mut wide_task = make_task("walk");
         wide_task.bars.amplitude = 60.0;
-        let refused = begin_refused(&wide_task);
-        assert!(refused.starts_with("in \"walk\" "), "{refused}");
+        let reason = refusal_reason(&wide_task);
+        assert!(reason.starts_with("in \"walk\" "), "{reason}");
     }
 }

@@ -87,7 +87,7 @@ impl PageRobot {
         searches: bool,
     ) -> Result<JsValue, JsError> {
         let edits: Vec<(String, f64)> = from_js(edits)?;
-        Ok(to_js(TriedLengths::try_edits(toml, &edits, searches)))
+        Ok(to_js(TriedLengths::try_requested(toml, &edits, searches)))
     }
 
     /// Returns the smallest and the largest value that all these lengths may have together; null for an unknown key or
@@ -296,7 +296,7 @@ impl PageRobot {
         to_js(self.0.search.as_mut().map(|search| search.try_next()))
     }
 
-    /// Compares the best gait so far with the gait to beat on `robotCount` random robots; null until a valid gait is
+    /// Compares the best gait so far with the gait to beat on `robot_count` random robots; null until a valid gait is
     /// found.
     #[wasm_bindgen(js_name = compareBestGait, unchecked_return_type = "FoundGait | null")]
     pub fn compare_best_gait(&mut self, robot_count: usize) -> JsValue {

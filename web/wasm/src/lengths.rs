@@ -52,7 +52,7 @@ pub struct WithoutGait {
 
 impl TriedLengths {
     /// Sets lengths in the text of a robot.toml; if `searches`, also searches for valid alternatives.
-    pub fn try_edits(text: &str, requested: &RequestedLengths, searches: bool) -> Self {
+    pub fn try_requested(text: &str, requested: &RequestedLengths, searches: bool) -> Self {
         let changed_text = match with_lengths(text, requested) {
             Ok(text) => text,
             Err(error) => return Self::without_alternatives(text.to_string(), Some(error.into())),
@@ -99,7 +99,7 @@ pub fn find_accepted_range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
     let find_nearest_accepted = |value: f64| {
         let value = (value / LENGTH_STEP).round() * LENGTH_STEP;
         let requested: Vec<_> = keys.iter().map(|key| (key.clone(), value)).collect();
-        let result = TriedLengths::try_edits(text, &requested, true);
+        let result = TriedLengths::try_requested(text, &requested, true);
         match (result.refusal, result.nearest) {
             (None, _) => value,
             (Some(_), Some(nearest)) => nearest.lengths[0].1,
@@ -161,21 +161,23 @@ mod tests {
 
     #[test]
     fn accepted_lengths_have_no_alternatives_and_an_unknown_key_is_refused() {
-        let result = TriedLengths::try_edits(PAPER_TOML, &crank_lengths(41.0), true);
+        let result = TriedLengths::try_requested(PAPER_TOML, &crank_lengths(41.0), true);
         assert_eq!(result.refusal, None);
         assert_eq!((result.nearest, result.without), (None, None));
         assert!(result.text.contains("crank = 41.0") && result.text.contains("follower = 41.0"));
         let unknown_length = ("links.l99".to_string(), 1.0);
-        let with_unknown_key = TriedLengths::try_edits(PAPER_TOML, &[unknown_length], true);
+        let with_unknown_key = TriedLengths::try_requested(PAPER_TOML, &[unknown_length], true);
         assert_eq!(with_unknown_key.text, PAPER_TOML);
         let refusal = with_unknown_key.refusal.expect("an unknown key is refused");
-        assert_eq!(refusal.reason, "robot.toml has no number links.l99");
+        let expected =
+            "robot.toml has no value links.l99 that can be changed; edit the file by hand";
+        assert_eq!(refusal.reason, expected);
     }
 
     #[test]
-    fn the_refusal_of_a_length_offers_the_longest_accepted_half_millimetre() {
+    fn a_length_that_is_too_long_is_refused_with_the_longest_accepted_length() {
         let slider_lengths = |mm| ["links.l12", "links.l17"].map(|key| (key.to_string(), mm));
-        let result = TriedLengths::try_edits(PAPER_TOML, &slider_lengths(80.0), true);
+        let result = TriedLengths::try_requested(PAPER_TOML, &slider_lengths(80.0), true);
         let consequence = result.refusal.expect("the lengths are refused").consequence;
         assert_eq!(
             consequence.as_deref(),
@@ -190,7 +192,7 @@ mod tests {
         assert!(45.0 < left_half && left_half < 80.0, "{left_half}");
         assert!(Robot::parse(&nearest.text).is_ok());
         let longer_lengths = slider_lengths(left_half + LENGTH_STEP);
-        let longer_lengths = TriedLengths::try_edits(PAPER_TOML, &longer_lengths, false);
+        let longer_lengths = TriedLengths::try_requested(PAPER_TOML, &longer_lengths, false);
         assert!(
             longer_lengths.refusal.is_some(),
             "{left_half} mm is not the longest accepted length"
@@ -205,7 +207,7 @@ mod tests {
         let (smallest, largest) = range.expect("the robot has cranks");
         assert!(smallest < 45.0 && 45.0 < largest, "{smallest} to {largest}");
         let is_refused = |mm: f64| {
-            let result = TriedLengths::try_edits(PAPER_TOML, &crank_lengths(mm), false);
+            let result = TriedLengths::try_requested(PAPER_TOML, &crank_lengths(mm), false);
             result.refusal.is_some()
         };
         assert!(!is_refused(smallest) && !is_refused(largest));
@@ -220,7 +222,7 @@ mod tests {
     #[test]
     fn a_length_that_one_gait_forbids_is_offered_without_this_gait() {
         let coupler_lengths = ["links.l2", "links.l3"].map(|key| (key.to_string(), 60.0));
-        let result = TriedLengths::try_edits(PAPER_TOML, &coupler_lengths, true);
+        let result = TriedLengths::try_requested(PAPER_TOML, &coupler_lengths, true);
         let consequence = result.refusal.expect("the lengths are refused").consequence;
         let expected_consequence = "in \"look\" the left front leg would lock";
         assert_eq!(consequence.as_deref(), Some(expected_consequence));

@@ -15,7 +15,8 @@ const REFERENCE_VOLTS: f64 = 1.1;
 /// A running core of a robot.
 pub struct RunningCore {
     running_robot: RunningRobot,
-    /// Voltage at the measuring pin, behind the divider, while the servos' rail is healthy, mV; 0 without a rail.
+    /// Voltage at the measuring pin, behind the divider, while the servos' rail is healthy, mV; 0 if the rail is not
+    /// measured.
     rail_pin_mv: f64,
 }
 

@@ -71,7 +71,7 @@ impl SingularityMap {
     }
 }
 
-/// Returns an end's smallest margin at its crank angles, in hundredths, and true if the limits allow these angles.
+/// Returns an end's smallest margin, in hundredths, at its crank angles, deg, and true if the limits allow the angles.
 fn evaluate_point(robot: &Robot, end: End, left: f64, right: f64) -> (Option<i8>, bool) {
     let Ok(five_bar_pose) = robot.lizard().end(end).forward(left, right) else {
         return (None, false);

@@ -31,7 +31,7 @@ pub enum EditedGait {
 /// The result of the trial of a valid gait.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Trial {
-    /// Predicted displacement per cycle.
+    /// Prediction of a cycle.
     #[serde(flatten)]
     pub prediction: GaitPrediction,
     /// The gait's table for robot.toml.
@@ -122,8 +122,8 @@ impl EditedGait {
         let is_period_valid = |hundredths: i64| is_valid_with(size, hundredths as f64 / 100.0);
         let largest_steps = (size * steps_per_unit).ceil() as i64 - 1;
         let size_steps = find_nearest_valid(largest_steps, MIN_SIZE_STEPS, is_size_valid);
-        let shortest = (period * 100.0).floor() as i64 + 1;
-        let hundredths = find_nearest_valid(shortest, MAX_PERIOD_HUNDREDTHS, is_period_valid);
+        let min_hundredths = (period * 100.0).floor() as i64 + 1;
+        let hundredths = find_nearest_valid(min_hundredths, MAX_PERIOD_HUNDREDTHS, is_period_valid);
         let size = size_steps.map(|steps| (size_parameter, steps as f64 / steps_per_unit));
         let period = hundredths.map(|hundredths| ("period", hundredths as f64 / 100.0));
         let alternatives = size.into_iter().chain(period);
@@ -138,6 +138,7 @@ fn try_table(table: String, twin: &Twin) -> Result<Trial, Refusal> {
     let robot = twin.robot().with_gait(&table).map_err(Refusal::for_gait)?;
     let mut trial_twin = Twin::new(&robot, twin.servo_model());
     trial_twin.set_ground(*twin.ground());
+    // The first gait of this robot is `stand`.
     let gait = &robot.gaits()[1];
     let (audit, limits) = (gait.audit(), robot.limits());
     let margins = [

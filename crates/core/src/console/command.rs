@@ -211,8 +211,8 @@ fn parse_boot(argument: &[u8], robot: &Robot) -> Result<Boot, LineError> {
 struct Arguments {
     /// The servo to which a setting applies.
     servo: Servo,
-    /// The other arguments: percentages, frames, milliseconds and hundredths as written, `+` as 1, `-` as 0, degrees as
-    /// steps of an [`Angle`].
+    /// The other arguments: whole numbers as written, numbers with decimals in hundredths, `+` as 1, `-` as 0, degrees
+    /// as steps of an [`Angle`].
     numbers: [u16; 4],
 }
 
@@ -304,7 +304,7 @@ fn parse_gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), LineError> {
 }
 
 /// Compares a line with a gait's name. Returns the count of cycles after the name, 0 if there is none. Stops at the
-/// first byte that differs, because there may be many names, and a frame may be pending.
+/// first byte that differs, because there may be many names, and a frame may be waiting.
 #[inline(never)]
 fn match_gait_name(line: &[u8], name: GaitName) -> Result<u16, LineError> {
     let mut rest = line;

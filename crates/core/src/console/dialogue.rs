@@ -22,8 +22,8 @@ use crate::numbers::gaits::GaitId;
 use crate::numbers::rate::BaudRate;
 use crate::numbers::units::FRAME_MS;
 
-/// The largest length of an output line, including its line end: a `status` line in which every number has its largest
-/// number of digits.
+/// The largest length of an output line, including its line end: a `status` line with the longest name of a gait, in
+/// which every number has its largest number of digits.
 pub const MAX_OUTPUT_LINE_BYTES: u8 = 250;
 
 /// A line waiting to be written. The variants are in order of priority.
@@ -98,7 +98,7 @@ impl Console {
         self.next_pending_line(control).is_some()
     }
 
-    /// Handles a received byte; if the byte ends a line, executes that line.
+    /// Adds a received byte to the line; if the byte ends the line, executes the line.
     // Not inlined, like the next function, because that saves half a kilobyte of flash.
     #[inline(never)]
     pub fn receive(&mut self, byte: u8, control: &mut Controller) {
@@ -116,8 +116,9 @@ impl Console {
         self.answer = answer.unwrap_or_else(Some);
     }
 
-    /// Executes the received line. Returns `Ok(None)` if the order must wait for the EEPROM; the caller then reports
-    /// its outcome with [`Console::finish_order`].
+    /// Executes the received line. Returns the first part of its answer, as an error if the line is invalid or its
+    /// order is refused. Returns `Ok(None)` if the order must wait for the EEPROM; the caller then reports its outcome
+    /// with [`Console::finish_order`].
     #[inline(never)]
     fn execute_line(&mut self, control: &mut Controller) -> Result<Option<AnswerPart>, AnswerPart> {
         let robot = control.motion().robot();

@@ -153,16 +153,16 @@ pub fn print_hazard(hazard: Hazard, motion: &Motion, out: &mut impl Output) {
                 stroke_max: max,
                 ..
             } = robot.slider(side);
-            print_stroke(Text::SliderPosition, length, side, robot, out);
-            print_stroke(Text::StrokeRange, min, side, robot, out);
-            print_stroke(Text::RangeSeparator, max, side, robot, out)
+            print_displacement(Text::SliderPosition, length, side, robot, out);
+            print_displacement(Text::StrokeRange, min, side, robot, out);
+            print_displacement(Text::RangeSeparator, max, side, robot, out)
         }
     }
 }
 
 /// Prints `text`, followed by a slider's displacement from its nominal length, mm.
 #[inline(never)]
-fn print_stroke(text: Text, length: u16, side: Side, robot: &Robot, out: &mut impl Output) {
+fn print_displacement(text: Text, length: u16, side: Side, robot: &Robot, out: &mut impl Output) {
     text.print(out);
     print_signed(out, robot.slider(side).displacement_hundredths(length), 2)
 }

@@ -111,7 +111,7 @@ texts! {
     CauseWatchdog = "watchdog";
     Err = "err ";
 
-    // Reasons.
+    // The reasons of errors and refusals.
     UnknownCommand = "unknown command; send help for the list";
     Garbled = "the line was garbled; send it again";
     UnexpectedArgument = "this command takes no argument";

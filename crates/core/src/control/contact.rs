@@ -66,8 +66,8 @@ mod tests {
     /// Returns the frames in which a contact would end its step. In `levels`, `#` is a frame with a closed contact.
     fn find_ending_frames(mut contact: Contact, levels: &str) -> Vec<usize> {
         let level_frames = levels.bytes().enumerate();
-        let closed_frames = level_frames.filter(|(_, level)| contact.add_level(*level == b'#'));
-        closed_frames.map(|(frame, _)| frame).collect()
+        let ending_frames = level_frames.filter(|(_, level)| contact.add_level(*level == b'#'));
+        ending_frames.map(|(frame, _)| frame).collect()
     }
 
     #[test]

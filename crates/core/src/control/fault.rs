@@ -35,7 +35,7 @@ impl Fault {
 }
 
 /// Frames for which the LED is lit in each flash, and dark after each flash; a power of two, because one bit of the
-/// frame tells lit from dark.
+/// frame's number tells lit from dark.
 const FLASH_FRAMES: u8 = 8;
 
 /// Additional dark frames after the last flash.

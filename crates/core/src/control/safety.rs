@@ -42,6 +42,7 @@ pub struct Safety {
     supply: Supply,
     fault: Option<Fault>,
     led: LedPattern,
+    /// True while the LED is lit.
     is_lit: bool,
     /// The number of late edges that have been handled as faults.
     handled_late_edges: u16,
@@ -77,7 +78,7 @@ pub enum Notice {
 const NOTICE_COUNT: u8 = 7;
 
 impl Notice {
-    /// The notice at an index of this list.
+    /// Returns the notice whose bit has this index; [`Notice::Waiting`] for an index of 6 or more.
     const fn at(index: u8) -> Self {
         match index {
             0 => Self::SavedSettings,
@@ -109,7 +110,7 @@ impl Safety {
         }
     }
 
-    /// The last fault; `None` if an order has moved the robot since.
+    /// The last fault; `None` if there has been none, or if an order has moved the robot since.
     pub const fn fault(&self) -> Option<Fault> {
         self.fault
     }
@@ -168,29 +169,29 @@ impl Safety {
         }
         // The last command may have arrived at the end of the first counted frame, so one frame is subtracted.
         if deadman_ms != 0 && self.silence_ms.saturating_sub(FRAME_MS) >= deadman_ms {
-            reaction = reaction.max(self.handle_event(Event::Silence, state));
+            reaction = reaction.max(self.react_to(Event::Silence, state));
         }
         if self.supply.add_reading(health.supply, supplies) {
             self.notify(Notice::Supply);
             reaction = reaction.max(match self.supply.level() {
                 Level::Good | Level::Slow => Reaction::None,
-                Level::Stop => self.handle_event(Event::SupplyTooLowToMove, state),
-                Level::Rest => self.handle_event(Event::SupplyTooLowToHold, state),
+                Level::Stop => self.react_to(Event::SupplyTooLowToMove, state),
+                Level::Rest => self.react_to(Event::SupplyTooLowToHold, state),
             });
         }
         if health.late_edges != self.handled_late_edges {
             self.handled_late_edges = health.late_edges;
-            reaction = reaction.max(self.handle_event(Event::LateEdge, state));
+            reaction = reaction.max(self.react_to(Event::LateEdge, state));
         }
         if !health.is_stack_intact && self.fault != Some(Fault::Stack) {
-            reaction = reaction.max(self.handle_event(Event::StackOverflow, state));
+            reaction = reaction.max(self.react_to(Event::StackOverflow, state));
         }
         reaction
     }
 
     /// Records the fault that the table of events gives for `event`, if any, and returns the reaction.
     #[inline(never)]
-    fn handle_event(&mut self, event: Event, state: State) -> Reaction {
+    fn react_to(&mut self, event: Event, state: State) -> Reaction {
         match self.response(event, state) {
             Response::Freeze(fault) => {
                 self.record_fault(fault);

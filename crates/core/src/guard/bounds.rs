@@ -53,7 +53,7 @@ use crate::numbers::section::FiveBarLengths;
 use crate::numbers::slider::Slider;
 use crate::numbers::units::Scale;
 
-/// The largest error of a sine or a cosine, which a test of [`crate::guard::trig`] determines.
+/// The largest error of a sine or a cosine; a test of [`crate::guard::trig`] checks it at every angle.
 pub const MAX_DIRECTION_ERROR: f64 = 4.5e-5;
 
 /// The unit of a margin, a number in Q15.

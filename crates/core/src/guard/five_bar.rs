@@ -90,7 +90,7 @@ impl<'a> FiveBar<'a> {
 impl<'a> Robot<'a> {
     /// Returns an end's five-bar, in the frame of that end.
     pub fn five_bar(&self, end: End) -> FiveBar<'a> {
-        FiveBar::new(self.link_lengths(end), self.tables(end))
+        FiveBar::new(self.link_lengths(end), self.coupler_tables(end))
     }
 }
 

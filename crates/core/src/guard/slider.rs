@@ -1,8 +1,8 @@
 //! The length of the slider, the prismatic joint on each side of the body.
 //!
 //! The slider has two halves and connects an arm of the front crank to an arm of the rear crank on the same side (an
-//! RRPRR five-bar). The slider has no singularity, because its block of the passive Jacobian is its length. But its
-//! halves can be pulled apart or collide.
+//! RRPRR five-bar). The slider has no singularity: the determinant of its block in the Jacobian of the passive joints
+//! is minus its length, which is never 0 within the stroke. But its halves can be pulled apart or collide.
 
 use lizard_avr::{mul, mul_unsigned};
 
@@ -22,8 +22,8 @@ impl Slider {
     /// Computes the slider's squared length, in squared steps, for these directions of the front and the rear crank.
     /// The direction of the rear crank is in the tail's own frame.
     ///
-    /// Valid only for the left side, whose front arm is 90 degrees counter-clockwise from its crank; a right slider
-    /// must be mirrored first.
+    /// Valid only for the left side, whose front arm is 90 degrees counter-clockwise from its crank; a right slider and
+    /// the directions of its cranks must be mirrored first.
     #[inline(never)]
     pub fn length_sq(&self, front: &Direction, rear: &Direction) -> u32 {
         let arm_sum_x = rounded_upper_half(

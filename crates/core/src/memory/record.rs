@@ -268,7 +268,7 @@ mod tests {
         let addresses: Vec<u16> = eeprom.log.iter().map(|(address, ..)| *address).collect();
         assert_eq!(addresses[..2], [64, 64 + 6]);
         assert_eq!(addresses.last(), Some(&64));
-        let claim = "only byte 5, the CRC and twice the mark are written";
+        let claim = "the mark is written twice, otherwise only byte 5 and the CRC";
         assert!((4..=5).contains(&addresses.len()), "{claim}");
     }
 

@@ -1,7 +1,7 @@
 //! The cause of a reset, and the state of the servos before the reset.
 //!
-//! A robot that is reset in the middle of a step need not fall over: the servos are still in their positions, which a
-//! few bytes of RAM preserve across the reset ([`crate::memory::retained_ram`]).
+//! A robot that is reset in the middle of a motion need not jump to the neutral pose: the servos are still in their
+//! positions, which a few bytes of RAM preserve across the reset ([`crate::memory::retained_ram`]).
 
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::rate::BaudRate;

@@ -218,8 +218,8 @@ impl Settings {
 }
 
 /// Computes the key under which a gait is saved: a hash of the gait's name, never 0. With this key the gait is found
-/// even after other gaits in robot.toml have changed. The host that made the robot has checked that no two of its gaits
-/// have the same key.
+/// even after other gaits in robot.toml have changed. The host that made the section has checked that no two gaits have
+/// the same key.
 pub fn gait_key(name: impl Iterator<Item = u8>) -> u16 {
     let mut hash = 0u16;
     for byte in name {

@@ -354,6 +354,8 @@ impl Motion {
         self.next_target = None;
     }
 
+    /// Starts the next motion if the current one stands still, and advances the motion by a frame. Freezes the last
+    /// pose if the new pose is unsafe.
     // Not inlined, because in `advance_frame` its registers would cost more than the call.
     #[inline(never)]
     fn advance_motion(&mut self) {
@@ -423,6 +425,7 @@ impl Motion {
         }
     }
 
+    /// Starts the move to a target, or ends all motion if the target is a standstill.
     // Not inlined, because most frames do not call it.
     #[inline(never)]
     fn move_to(&mut self, target: Target) {

@@ -54,10 +54,10 @@ impl Calibration {
         (mul(sweep.0, self.gain) + (1 << 13)) >> 14
     }
 
-    /// Computes how much the pulse width may change in a frame in which the servo may turn by at most `per_frame`, in
+    /// Computes how much the pulse width may change in a frame in which the servo may turn by at most `max_turn`, in
     /// 1/65536 turn. The result is at least one CPU cycle.
-    pub fn max_width_change(&self, per_frame: u16) -> u16 {
-        let cycles = (mul_unsigned(per_frame, self.gain.unsigned_abs()) >> 14) as u16;
+    pub fn max_width_change(&self, max_turn: u16) -> u16 {
+        let cycles = (mul_unsigned(max_turn, self.gain.unsigned_abs()) >> 14) as u16;
         cycles.max(1)
     }
 

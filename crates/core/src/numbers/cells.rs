@@ -1,17 +1,17 @@
 //! Certified cells: ranges of the sweeps of two servos in which the guard accepts every pose, so that the guard need
 //! not measure these poses.
 //!
-//! Computing all margins of a pose takes most of a frame, and far from all limits the result is always "safe". Every
-//! condition of the guard depends on one or two servos, so four small maps over pairs of servos can mark these safe
-//! ranges. The host makes the maps from a robot's numbers, and proves that the integer arithmetic of
-//! [`crate::guard::clearance`] accepts every pose in every cell. A pose outside the cells is not necessarily unsafe;
-//! the guard measures it.
+//! Computing all margins of a pose takes most of the time in which a frame is computed, and far from all limits the
+//! result is always "safe". Every condition of the guard depends on one or two servos, so four small maps over pairs of
+//! servos can mark these safe ranges. The host makes the maps from a robot's numbers, and proves that the integer
+//! arithmetic of [`crate::guard::clearance`] accepts every pose in every cell. A pose outside the cells is not
+//! necessarily unsafe; the guard measures it.
 
 use lizard_avr::Flash;
 
 use crate::numbers::units::Sweep;
 
-/// The largest number of rows in a map.
+/// The largest number of rows that the host puts into a map.
 pub const MAX_ROWS: usize = 64;
 
 /// The binary logarithm of a row's width in steps of a sweep (1/65536 turn); the width is 1.4 deg.

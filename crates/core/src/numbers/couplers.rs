@@ -9,8 +9,8 @@
 //! skew = 2 foot / distance - 1  = (a^2 - b^2) / s              0 for equal couplers
 //! ```
 //!
-//! The height is the distance of the end point from the line between the crank tips, by Heron's formula. The foot is
-//! the distance from the left crank tip to the foot of the height. Both functions are read from a [`Curve`]. At either
+//! `height` is the distance of the end point from the line between the crank tips, by Heron's formula; `foot` is the
+//! distance from the left crank tip to the foot of this height. Both functions are read from a [`Curve`]. At either
 //! limit of the range of `s`, `R` for stretched couplers and `N` for folded couplers, the rise falls to zero like a
 //! square root, too steeply for a table over `s`. Therefore the rise near each limit is read from another table, over
 //! the distance from the limit, `R - s` or `s - N`. A robot that cannot reach a limit does not have the table for this
@@ -222,7 +222,7 @@ fn compute_peak_sq(left: i16, right: i16) -> u32 {
 
 const _: () = assert!(
     OCTAVE_COUNT == 10,
-    "guard::bounds assumes 1/1024 of R, a type-2 margin of .06"
+    "guard::bounds assumes OCTAVE_COUNT = 10: derive its bounds again"
 );
 
 #[cfg(test)]

@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn entry_arguments_never_decrease_and_are_at_most_twice_the_largest() {
+    fn entry_arguments_never_decrease_and_are_at_most_twice_the_largest_argument() {
         for max_argument in [0, 1, 100, 1023, 1024] {
             for index in 1..ENTRY_COUNT {
                 let previous_argument = argument_at(max_argument, index - 1);

@@ -29,6 +29,7 @@ use crate::numbers::units::Angle;
 #[derive(Clone, Copy)]
 pub struct Robot<'a> {
     section: Region<'a>,
+    /// False only for [`Robot::NONE`].
     is_present: bool,
 }
 
@@ -122,7 +123,7 @@ impl<'a> Robot<'a> {
     }
 
     /// The tables of an end's couplers.
-    pub(crate) fn tables(&self, end: End) -> CouplerTables<'a> {
+    pub(crate) fn coupler_tables(&self, end: End) -> CouplerTables<'a> {
         let curves_offset =
             offset_of!(Numbers, curves) + end as usize * size_of::<[u16; CURVE_COUNT]>();
         let read_table =

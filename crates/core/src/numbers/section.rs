@@ -121,7 +121,7 @@ pub(crate) const AFTER_NUMBERS_OFFSET: u16 = NUMBERS_OFFSET + size_of::<Numbers>
 /// The number of curves for each pair of couplers.
 pub const CURVE_COUNT: usize = 4;
 
-/// A part of the section whose address and length are in [`Numbers::parts`].
+/// A part of the section whose address and number of elements are in [`Numbers::parts`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SectionPart {
     /// The gaits and the routines, each a [`crate::numbers::gaits::Gait`].

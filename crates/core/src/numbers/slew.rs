@@ -24,8 +24,8 @@ impl Slew {
         assert!(per_frame >= Self::MIN_PER_FRAME);
         Self {
             per_frame,
-            // The top speed of a smoothstep is 3/2 of its mean speed, and rounding adds at most three steps per frame
-            // for each half turn of the distance.
+            // The top speed of a smoothstep is 3/2 of its mean speed. Rounding adds at most 3/65536 turn per frame for
+            // each half turn of the distance, which is at most a turn.
             frames_per_distance: (3u32 << 16).div_ceil(2 * (per_frame as u32 - 6)) as u16,
         }
     }

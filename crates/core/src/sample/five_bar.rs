@@ -11,7 +11,7 @@ use crate::numbers::section::FiveBarLengths;
 use crate::numbers::units::Scale;
 use crate::sample::steps_per_mm;
 
-/// The five-bar linkage of an end, with the tables of its couplers.
+/// The five-bar linkage of an end (head or tail), with the tables of its couplers.
 #[derive(Clone, Debug)]
 pub struct SampleFiveBar {
     /// The lengths that a section stores.
@@ -83,10 +83,10 @@ impl SampleFiveBar {
             couplers: couplers.map(to_length),
             can_nearly_stretch: true,
         };
-        let [left, right] = lengths.couplers;
-        (left.min(right) >= link_lengths::MIN_COUPLER_STEPS).then(|| Self {
+        let [left_coupler, right_coupler] = lengths.couplers;
+        (left_coupler.min(right_coupler) >= link_lengths::MIN_COUPLER_STEPS).then(|| Self {
             lengths,
-            couplers: SampleCouplers::new(left, right),
+            couplers: SampleCouplers::new(left_coupler, right_coupler),
         })
     }
 

@@ -136,7 +136,7 @@ impl Measurements {
             [130.0, 50.0, 310.0, 230.0].map(any_servo),
         );
         strategies.prop_map(|(head, tail, base, left, right, limits, servos)| {
-            let side_links = |[l11, l12, l13, l14]: [f64; 4]| [base, l11, l12, l13, l14];
+            let side_links = |links: [f64; 4]| [base, links[0], links[1], links[2], links[3]];
             let (type2, type1, leg, stroke_min, stroke_max, slew_deg_per_s) = limits;
             Self {
                 lizard: build_lizard(head, tail, side_links(left), side_links(right)),

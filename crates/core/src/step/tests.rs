@@ -9,7 +9,7 @@ use crate::motion::{Activity, Motion};
 use crate::sample::Sample;
 use crate::virtual_board::{RunningRobot, Transmitter, VirtualBoard};
 
-/// Starts a robot's program after `ticks` ticks, when the board has received the bytes `input`.
+/// Starts a robot's program on a board that has counted `ticks` ticks and has received the bytes of `input`.
 fn start_robot(ticks: u8, input: &str) -> RunningRobot {
     let mut board = VirtualBoard::default();
     for _ in 0..ticks {
@@ -24,7 +24,7 @@ fn run_step(robot: &mut RunningRobot) -> bool {
     robot.main.step(&mut robot.board) == StepResult::Worked
 }
 
-/// Returns a standing robot that has just received a line of garbled bytes, as from a sender at another baud rate.
+/// Returns a robot that has just received a line of garbled bytes, as from a sender at another baud rate.
 fn start_robot_with_garbled_line() -> RunningRobot {
     let mut robot = RunningRobot::power_on(*Sample::asymmetric());
     robot.run_frames(10);

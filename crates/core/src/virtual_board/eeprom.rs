@@ -84,7 +84,7 @@ impl Eeprom {
     }
 
     /// Lets a millisecond pass.
-    pub(super) fn pass_time(&mut self) {
+    pub(super) fn pass_one_ms(&mut self) {
         let delay = self.remaining_delay.get_mut();
         *delay = delay.saturating_sub(u16::from(self.is_timed));
         if *delay == 0 {

@@ -17,7 +17,7 @@ fn run_standing_robot() -> RunningRobot {
 const NO_PULSES: Pulses = Pulses([PulseWidth(0); 4]);
 
 #[test]
-fn a_frame_is_played_once_taken_over_and_repeats_while_main_is_late() {
+fn a_frame_is_played_after_it_is_taken_over_and_repeats_while_the_main_loop_is_late() {
     let mut board = VirtualBoard::default();
     board.connect([9, 10, 5, 6], None);
     let pulses = Pulses([1_000, 20_000, 30_000, 63_000].map(PulseWidth));
@@ -109,7 +109,7 @@ fn a_slow_transmitter_has_less_room_until_time_passes() {
 }
 
 #[test]
-fn the_reading_is_empty_until_every_voltage_has_been_measured() {
+fn the_reading_is_zero_until_every_voltage_has_been_measured() {
     for (measures_rail, first_frame) in [(false, 2), (true, 4)] {
         let mut adc = Adc::new(HEALTHY_BOARD.supply, measures_rail);
         for frame in 1..40 {

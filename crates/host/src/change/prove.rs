@@ -18,7 +18,7 @@ use crate::shared::spread::{SpreadArgs, Spreadable};
 /// right side, in the firmware's steps of 1/65536 turn. It decides each pair both with the
 /// firmware's integers and in floating point. In certified cells, where the firmware skips
 /// the guard, the guard must accept every pair. The command prints the largest error of each
-/// margin (at an end, only at pairs whose type-2 margin is above its limit), and the largest
+/// margin (at head and tail, only at pairs whose type-2 margin is above its limit), and the largest
 /// distance from a limit at which the two decisions differ. The exit code is 1 if that distance
 /// exceeds the one in docs/firmware.md, or if the guard rejects a pair in a certified cell.
 #[derive(clap::Args, Debug, Serialize, Deserialize)]

@@ -17,7 +17,7 @@ use std::io::{self, Write};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::Failure;
-use crate::shared::escape::readable_lines;
+use crate::shared::escape::make_readable;
 use command_entry::{CommandEntry, DEVELOPMENT};
 use nested::WithSubcommand;
 
@@ -229,7 +229,7 @@ pub fn run_and_report(arguments: Vec<OsString>) -> u8 {
         Err(failure) => {
             // The message may quote a file or a board, so its control characters are escaped. `writeln` instead of
             // `eprintln`, because a closed terminal must not cause a panic.
-            let message = readable_lines(&failure.to_string());
+            let message = make_readable(&failure.to_string());
             let _ = writeln!(io::stderr(), "lizard: {message}");
             failure.exit_code()
         }
@@ -240,7 +240,7 @@ pub fn run_and_report(arguments: Vec<OsString>) -> u8 {
 /// shortened, and ends the program.
 fn exit_with(error: &clap::Error) -> ! {
     let text = error.render().to_string();
-    let shortened_text = readable_lines(&text);
+    let shortened_text = make_readable(&text);
     if shortened_text == text {
         error.exit();
     }

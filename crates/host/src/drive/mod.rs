@@ -1,5 +1,5 @@
-//! The commands for a board on USB: they list ports, write the firmware, open the robot's console, calibrate the robot,
-//! save its settings, and replay a recorded session.
+//! The commands for a board on USB: they list ports, write the firmware, report the robot's state, open its console,
+//! calibrate it, save its settings, and replay a recorded session.
 
 mod clock;
 pub mod console;

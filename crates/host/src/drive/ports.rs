@@ -24,6 +24,7 @@ pub struct Args {
 /// A serial port; the field names are the JSON keys.
 #[derive(Debug, Serialize)]
 struct PortReport {
+    /// The port's name.
     port: String,
     /// The USB vendor ID as four hexadecimal digits, as lsusb prints it.
     vendor: String,
@@ -41,11 +42,11 @@ struct PortReport {
 
 impl PortReport {
     fn from_port(port: UsbPort) -> Self {
-        let [vendor, product] = port.chip.map(|id| format!("{id:04x}"));
+        let [vendor, product] = port.chip_ids.map(|id| format!("{id:04x}"));
         Self {
             vendor,
             product,
-            chip: describe_chip(port.chip),
+            chip: describe_chip(port.chip_ids),
             may_open: port::may_open(&port.name),
             open_in: port::find_holder(&port.name),
             name: port
@@ -76,20 +77,20 @@ fn describe_chip(ids: [u16; 2]) -> Option<&'static str> {
 /// # Errors
 /// Fails if standard output cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
-    let ports = usb_ports::list().into_iter().map(PortReport::from_port);
-    let ports: Vec<PortReport> = ports.collect();
-    json::print_json_or_text(args.json, &ports, || format_ports(&ports))
+    let reports = usb_ports::list().into_iter().map(PortReport::from_port);
+    let reports: Vec<PortReport> = reports.collect();
+    json::print_json_or_text(args.json, &reports, || format_ports(&reports))
 }
 
-fn format_ports(ports: &[PortReport]) -> String {
-    if ports.is_empty() {
+fn format_ports(reports: &[PortReport]) -> String {
+    if reports.is_empty() {
         return "this machine has no USB serial port. Connect the UNO with a cable that carries data \
                 (some only charge). A virtual machine, a container or WSL needs the port passed \
                 through. Without a board: lizard console --sim\n"
             .to_owned();
     }
     let mut text = String::new();
-    for report in ports {
+    for report in reports {
         let name = report.name.as_deref().unwrap_or("no name");
         let chip = report.chip.unwrap_or("not the chip of a UNO");
         let (port, vendor, product) = (&report.port, &report.vendor, &report.product);
@@ -102,7 +103,7 @@ fn format_ports(ports: &[PortReport]) -> String {
         }
         text.push('\n');
     }
-    if let Some(report) = ports.iter().find(|report| !report.may_open) {
+    if let Some(report) = reports.iter().find(|report| !report.may_open) {
         let error = port::PortError::Forbidden(report.port.clone());
         _ = writeln!(text, "{error}");
     }
@@ -113,10 +114,10 @@ fn format_ports(ports: &[PortReport]) -> String {
 mod tests {
     use super::*;
 
-    fn port_report(chip: [u16; 2], product_name: Option<&str>) -> PortReport {
+    fn port_report(chip_ids: [u16; 2], product_name: Option<&str>) -> PortReport {
         PortReport::from_port(UsbPort {
             name: "/dev/no-such-port".to_owned(),
-            chip,
+            chip_ids,
             product_name: product_name.map(str::to_owned),
         })
     }

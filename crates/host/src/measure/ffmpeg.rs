@@ -77,14 +77,14 @@ fn read_frames(
     mut handle_frame: impl FnMut(f64, &Frame) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let mut line = String::new();
-    let header = stream.read_line(&mut line).ok();
-    let frame_size = header.and_then(|_| parse_size(&line));
+    let byte_count = stream.read_line(&mut line).ok();
+    let frame_size = byte_count.and_then(|_| parse_size(&line));
     let [width, height] =
         frame_size.ok_or_else(|| unreadable("it has no frames, or ffmpeg is older than 5.1"))?;
     for index in 0.. {
         line.clear();
-        let header = stream.read_line(&mut line);
-        if header.map_err(|error| unreadable(&error.to_string()))? == 0 {
+        let byte_count = stream.read_line(&mut line);
+        if byte_count.map_err(|error| unreadable(&error.to_string()))? == 0 {
             break;
         }
         let mut pixels = vec![0; width * height];
@@ -132,6 +132,7 @@ fn parse_size(header: &str) -> Option<[usize; 2]> {
     Some([parse_field('W')?, parse_field('H')?])
 }
 
+/// Returns the failure for a program that cannot be started.
 fn spawn_failure(program: &str, error: &std::io::Error) -> Failure {
     Failure::Operation(match error.kind() {
         ErrorKind::NotFound => format!(

@@ -75,8 +75,8 @@ struct Component {
 /// Finds the keys, prints them, and writes the new robot.toml.
 ///
 /// # Errors
-/// Fails if a file is not from `lizard measure` or is from another robot, if the gaits determine no key, if the output
-/// would replace an input or a user's robot, or if it cannot be written.
+/// Fails if a file is not from `lizard measure` or is from another robot, if the model cannot predict or fit the gaits,
+/// if the output would replace an input or a user's robot, or if it cannot be written.
 pub fn identify_keys(args: KeysArgs) -> Result<(), Failure> {
     let old_text = args.robot.text()?;
     let robot = args.robot.load()?;

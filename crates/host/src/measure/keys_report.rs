@@ -185,7 +185,7 @@ pub(super) fn format_report(identified: &Identification, output_path: Option<&Pa
 }
 
 fn format_key(result: &KeyResult) -> String {
-    let digits = result.decimal_count();
+    let decimals = result.decimal_count();
     let key = result.key;
     let name = match key.unit {
         "" => key.full_name(),
@@ -198,16 +198,16 @@ fn format_key(result: &KeyResult) -> String {
             format!("not determined by these gaits: {}", key.other_method)
         }
         Verdict::Impossible(value) => {
-            format!("would be {value:.digits$}, which is not allowed; unchanged")
+            format!("would be {value:.decimals$}, which is not allowed; unchanged")
         }
     };
     let file_value = format!("{:?}", result.file_value);
     let new_value = match result.verdict {
-        Verdict::Changed => format!("{:.digits$}", result.new_value),
+        Verdict::Changed => format!("{:.decimals$}", result.new_value),
         _ => "-".to_owned(),
     };
     let error = result.error;
-    format!("{name:<35}{file_value:>10}{new_value:>10}{error:>9.digits$}  {verdict}\n")
+    format!("{name:<35}{file_value:>10}{new_value:>10}{error:>9.decimals$}  {verdict}\n")
 }
 
 /// Formats the paragraph about the goodness of the fit.

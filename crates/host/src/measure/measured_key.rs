@@ -62,7 +62,8 @@ impl MeasuredKey {
         }
     }
 
-    /// Returns the measured value, its standard error and the value in robot.toml, all as robot.toml gives them.
+    /// Returns the measured value, its standard error and the value in robot.toml, all at the supply voltage for which
+    /// robot.toml gives its value.
     fn file_values(&self) -> [f64; 3] {
         [self.value, self.standard_error, self.robot_value].map(|value| value * self.scale)
     }

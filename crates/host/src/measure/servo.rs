@@ -90,7 +90,9 @@ struct Report {
     /// The largest step of the pulse width that did not move the servo, us.
     #[serde(rename = "still_us")]
     largest_ignored_step_us: f64,
+    /// True if `keys` contains `spin_up_ms`.
     is_spin_up_known: bool,
+    /// True if `keys` contains `dead_band_us`.
     is_dead_band_known: bool,
     /// True if the servo turns opposite to the direction that `us_per_degree` implies.
     #[serde(rename = "turns_the_other_way")]
@@ -266,7 +268,7 @@ impl Report {
             true => writeln!(text, "Also under [servo]: volts = {}", self.volts),
             false => writeln!(
                 text,
-                "Measure the supply at the servo while it moves, and give it with --volts."
+                "Measure the supply voltage at the servo while it moves, and give it with --volts."
             ),
         };
         if !self.is_spin_up_known {

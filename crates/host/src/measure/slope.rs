@@ -54,6 +54,7 @@ struct Report {
 #[derive(Serialize)]
 struct SlideReport {
     video: String,
+    /// True if the robot slides with its head downhill.
     is_head_first: bool,
     /// Tilt at which the slide begins, deg.
     tilt: [f64; 2],
@@ -85,8 +86,8 @@ pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     json::print_json_or_text(args.json, &report, || report.format_text())
 }
 
-/// Averages estimates that have a systematic error in common, such as the error of the level board; `None` if
-/// `estimates` is empty.
+/// Averages estimates that have a systematic error in common, such as that of a board that is not quite level at the
+/// start; `None` if `estimates` is empty.
 fn average(estimates: &[Estimate]) -> Option<Estimate> {
     let count = estimates.len() as f64;
     let mean = |value: &dyn Fn(&Estimate) -> f64| estimates.iter().map(value).sum::<f64>() / count;
@@ -139,8 +140,8 @@ impl Report {
             "slides first  tilt, deg        static friction  sliding friction\n".to_owned();
         for slide in &self.slides {
             let end_name = if slide.is_head_first { "head" } else { "tail" };
-            let format_pair = |[value, error]: [f64; 2], digits: usize| {
-                format!("{value:.digits$} +- {error:.digits$}")
+            let format_pair = |[value, error]: [f64; 2], decimals: usize| {
+                format!("{value:.decimals$} +- {error:.decimals$}")
             };
             let _ = writeln!(
                 text,

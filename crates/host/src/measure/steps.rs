@@ -37,7 +37,7 @@ pub struct StepsArgs {
     robot: RobotArgs,
 }
 
-/// Parses a servo's name.
+/// Parses a servo's name, A1 to A4, in capitals or not. Returns its index, 0 to 3.
 pub(super) fn parse_servo(text: &str) -> Result<usize, String> {
     let index = SERVO_NAMES
         .iter()

@@ -118,6 +118,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 }
 
 impl Args {
+    /// Returns the given proportions. A missing one follows from their sum. If none is given, they are the paper's.
     fn complete_proportions(&self) -> Result<Proportions, String> {
         match (self.r1, self.r2, self.r3) {
             (None, None, None) => Ok(Proportions::PAPER),

@@ -16,6 +16,7 @@ struct Report {
     /// The pose with all elbows outward; null if a point is out of reach. A head or tail without a given point is at
     /// neutral.
     pose: Option<Angles>,
+    /// True if `pose` is within the robot's limits and each servo's travel; otherwise, `why` has the reasons.
     safe: bool,
     why: Vec<String>,
 }
@@ -54,6 +55,7 @@ struct ModeSolution {
     error_mm: f64,
     /// The five-bar's smallest margin.
     margin: f64,
+    /// True if this robot can reach the point in this mode; otherwise, `why` has the reasons.
     reachable: bool,
     why: Vec<String>,
 }

@@ -14,7 +14,7 @@ use crate::{Failure, PoseArgs, RobotArgs};
 /// is passed through, so that the output of `lizard gaits --trace` can be solved. A malformed
 /// line ends the run with an error message that names the line and column, and exit code 2.
 ///
-/// A pose is safe if it keeps the robot's limits and each servo's travel. For a singular or
+/// A pose is safe if it is within the robot's limits and each servo's travel. For a singular or
 /// unreachable pose, the reason is printed. For an end point of head or tail, all four working
 /// modes are listed (each arm bent outward or inward), each marked as reachable or not.
 #[derive(clap::Args)]
@@ -72,8 +72,9 @@ enum Subject {
 /// Computes the pose and prints it.
 ///
 /// # Errors
-/// Fails if robot.toml is invalid, if the pose is unreachable, if the servos' motion is given without `--show rates`,
-/// if a line of the stream is invalid, or if the output cannot be written.
+/// Fails if robot.toml is invalid, if the pose is unreachable (but `--show joints` prints the reason instead), if the
+/// servos' motion is given without `--show rates`, if a line of the stream is invalid, or if the output cannot be
+/// written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let servo_motion = ServoMotion::from(args.servo_motion);
     if servo_motion != ServoMotion::default() && !matches!(args.show, Subject::Rates) {

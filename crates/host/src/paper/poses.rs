@@ -17,7 +17,7 @@ const COLUMN_NAMES: [&str; 5] = {
 };
 
 /// Index of the time column in [`COLUMN_NAMES`].
-const SECONDS: usize = 4;
+const SECONDS_COLUMN: usize = 4;
 
 /// Largest length of a line, bytes. A longer line is refused before it is read completely.
 const MAX_LINE_BYTES: u64 = 1024;
@@ -54,7 +54,7 @@ impl<R: BufRead> PoseReader<R> {
             input,
             line_bytes: Vec::new(),
             line_number: 0,
-            columns: (0..SECONDS).collect(),
+            columns: (0..SECONDS_COLUMN).collect(),
             has_pending_line: false,
         };
         let expected = ANGLE_NAMES.join(",");
@@ -85,7 +85,7 @@ impl<R: BufRead> PoseReader<R> {
             }
             columns.push(column);
         }
-        if let Some(missing) = (0..SECONDS).find(|angle| !columns.contains(angle)) {
+        if let Some(missing) = (0..SECONDS_COLUMN).find(|angle| !columns.contains(angle)) {
             let problem = format!("{} is missing", ANGLE_NAMES[missing]);
             return Err(header_failure(names.len() + 1, problem));
         }
@@ -95,7 +95,7 @@ impl<R: BufRead> PoseReader<R> {
 
     /// True if the lines have a time column.
     pub fn has_time(&self) -> bool {
-        self.columns.contains(&SECONDS)
+        self.columns.contains(&SECONDS_COLUMN)
     }
 
     /// Reads the next line that is not blank. Returns false at the end of the input.
@@ -158,7 +158,7 @@ impl<R: BufRead> PoseReader<R> {
                 return Err(field_failure(field, "no value".to_string()));
             }
             let quantity = match column {
-                SECONDS => Quantity::TIME,
+                SECONDS_COLUMN => Quantity::TIME,
                 _ => Quantity::ANGLE,
             };
             values[column] = quantity

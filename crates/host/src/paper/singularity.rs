@@ -81,12 +81,12 @@ struct Report {
     factored_determinant: f64,
     #[serde(rename = "blocks")]
     block_determinants: BlockReport,
-    /// lg12 lg13 sin(theta_lg12 - theta_lg13) for each leg, in servo order.
+    /// lg12 lg13 sin(theta_lg12 - theta_lg13) for each leg, in servo order, mm^2.
     leg_determinants: [f64; 4],
     nearest: Vec<NearestSingularity>,
 }
 
-/// The determinants of the diagonal blocks of K*.
+/// The determinants of the diagonal blocks of K*: mm^2 for head and tail, mm for the sides.
 #[derive(Serialize)]
 struct BlockReport {
     head: f64,
@@ -121,8 +121,8 @@ fn compute_report(robot: &Robot, solution: &Solution) -> Report {
     let matrix = SMatrix::<f64, 8, 8>::from_fn(|row, column| k_star[row][column]);
     let blocks = solution.block_determinants();
     let leg = robot.lizard().leg;
-    let leg_determinant = -leg.coupler * leg.follower;
-    let leg_determinants = solution.legs.map(|pose| leg_determinant * pose.direction.y);
+    let amplitude = -leg.coupler * leg.follower;
+    let leg_determinants = solution.legs.map(|pose| amplitude * pose.direction.y);
     let mut nearest = vec![];
     for end in End::ALL {
         let five_bar = robot.lizard().end(end);

@@ -14,6 +14,7 @@ const MAX_STEP_S: f64 = 2e-4;
 /// Largest servo turn in one step for finite differences, deg. Larger turns make the differences inaccurate.
 const MAX_STEP_TURN_DEG: f64 = 0.04;
 
+/// The options for the rates and accelerations of the servos.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Servos, for --show rates; all 0 unless given")]
 pub struct ServoMotionArgs {
@@ -47,12 +48,14 @@ pub struct ServoMotionArgs {
 #[derive(Clone, Serialize)]
 struct Row {
     joint: &'static str,
+    /// Unit of `value`, `deg` or `mm`; `rate` is per s, `acceleration` per s^2.
     unit: &'static str,
     value: f64,
     rate: f64,
     acceleration: f64,
     /// Finite difference minus closed form; null if a neighbouring pose has no solution.
     rate_deviation: Option<f64>,
+    /// The same for the acceleration.
     acceleration_deviation: Option<f64>,
 }
 

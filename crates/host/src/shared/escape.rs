@@ -18,7 +18,7 @@ pub fn escape_controls(text: &str) -> String {
 
 /// Returns the text with every control character escaped, except line feeds. The middle of a very long line is
 /// omitted.
-pub fn readable_lines(text: &str) -> String {
+pub fn make_readable(text: &str) -> String {
     let lines: Vec<String> = text
         .split('\n')
         .map(|line| shorten(&escape_controls(line)))
@@ -49,10 +49,10 @@ mod tests {
     #[test]
     fn a_very_long_line_loses_its_middle() {
         let [short_line, long_line] = [900, 901].map(|count| "ä".repeat(count));
-        assert_eq!(readable_lines(&short_line), short_line);
+        assert_eq!(make_readable(&short_line), short_line);
         let side = "ä".repeat(300);
         let expected = format!("no\n{side} [...301 characters...] {side}");
-        assert_eq!(readable_lines(&format!("no\n{long_line}")), expected);
+        assert_eq!(make_readable(&format!("no\n{long_line}")), expected);
     }
 
     #[test]
@@ -62,6 +62,6 @@ mod tests {
             "a\\u{1b}]0;x\\u{7}\\u{9b}1m\\t\\r\\n"
         );
         assert_eq!(escape_controls("Ä 5 µs \\"), "Ä 5 µs \\");
-        assert_eq!(readable_lines("a\nb\u{1b}\n"), "a\nb\\u{1b}\n");
+        assert_eq!(make_readable("a\nb\u{1b}\n"), "a\nb\\u{1b}\n");
     }
 }

@@ -81,8 +81,8 @@ pub fn check_replaceable_robot(
     )))
 }
 
-/// Checks that an output without a file does not go to a terminal. The message contains `noun`, what is written, and
-/// `example`, a file name.
+/// Checks that an output without a file does not go to a terminal. The message says what is written (`noun`)
+/// and suggests a file name (`example`).
 ///
 /// # Errors
 /// Fails if there is no file and standard output is a terminal.
@@ -289,7 +289,7 @@ fn link_to_name(file: &File, name: &Path) -> io::Result<()> {
 mod tests {
     use super::*;
 
-    fn write_error_text(path: &Path) -> String {
+    fn failure_message(path: &Path) -> String {
         write(path, b"x")
             .expect_err("the write must be refused")
             .to_string()
@@ -326,7 +326,7 @@ mod tests {
             (&renamed_robot, ": it describes a robot; choose another"),
         ] {
             let old_bytes = fs::read(path).expect("the file is readable");
-            let message = write_error_text(path);
+            let message = failure_message(path);
             assert!(message.contains(reason), "{message}");
             assert_eq!(fs::read(path).expect("the file is readable"), old_bytes);
         }
@@ -335,7 +335,7 @@ mod tests {
             let result = check_replaceable_robot(path, |text| text.starts_with("# mine"));
             assert_eq!(result.is_ok(), is_replaceable, "{}", path.display());
         }
-        let message = write_error_text(&renamed_robot.join("folder/d"));
+        let message = failure_message(&renamed_robot.join("folder/d"));
         assert!(message.ends_with("mine/folder: a file exists where a folder is needed"));
     }
 
@@ -345,7 +345,7 @@ mod tests {
             ("/dev/null/folder/a.toml", "Not a directory (os error 20)"),
             ("/dev/null/a.toml", "a file exists where a folder is needed"),
         ] {
-            let message = write_error_text(Path::new(path));
+            let message = failure_message(Path::new(path));
             assert_eq!(message, format!("cannot write {path}: {reason}"));
         }
     }
@@ -356,8 +356,7 @@ mod tests {
         let inner_folder = folder.path().join("inner");
         fs::create_dir(&inner_folder).expect("a folder is created");
         assert!(
-            write_error_text(&inner_folder)
-                .ends_with("it already exists and is not a regular file")
+            failure_message(&inner_folder).ends_with("it already exists and is not a regular file")
         );
         assert!(inner_folder.is_dir());
     }
@@ -383,7 +382,7 @@ mod tests {
             .mode();
         assert_eq!(mode & 0o777, 0o640);
         symlink("nothing", &broken_link).expect("a link is created");
-        assert!(write_error_text(&broken_link).ends_with("astray: it is a broken symbolic link"));
+        assert!(failure_message(&broken_link).ends_with("astray: it is a broken symbolic link"));
         assert!(broken_link.is_symlink());
     }
 
@@ -402,7 +401,7 @@ mod tests {
     #[cfg(target_os = "linux")]
     fn the_error_names_only_the_file_in_a_read_only_folder_or_on_a_full_device() {
         for (path, reason) in [("/proc/self/a.toml", ""), ("/dev/full", "No space left")] {
-            let message = write_error_text(Path::new(path));
+            let message = failure_message(Path::new(path));
             let start = format!("cannot write {path}: {reason}");
             assert!(message.starts_with(&start), "{message}");
             assert!(!message.contains("at path"), "{message}");

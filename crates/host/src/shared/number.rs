@@ -38,7 +38,7 @@ pub fn format_or_dash(value: Option<f64>, decimals: usize) -> String {
     value.map_or("-".to_owned(), |value| format!("{value:.decimals$}"))
 }
 
-/// Formats a number, with spaces between groups of three digits.
+/// Formats a number that is not negative, with spaces between groups of three digits.
 pub fn group_digits(value: f64, decimals: usize) -> String {
     let ungrouped = format!("{value:.decimals$}");
     let (integer, fraction) = ungrouped.split_at(ungrouped.find('.').unwrap_or(ungrouped.len()));

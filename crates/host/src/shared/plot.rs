@@ -1,4 +1,4 @@
-//! Parts that all charts share: axes, maps in colour bands, and colour scales.
+//! Elements that all charts share: axes, maps in colour bands, and colour scales.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -208,7 +208,7 @@ impl ColourScale {
         self.colours[band_index.min(self.colours.len() - 1)]
     }
 
-    /// Adds a vertical colour key with the limits of the bands.
+    /// Adds a vertical colour key with the limits of the bands. `corner` is its upper left corner; `height` is in px.
     pub fn draw_key(
         &self,
         mut group: Group,
@@ -235,7 +235,8 @@ impl ColourScale {
     }
 }
 
-/// Adds an entry of a legend: a short line from `left_end`, and the line's meaning.
+/// Adds an entry of a legend: a short line from `left_end`, and the line's meaning. `dashes` is an SVG dash pattern;
+/// the line is solid if it is "" or "none".
 pub fn draw_legend_entry(
     group: Group,
     left_end: (f64, f64),

@@ -4,7 +4,7 @@ use lizard_kinematics::Pose;
 
 use crate::shared::quantity::Quantity;
 
-/// The servo angles' names in servo order, A1 to A4. Columns, flags and keys are in this order everywhere.
+/// The servo angles' names in servo order, A1 to A4. Columns, options and keys are in this order everywhere.
 pub const ANGLE_NAMES: [&str; 4] = ["theta1", "theta4", "theta8", "theta5"];
 
 /// The options `--theta1`, `--theta4`, `--theta8` and `--theta5`.

@@ -46,7 +46,7 @@ pub struct RobotArgs {
     /// robot.toml]
     #[arg(long = "robot", value_name = "FILE", help_heading = "Robot")]
     path: Option<PathBuf>,
-    /// The robot's text, if it does not come from a file.
+    /// The text given to [`RobotArgs::from_text`]; it replaces the search for a robot file.
     #[arg(skip)]
     text: Option<String>,
     /// The text that was read, because a pipe can be read only once.
@@ -209,11 +209,11 @@ mod tests {
         names.sort();
         assert_eq!(names, BUILT_IN_ROBOTS.map(|(name, _)| name));
         for (name, text) in BUILT_IN_ROBOTS {
-            let file = RobotArgs::from_path(Some(name.into()));
-            assert!(file.load().is_ok(), "{name}");
-            assert_eq!(file.text().expect("a built-in robot has a text"), text);
+            let args = RobotArgs::from_path(Some(name.into()));
+            assert!(args.load().is_ok(), "{name}");
+            assert_eq!(args.text().expect("a built-in robot has a text"), text);
             assert_eq!(
-                file.name().expect("a built-in robot has a name"),
+                args.name().expect("a built-in robot has a name"),
                 format!("the robot {name}")
             );
         }

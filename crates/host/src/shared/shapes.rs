@@ -1,4 +1,4 @@
-//! Colours and basic shapes of all drawings.
+//! Colours and basic shapes of all drawings. Points are (x, y) on the page, with y downwards; all lengths are in px.
 
 use svg::node::Value;
 use svg::node::element::{Circle, Group, Line, Polyline, Rectangle, Text};

@@ -2,8 +2,8 @@
 //!
 //! `lizard prove --part 2/8` computes one of eight parts and prints its results as one line. `lizard merge` reads all
 //! eight lines and prints the same bytes as a single machine, because a computation is a list of independent pieces. A
-//! single machine computes all pieces, a part computes its own pieces, and a merge runs the same program on the pieces
-//! from its input. A part's line contains the version, the options and the robot, so that parts of different
+//! single machine computes all pieces, a part computes its own pieces, and a merge runs the same command, but takes the
+//! pieces from its input. A part's line contains the version, the options and the robot, so that parts of different
 //! computations cannot be mixed.
 
 use std::collections::BTreeMap;
@@ -82,11 +82,11 @@ impl Part {
     pub fn compute_and_print<C: Spreadable, T: Serialize>(
         self,
         command: &C,
-        robot: &RobotArgs,
+        robot_args: &RobotArgs,
         piece_count: usize,
         mut compute_piece: impl FnMut(usize) -> T,
     ) -> Result<(), Failure> {
-        let robot = robot.text()?.to_owned();
+        let robot_toml = robot_args.text()?.to_owned();
         let mut results = BTreeMap::new();
         for index in (0..piece_count).filter(|index| self.has_piece(*index)) {
             results.insert(index, serde_json::to_value(compute_piece(index))?);
@@ -95,7 +95,7 @@ impl Part {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             command: C::COMMAND.to_owned(),
             options: serde_json::to_value(command)?,
-            robot,
+            robot: robot_toml,
             part: self,
             piece_count,
             results,

@@ -90,7 +90,7 @@ pub struct SimulatedBoard {
     lines: Vec<Line>,
     /// Number of lines that [`SimulatedBoard::next_line`] has returned so far.
     returned_line_count: usize,
-    /// The start cycle of any frame; the other frames start a multiple of 20 ms before or after it. `None` while no
+    /// The start cycle of one frame; the other frames start a multiple of 20 ms before or after it. `None` while no
     /// pulse is known.
     frame_anchor: Option<u64>,
 }
@@ -176,10 +176,10 @@ impl SimulatedBoard {
     }
 
     /// Runs the board until the next line and returns the line without its line end; `None` if no line arrives within
-    /// `ms` after the last unsent byte, or if the firmware stops.
-    pub fn next_line(&mut self, ms: u64) -> Option<String> {
+    /// `timeout_ms` after all queued bytes have been sent to the UNO, or if the firmware stops.
+    pub fn next_line(&mut self, timeout_ms: u64) -> Option<String> {
         let cycles_to_send = self.uno.unsent_byte_count() as u64 * CYCLES_PER_BYTE;
-        let end_cycle = self.uno.cycle() + cycles_to_send + ms * CYCLES_PER_MS;
+        let end_cycle = self.uno.cycle() + cycles_to_send + timeout_ms * CYCLES_PER_MS;
         loop {
             let index = self.returned_line_count;
             if let Some(line) = self.lines().get(index) {
@@ -206,7 +206,7 @@ impl SimulatedBoard {
         &self.bytes
     }
 
-    /// Appends the bytes that the UNO has transmitted since the previous call to `bytes` and `lines`.
+    /// Adds the UNO's output since the previous call to the fields `bytes` and `lines`.
     fn collect_output(&mut self) {
         let bytes = self.uno.take_transmitted();
         self.lines.extend(self.reader.read(&bytes));
@@ -237,14 +237,14 @@ impl SimulatedBoard {
 
     /// Runs the board until `cycle`.
     fn run_until(&mut self, cycle: u64) -> Result<(), BoardError> {
-        let resets_before = self.uno.watchdog_resets();
+        let resets_before = self.uno.watchdog_reset_count();
         match self.uno.run_until_cycle(cycle) {
             State::Alive => {}
             State::Halted => return Err(BoardError::Halted),
             State::Crashed { message, .. } => return Err(BoardError::Crashed(message.clone())),
             State::Off => return Err(BoardError::Off),
         }
-        if self.uno.watchdog_resets() == resets_before {
+        if self.uno.watchdog_reset_count() == resets_before {
             Ok(())
         } else {
             Err(BoardError::Reset)

@@ -14,8 +14,9 @@ const MAX_OTHER_GAITS: usize = 8;
 const CANDIDATE_PINS: [&str; 8] = ["A1", "A2", "A3", "A4", "A5", "D12", "D8", "D7"];
 
 /// Adds a button, a nose contact and the routine [`PATROL`] to the robot file `text`. The routine waits for the button,
-/// walks with the first gait until the nose touches something, continues with up to eight other gaits, and ends with
-/// `last_steps`. A robot that already has a routine with this name is returned unchanged.
+/// walks with the first gait until the nose touches something, continues with up to eight other gaits and `last_steps`,
+/// and repeats all steps after the first for ever. A robot that already has a routine with this name is returned
+/// unchanged.
 ///
 /// # Errors
 /// Fails if the text is not a valid robot file, or has no room for the inputs or the routine.

@@ -17,8 +17,8 @@ fn parse_name_and_hash(report: &str) -> String {
 
 /// Reads the name and hash of the robot in the image that `make firmware` has built.
 fn read_image_robot() -> String {
-    let gaits = std::fs::read_to_string(release_folder().join("gaits.txt"));
-    parse_name_and_hash(&gaits.expect("`make firmware` has been run"))
+    let report = std::fs::read_to_string(release_folder().join("gaits.txt"));
+    parse_name_and_hash(&report.expect("`make firmware` has been run"))
 }
 
 /// Returns the path, and the name and hash, of a robot that is not in the image.

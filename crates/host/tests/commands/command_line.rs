@@ -11,8 +11,7 @@ fn run_successfully(arguments: &[&str]) -> String {
     run(arguments).expect_success()
 }
 
-/// The headings of `lizard --help`. The first five are above all commands except those for
-/// scripts and development.
+/// The headings of `lizard --help`. The first five are above all commands except those for scripts and development.
 const HEADINGS: [&str; 7] = [
     "Drive the robot",
     "Simulate it",
@@ -55,7 +54,7 @@ fn monitor_is_an_alias_of_console() {
 }
 
 #[test]
-fn a_deprecated_command_prints_the_same_output_and_names_the_new_command() {
+fn a_deprecated_command_prints_the_output_of_its_replacement_and_a_warning() {
     for (old, new) in [
         ("fk --help", "pose --help"),
         ("inverse --head 5 120", "pose --head 5 120"),

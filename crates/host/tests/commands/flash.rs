@@ -13,9 +13,9 @@ const HEX: &str = "\
 :0400100001020304E2\n\
 :00000001FF\n";
 
-/// Address of the robot in flash.
+/// Address of the robot's section in flash.
 const ROBOT_START: usize = 0x6e00;
-/// Address of the boot loader, where the robot's space ends.
+/// Address of the boot loader, where the space for the section ends.
 const BOOT_LOADER_START: usize = 0x7e00;
 
 #[test]

@@ -36,13 +36,13 @@ fn merge_refuses_parts_that_are_not_one_complete_computation() {
     let merge_with_last_part =
         |other_part: &str| run_line("merge", format!("{last_part}\n{other_part}"));
     merge_with_last_part("").expect_refusal_with("lizard: part 1/2 is missing");
-    let other_robot = "design --search --step 0.1 --robot robots/unequal.toml --part 1/2";
-    let other_robot = run_line(other_robot, "").expect_success();
-    merge_with_last_part(&other_robot)
+    let other_line = "design --search --step 0.1 --robot robots/unequal.toml --part 1/2";
+    let part_of_other_robot = run_line(other_line, "").expect_success();
+    merge_with_last_part(&part_of_other_robot)
         .expect_refusal_with("lizard: part 1/2 has a different robot from another part");
-    let other_step = with_paper("design --search --step 0.2 --part 1/2");
-    let other_step = run_line(&other_step, "").expect_success();
-    merge_with_last_part(&other_step).expect_refusal_with("different options");
+    let other_line = with_paper("design --search --step 0.2 --part 1/2");
+    let part_of_other_step = run_line(&other_line, "").expect_success();
+    merge_with_last_part(&part_of_other_step).expect_refusal_with("different options");
     // A killed job leaves a partial line.
     let partial_line = &first_part[..first_part.len() / 2];
     merge_with_last_part(partial_line)

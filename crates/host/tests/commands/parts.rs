@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::harness::{Outcome, TemporaryRobot, assert_contains, run_line_in, scratch_folder};
 
-/// Runs `lizard parts` with a folder that does not exist; returns the folder's path.
+/// Runs `lizard parts` with a folder that does not exist; returns the folder's path and the outcome.
 fn make_parts(name: &str, options: &str) -> (PathBuf, Outcome) {
     let folder = scratch_folder().join(name);
     let _ = fs::remove_dir_all(&folder);
@@ -64,9 +64,9 @@ fn parts_writes_all_files_needed_to_build_the_robot() {
 #[test]
 fn the_option_corner_writes_only_the_parts_of_one_corner() {
     let (folder, outcome) = make_parts("parts-corner", "--robot paper --corner --json");
-    let list = outcome.expect_json();
-    let list = list.as_array().expect("the value is an array");
-    let names = list.iter().filter_map(|part| part["part"].as_str());
+    let parts = outcome.expect_json();
+    let parts = parts.as_array().expect("the value is an array");
+    let names = parts.iter().filter_map(|part| part["part"].as_str());
     let names: Vec<_> = names.collect();
     let expected = "seat A1|link A1 A3|crank LF RH|follower|leg coupler|foot LF RH";
     for part in expected.split('|') {
@@ -74,7 +74,7 @@ fn the_option_corner_writes_only_the_parts_of_one_corner() {
     }
     let has_strut = names.iter().any(|name| name.ends_with("strut"));
     assert!(has_strut, "{names:?}");
-    assert!(list.iter().all(|part| part["count"] == 1), "{list:?}");
+    assert!(parts.iter().all(|part| part["count"] == 1), "{parts:?}");
     assert!(!names.contains(&"plate") && !folder.join("bill.json").exists());
     assert!(folder.join("stl/seat-A1.stl").is_file());
 }
@@ -117,8 +117,8 @@ fn parts_refuses_a_robot_whose_parts_overlap_and_writes_no_file() {
     let (folder, outcome) = make_parts_with_tables("parts-refused", "[parts]\nbar = 24.0");
     assert_eq!(outcome.code, Some(1));
     let message = outcome.stderr;
-    for part in [" overlap by ", " at pose "] {
-        assert_contains(&message, part);
+    for phrase in [" overlap by ", " at pose "] {
+        assert_contains(&message, phrase);
     }
     assert_eq!(message.lines().count(), 1, "{message}");
     assert!(!folder.exists());

@@ -33,8 +33,8 @@ fn sim_refuses_invalid_input() {
 #[test]
 fn a_routine_continues_when_its_inputs_are_pressed() {
     let folder = scratch_folder();
-    let gaits = read_file("docs/gaits.md");
-    let mut blocks = gaits.split("```toml\n");
+    let page = read_file("docs/gaits.md");
+    let mut blocks = page.split("```toml\n");
     let patrol = blocks.find(|block| block.starts_with("[input.button]"));
     let patrol = patrol.and_then(|block| block.split("```").next());
     let patrol = patrol.expect("the page has a patrol");

@@ -1,4 +1,4 @@
-//! Tests of `lizard twin`: routines, the speeds in docs/gaits.md, and invalid input.
+//! Tests of `lizard twin`: routines, the speeds in docs/gaits.md, the spread, and invalid input.
 
 use serde_json::Value;
 

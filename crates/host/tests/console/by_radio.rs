@@ -2,10 +2,10 @@
 
 use lizard_time_limit::TIME_LIMIT;
 
-use crate::fixture::{Uno, find_moving_gait, run_unchecked};
+use crate::fixture::{Uno, find_gait_except_stand, run_unchecked};
 
 #[test]
-fn the_robot_stops_after_a_script_by_radio_since_the_script_uses_deadman() {
+fn the_robot_stops_after_a_script_by_radio_because_console_sets_deadman() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let uno = Uno::start_by_radio(&folder);
     let command = format!("console {}", uno.port());
@@ -20,7 +20,7 @@ fn the_robot_stops_after_a_script_by_radio_since_the_script_uses_deadman() {
         });
         text
     };
-    let gait = find_moving_gait(&folder);
+    let gait = find_gait_except_stand(&folder);
     let accepted = format!("ok {gait}");
     send_script(
         &format!("stand\n{gait}\ncal\n"),

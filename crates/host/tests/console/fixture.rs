@@ -74,13 +74,13 @@ pub fn send_signal(child: &Child, signal: Signal) {
     kill_process(Pid::from_child(child), signal).expect("the process exists");
 }
 
-/// Returns the first gait of the robot under test that moves.
-pub fn find_moving_gait(folder: &TempDir) -> String {
+/// Returns the first gait of the robot under test that is not `stand`.
+pub fn find_gait_except_stand(folder: &TempDir) -> String {
     let (help, ..) = run_unchecked(folder, "console --sim", "help\n");
     let mut lines = help.lines();
     let gaits = lines.find_map(|line| line.strip_prefix("# gaits: "));
     let gait = gaits.and_then(|names| names.split('|').find(|name| *name != "stand"));
-    gait.expect("the robot has a gait that moves").to_owned()
+    gait.expect("the robot has another gait").to_owned()
 }
 
 /// A board simulated by `lizard sim --pty`. The contents of its EEPROM are lost when it ends.
@@ -109,7 +109,7 @@ impl Uno {
         TIME_LIMIT.wait_for("a board of `lizard sim --pty`, or its end", || {
             uno.link.exists() || uno.has_ended()
         });
-        assert!(!uno.has_ended(), "no board, run `make firmware`");
+        assert!(!uno.has_ended(), "the board ended; see its message");
         uno
     }
 

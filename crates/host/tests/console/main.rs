@@ -1,5 +1,5 @@
-//! Tests of `lizard console` and the other commands for a board, with a simulated UNO on a pseudo terminal, and of all
-//! commands at a terminal. The tests run in real time, so each test takes a few seconds.
+//! Tests of `lizard console` and the other commands for a board, with a simulated UNO on a pseudo terminal, and of the
+//! program at a terminal. The tests run in real time, so each test takes a few seconds.
 #![cfg(target_os = "linux")]
 
 mod by_radio;
@@ -161,7 +161,7 @@ fn the_recording_of_a_script_shows_that_the_port_disappeared() {
 }
 
 #[test]
-fn calibrate_advances_by_keys_and_a_cancelled_calibration_changes_nothing() {
+fn calibrate_advances_by_keys_and_can_be_cancelled() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let mut session = TerminalSession::start(&folder, "calibrate --sim");
     session.wait_for("before you begin");
@@ -298,14 +298,14 @@ fn commands_refuse_invalid_input_with_a_message() {
     ] {
         let (stdout, stderr) = run(&folder, command_line, "", 2);
         let message = stderr.trim().strip_prefix("lizard: ");
-        let is_expected = message.is_some_and(|message| message.starts_with(expected));
-        let is_as_expected = is_expected && stdout.is_empty();
-        assert!(is_as_expected, "{command_line}: {stderr}");
+        let has_message = message.is_some_and(|message| message.starts_with(expected));
+        let is_refused = has_message && stdout.is_empty();
+        assert!(is_refused, "{command_line}: {stderr}");
     }
 }
 
 #[test]
-fn the_symlink_to_a_simulated_board_replaces_no_other_file_and_ends_with_the_board() {
+fn the_symlink_to_a_simulated_board_replaces_no_other_file_and_is_removed_when_the_board_ends() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let (board_link, other_link) = (folder.path().join("uno"), folder.path().join("other"));
     std::os::unix::fs::symlink("a-file", &other_link).expect("the link is created");
@@ -313,7 +313,9 @@ fn the_symlink_to_a_simulated_board_replaces_no_other_file_and_ends_with_the_boa
     let (_, stderr) = run(&folder, &format!("sim --pty {name}"), "", 2);
     assert_eq!(
         stderr.trim(),
-        format!("lizard: {name} already exists and is not a link to a pseudo terminal")
+        format!(
+            "lizard: {name} already exists and is not a link to a pseudo terminal; choose another name"
+        )
     );
     let target = fs::read_link(&other_link).expect("the link is readable");
     assert_eq!(target, Path::new("a-file"));
@@ -321,7 +323,7 @@ fn the_symlink_to_a_simulated_board_replaces_no_other_file_and_ends_with_the_boa
     // A killed run leaves a broken link, which a new run replaces.
     std::os::unix::fs::symlink("/dev/pts/999999", &board_link).expect("the link is created");
     let command_line = format!("sim --pty {}", board_link.display());
-    // A standard output that cannot be written to must not end the board.
+    // A standard output that cannot be written to must not end the simulation.
     let mut command = lizard_command(&folder, &command_line);
     let child = command.stdout(full_device()).spawn();
     let mut child = child.expect("the program starts");

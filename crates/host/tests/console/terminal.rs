@@ -1,4 +1,4 @@
-//! Tests of the program at a terminal: its modes, its end, and the texts that must not reach it.
+//! Tests of the program at a terminal: the terminal's modes, the program's end, and texts that must not be printed.
 
 use std::fs::{self, File};
 use std::io::{Read, Write};
@@ -10,7 +10,7 @@ use rustix::process::Signal;
 use rustix::termios::{LocalModes, tcgetattr};
 
 use crate::fixture::{
-    Device, TerminalSession, Uno, find_moving_gait, run, send_signal, spawn_in_terminal,
+    Device, TerminalSession, Uno, find_gait_except_stand, run, send_signal, spawn_in_terminal,
     wait_for_exit,
 };
 
@@ -107,6 +107,7 @@ fn console_sends_the_robots_own_deadman_three_times_at_its_end_if_it_is_not_conf
             let answer = match line {
                 "status" => "ok gait=walk pose=1,2,3,4 fault=none",
                 "cal" => "# deadman 2000\nok cal",
+                // This answers an earlier `status`, and does not confirm the line.
                 "deadman 2000" if sender.send(()).is_ok() => "ok gait=walk late",
                 line => &format!("ok {line}"),
             };
@@ -133,7 +134,7 @@ fn console_does_not_say_that_an_ended_simulated_robot_continues() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let mut session = TerminalSession::start(&folder, "console --sim");
     session.wait_for("no fault");
-    let gait = find_moving_gait(&folder);
+    let gait = find_gait_except_stand(&folder);
     session.press_and_wait(&format!("{gait}\r"), &format!("ok {gait}"));
     session.wait_for(&format!("{gait}  "));
     session.press("\x04");

@@ -74,7 +74,7 @@ fn identify_with(
 }
 
 #[test]
-fn altered_keys_are_found_within_two_standard_errors_in_95_percent_and_unaltered_keys_stay() {
+fn about_95_percent_of_altered_keys_are_found_within_two_standard_errors_and_few_others_change() {
     let (mut altered_count, mut hit_count) = (0, 0);
     let (mut unaltered_count, mut false_change_count) = (0, 0);
     let mut explained_count = 0;
@@ -194,8 +194,8 @@ fn a_movement_that_no_key_explains_is_reported_and_enlarges_the_errors() {
     movements[3].mean[0] += 4.0;
     let bad_result = identify_with(&compute_travels, &movements);
     let goodness = bad_result.goodness;
-    let is_error_enlarged = !goodness.is_explained && goodness.error_factor > 5.0;
-    assert!(is_error_enlarged, "{goodness:?}");
+    let is_detected = !goodness.is_explained && goodness.error_factor > 5.0;
+    assert!(is_detected, "{goodness:?}");
     let (movement, component, _) = goodness.largest_residual;
     assert_eq!((movement, component), (3, 0));
     for (bad_key, good_key) in bad_result.keys.iter().zip(&good_result.keys) {

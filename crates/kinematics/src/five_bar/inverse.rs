@@ -148,8 +148,8 @@ impl Arms {
     }
 }
 
-/// The directions (length one) of a crank whose coupler ends at a point: counter-clockwise and
-/// clockwise of the line from the shaft to the point.
+/// The directions (length one) of a crank whose coupler ends at a point: counter-clockwise and clockwise of the line
+/// from the shaft to the point. `crank` and `coupler` are lengths, mm; `is_left` names the crank in a fault.
 fn crank_directions(
     to_point: Vector,
     crank: f64,
@@ -179,11 +179,11 @@ fn crank_directions(
     let parallel = distance * distance + (crank - coupler) * (crank + coupler);
     let perpendicular = 2.0 * double_area(crank, coupler, distance);
     let directions = [perpendicular, -perpendicular].map(|perpendicular| {
-        let crank = rotate(Vector::new(parallel, perpendicular), to_point);
-        crank * (1.0 / crank.length())
+        let direction = rotate_and_scale(Vector::new(parallel, perpendicular), to_point);
+        direction * (1.0 / direction.length())
     });
     // If the products overflow or underflow, the results do not have length one.
-    let is_unit = |crank: &Vector| (crank.length_squared() - 1.0).abs() < 1e-9;
+    let is_unit = |direction: &Vector| (direction.length_squared() - 1.0).abs() < 1e-9;
     match directions.iter().all(is_unit) {
         true => Ok(directions),
         false => Err(Fault::NotFinite),
@@ -191,6 +191,6 @@ fn crank_directions(
 }
 
 /// Returns `vector`, turned by the angle of `frame` and scaled by the length of `frame`.
-fn rotate(vector: Vector, frame: Vector) -> Vector {
+fn rotate_and_scale(vector: Vector, frame: Vector) -> Vector {
     frame * vector.x + frame.rotated_left() * vector.y
 }

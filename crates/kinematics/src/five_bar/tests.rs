@@ -82,8 +82,8 @@ proptest! {
                 let pose = five_bar.forward_in_mode(solution.assembly_mode, solution.theta_left, solution.theta_right).unwrap();
                 // The end point is badly determined if the crank tips nearly coincide, and if the
                 // couplers nearly line up.
-                let stiffness = (pose.gap.length() / 1e3).min(pose.type2.abs());
-                let tolerance = 1e-9_f64.max(1e-12 / stiffness);
+                let conditioning = (pose.gap.length() / 1e3).min(pose.type2.abs());
+                let tolerance = 1e-9_f64.max(1e-12 / conditioning);
                 prop_assert!((pose.end_point - point).length() < tolerance, "{solution:?} {pose:?}");
             }
         }

@@ -141,7 +141,7 @@ proptest! {
     }
 
     #[test]
-    fn a_value_at_its_limit_is_safe_and_the_next_one_beyond_is_not(limits in any_limits()) {
+    fn a_value_at_its_limit_is_safe_and_the_next_one_is_not_but_tips_0_mm_apart_are_crossed(limits in any_limits()) {
         let limits_of_kinds: [(&[Check], f64); 4] = [
             (&Check::TYPE2, limits.type2),
             (&Check::TYPE1, limits.type1),

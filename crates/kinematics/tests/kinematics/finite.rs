@@ -69,7 +69,7 @@ proptest! {
             if let Ok(solutions) = five_bar.inverse(point) {
                 for solution in solutions {
                     prop_assert!(solution.theta_left.is_finite() && solution.theta_right.is_finite());
-                    // Nor has an intermediate result underflowed: the coupler has its length.
+                    // The coupler has its length, so no intermediate result has underflowed.
                     let tip = five_bar.left_shaft() + Vector::from_angle(solution.theta_left) * five_bar.left_crank_length;
                     let coupler_length = (point - tip).length();
                     let error = (coupler_length - five_bar.left_coupler_length).abs();
@@ -115,7 +115,7 @@ proptest! {
 }
 
 #[test]
-fn an_infinite_or_overflowing_length_is_reported_with_its_mechanism() {
+fn a_length_that_is_not_finite_or_overflows_is_reported_with_its_mechanism() {
     for (index, length, mechanism) in [
         (0, 1e200, "head"),
         (1, f64::NAN, "head"),

@@ -1,4 +1,4 @@
-//! The performance charts: the performance of designs at points of the triangle of [`Proportions`].
+//! The performance charts: the performance of designs at points of the design space.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -9,7 +9,7 @@ use super::proportions::Proportions;
 /// A point of the charts. Lengths are in the unit D: the sum of crank, coupler and half the base, divided by 0.9.
 #[derive(Clone, Copy, Serialize)]
 pub struct ChartPoint {
-    /// The point in the triangle of proportions.
+    /// The point of the design space.
     #[serde(flatten)]
     pub proportions: Proportions,
     /// The performance of a five-bar of these proportions.

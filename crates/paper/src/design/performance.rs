@@ -1,5 +1,5 @@
 //! The performance of a five-bar of given proportions: workspace, maximal inscribed circle, and the local conditioning
-//! index over that circle.
+//! index (LCI) over that circle.
 
 use lizard_kinematics::{Circle, FiveBar, Vector, Workspace};
 use serde::Serialize;

@@ -29,8 +29,8 @@ impl Proportions {
         r3: 0.1,
     };
 
-    /// Checks the constraints of the design space: 0 < r1, r2 < 0.9; 0 < r3 < 0.45, so that r1 + r2 > r3 and the
-    /// mechanism can be assembled; and the sum 0.9.
+    /// Creates proportions that meet the constraints of the design space: 0 < r1, r2 < 0.9; 0 < r3 < 0.45, so that
+    /// r1 + r2 > r3 and the mechanism can be assembled; the sum 0.9; and no value below 0.001.
     ///
     /// # Errors
     /// Returns a message that names the violated constraint.
@@ -80,8 +80,7 @@ impl Proportions {
     }
 }
 
-/// Returns the points of a grid inside the triangle of r1, r2 and r3. The edges are omitted, because there a link has
-/// no length.
+/// Returns the points of the design space on a grid with this step of r1 and r2. The edges are omitted.
 pub fn grid_points(step: f64) -> Vec<Proportions> {
     let step_count = (PROPORTION_SUM / step + 1e-9) as usize;
     let mut points = Vec::new();

@@ -1,9 +1,9 @@
 //! The search for the five-bar's best proportions for this robot, which the paper does not contain.
 //!
 //! The paper takes r1, r2, r3 from a gecko's head and checks the conditioning index afterwards. Here every point of
-//! the triangle becomes a robot with the given base. The robot's cranks are mounted at the neutral angle that allows
-//! the largest sweep within all margins and the servos' travel. Within this sweep every combination of the four servo
-//! angles is safe, so any gait of that amplitude is safe.
+//! the design space becomes a robot with the given base. The robot's cranks are mounted at the neutral angle that
+//! allows the largest sweep within all margins and the servos' travel. Within this sweep every combination of the four
+//! servo angles is safe, so any gait of that amplitude is safe.
 
 use lizard_kinematics::{Check, End, FiveBar, Limits, Slider};
 use rayon::prelude::*;
@@ -51,7 +51,7 @@ pub struct Design {
     pub lci: f64,
     /// Geometric mean of conditioning index, margin and stride, each relative to the best value among all designs.
     pub score: f64,
-    /// True if no other design is better in conditioning index, margin and stride.
+    /// True if no other design is better in all three: conditioning index, margin and stride.
     #[serde(rename = "pareto")]
     pub is_pareto_optimal: bool,
 }
@@ -66,7 +66,7 @@ pub struct Search {
 }
 
 impl Search {
-    /// Prepares the search of all points of the triangle on a grid of this step.
+    /// Prepares the search of the points of the design space on a grid with this step of r1 and r2.
     pub fn new(step: f64, requirements: Requirements) -> Self {
         Self {
             points: grid_points(step),

@@ -140,7 +140,7 @@ fn angle_error(sample: &Sample, angles: fn([f64; 17]) -> [f64; 2]) -> Option<f64
     Some(angle_error_deg(a, b))
 }
 
-/// Computes the gap in the head's loop for these angles of l1 to l4, mm.
+/// Computes the gap in the head's loop for these angles (rad) of l1 to l4, mm.
 fn head_gap(sample: &Sample, [theta1, theta2, theta3, theta4]: [f64; 4]) -> f64 {
     let Links {
         l0, l1, l2, l3, l4, ..
@@ -148,7 +148,8 @@ fn head_gap(sample: &Sample, [theta1, theta2, theta3, theta4]: [f64; 4]) -> f64 
     loop_gap([(l1, theta1), (l2, theta2), (l3, theta3), (l4, theta4)], l0)
 }
 
-/// Computes the length of the vector first + second - third - fourth - base, mm; 0 if the loop is closed.
+/// Computes the length of the vector first + second - third - fourth - base, mm; 0 if the loop is closed. Each of the
+/// four links is given by its length (mm) and angle (rad).
 fn loop_gap(links: [(f64, f64); 4], base: f64) -> f64 {
     let [a, b, c, d] = links.map(|(length, angle)| polar(length, angle));
     (a + b - c - d - Vector::new(base, 0.0)).length()

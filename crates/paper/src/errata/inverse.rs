@@ -95,7 +95,7 @@ pub const EQUATIONS: &[Equation] = &[
     ),
 ];
 
-/// Computes the difference between a coupler's length and the distance from its crank's tip to a point.
+/// Computes the difference between a coupler's length and the distance from its crank's tip to a point, mm.
 fn arm_error(point: Vector, shaft_x: f64, crank: Vector, coupler_length: f64) -> Option<f64> {
     let tip = Vector::new(shaft_x, 0.0) + crank;
     Some(((point - tip).length() - coupler_length).abs())

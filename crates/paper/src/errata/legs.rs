@@ -81,8 +81,9 @@ fn max_error(
         .try_fold(0.0, |max: f64, error| Some(max.max(error?)))
 }
 
-/// Computes the error of the follower's angle from the printed G, H and I; `h_override` replaces the printed H.
-/// `root_sign` selects the root. In a parallelogram, the follower's true angle is the crank's angle.
+/// Computes the largest error, deg, of the followers' angles from the printed G and I, and from H = -2 sin theta_lg of
+/// each leg, or from `h_override` if it is given. `root_sign` selects the root. In a parallelogram, the follower's true
+/// angle is the crank's angle.
 fn follower_error(
     sample: &Sample,
     legs: &[usize],
@@ -108,14 +109,14 @@ fn follower_error(
     })
 }
 
-/// Computes the largest error of the follower's angle of legs 2 to 4, with the corrected root.
+/// Computes the largest error, deg, of the followers' angles of legs 2 to 4, with the corrected root.
 fn error_of_legs_2_to_4(sample: &Sample, h_override: Option<f64>) -> Option<f64> {
     let front = follower_error(sample, &[4], -1.0, h_override)?;
     Some(front.max(follower_error(sample, HIND_LEGS, 1.0, h_override)?))
 }
 
-/// Computes the error of the coupler's angle from J, K and L. In a parallelogram, the true angle is 0. `term_sign` is
-/// the sign of the terms in lg12: -1 as printed, 1 as corrected. `root_sign` selects the root.
+/// Computes the largest error, deg, of the couplers' angles from J, K and L. In a parallelogram, the true angle is 0.
+/// `term_sign` is the sign of the terms in lg10/lg12: -1 as printed, 1 as corrected. `root_sign` selects the root.
 fn coupler_error(sample: &Sample, legs: &[usize], term_sign: f64, root_sign: f64) -> Option<f64> {
     let Leg {
         ground,

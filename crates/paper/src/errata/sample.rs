@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use lizard_kinematics::{Leg, Links, Lizard, Pose, Solution, Vector};
 
-/// The paper's table of link lengths as printed, mm. It lists l16 twice, and does not list l17.
+/// The paper's table of link lengths as printed: the numbers of links and their length, mm. It lists l16 twice, and
+/// does not list l17.
 pub const LINK_TABLE: [(&[usize], f64); 5] = [
     (&[0, 5], 20.0),
     (&[1, 4, 6, 9, 14, 11, 16, 19], 30.0),
@@ -47,16 +48,16 @@ impl Sample {
     /// deg, theta4 and -theta8 in [0, 90) deg. Poses without a solution are skipped.
     pub fn generate(count: usize) -> impl Iterator<Item = Self> {
         let lizard = paper_lizard();
-        let mut random = Random(1);
+        let mut generator = Random(1);
         std::iter::repeat_with(move || {
-            let mut draw_angle_above = |min: f64| min + 90.0 * random.next();
+            let mut draw_angle_above = |min: f64| min + 90.0 * generator.next();
             let pose = Pose {
                 theta1: draw_angle_above(90.0),
                 theta4: draw_angle_above(0.0),
                 theta8: 360.0 - draw_angle_above(0.0),
                 theta5: 360.0 - draw_angle_above(90.0),
             };
-            let random = [random.next(), random.next()];
+            let random = [generator.next(), generator.next()];
             let solution = lizard.solve(&pose).ok()?;
             Some(Self {
                 lizard,

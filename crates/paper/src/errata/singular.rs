@@ -213,8 +213,8 @@ impl Block {
         self.side_error(sample, 0.0, sign)
     }
 
-    /// Computes the largest error of the block for the arms of a side. `constant` is the angle from the cranks to the
-    /// arms, rad.
+    /// Computes the largest error of the block for the arms of a side. `constant` is the paper's C, rad: the angle from
+    /// the front crank to its arm, and from the rear arm to its crank.
     fn side_error(&self, sample: &Sample, constant: f64, sign: f64) -> Option<f64> {
         let [rear, front] = self.angle_indices.map(|index| sample.theta()[index]);
         let block = self.printed_block(sample, [rear - constant, front + constant], sign);
@@ -291,7 +291,7 @@ fn determinant_sine([a, b, c, d]: &[f64; 4], length_product: f64) -> f64 {
     -(a * d - b * c) / length_product
 }
 
-/// Counts a leg's degrees of freedom, whose number equals the number of its drives.
+/// Counts a leg's degrees of freedom: as many as its drives.
 fn count_leg_freedoms(sample: &Sample) -> f64 {
     crate::mobility::count_left_front_leg_freedoms(&sample.lizard, &sample.solution) as f64
 }

@@ -219,7 +219,7 @@ impl<'a> AssemblyBuilder<'a> {
         Prism::new([hexagon], [thread], z)
     }
 
-    /// Adds a screw of a length (mm) below its head, without a nut.
+    /// Adds a screw without a nut; `length` is its length below the head, mm.
     pub fn add_screw(&mut self, screw: &Screw, length: f64) {
         let (size, seat_z) = (self.parts.screw, screw.seat_z);
         let direction = screw.direction.sign();

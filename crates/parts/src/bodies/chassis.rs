@@ -21,7 +21,7 @@ const PILOT_RADIUS: f64 = 0.75;
 /// Distance of a servo's engraved number from the seat, and outward from the servo's middle, mm.
 const NUMBER_DISTANCE: f64 = 4.0;
 
-/// Holes of a UNO relative to its middle, with the USB socket behind, mm: (550, 100), (600, 2000), (2600, 300) and
+/// Holes of a UNO relative to its middle, with the USB socket at the back, mm: (550, 100), (600, 2000), (2600, 300) and
 /// (2600, 1400) mil from a corner.
 const UNO_HOLES: [Vector; 4] = [
     Vector::new(24.13, -20.32),
@@ -97,7 +97,7 @@ fn add_plate(builder: &mut AssemblyBuilder) {
     let (stack, layout) = (builder.stack, builder.layout);
     let plate = layout.plate;
     let seats = [0, 1, 2, 3].map(|servo| seat_outline(builder, servo, 0.0));
-    // First all openings, then all holes: the exported files list the shapes in this order and must stay the same.
+    // First all openings, then all holes, which is the order of the shapes in the exported files.
     let servo_cutouts = [0, 1, 2, 3].map(|servo| make_servo_cutouts(builder, servo));
     let openings = servo_cutouts.iter().flat_map(|[openings, _]| openings);
     let screw_holes = servo_cutouts.iter().flat_map(|[_, holes]| holes);

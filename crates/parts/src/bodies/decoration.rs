@@ -31,7 +31,7 @@ pub struct EndDecoration {
     /// Thickness of the part on the upper coupler, mm; 0 if there is no such part.
     pub upper_thickness: f64,
     /// Names of the bodies on the upper coupler.
-    pub upper_bodies: Vec<String>,
+    pub upper_body_names: Vec<String>,
 }
 
 /// True if an end has a decorative part, whose length is not 0.
@@ -81,7 +81,7 @@ pub fn add(builder: &mut AssemblyBuilder, end: End) -> EndDecoration {
     EndDecoration {
         lower_thickness,
         upper_thickness: THICKNESS,
-        upper_bodies: vec![name],
+        upper_body_names: vec![name],
     }
 }
 

@@ -34,7 +34,7 @@ pub fn add(builder: &mut AssemblyBuilder) {
         let decoration = decoration::add(builder, end);
         let (seat_z, mount) = (lower[0] - decoration.lower_thickness, Mount::Coupler(left));
         let mut screw = Screw::new(end.name(), mount, end_point, seat_z, Up);
-        screw.allowed_contacts = decoration.upper_bodies;
+        screw.allowed_contacts = decoration.upper_body_names;
         let nut_z = upper[1] + decoration.upper_thickness + HEAD_CLEARANCE;
         builder.add_bolt(&screw.touching(Mount::Coupler(right).name()), nut_z);
     }

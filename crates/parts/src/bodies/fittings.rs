@@ -16,7 +16,7 @@ use crate::layers::shape::{Shape, vector};
 const STRAP_SLOT: [f64; 2] = [17.0, 2.4];
 /// Size of a slot for a cable tie, mm: along the plate and across.
 const TIE_SLOT: [f64; 2] = [4.0, 2.0];
-/// Smallest distance between the terminal strips' middles and the plate's middle, mm.
+/// Smallest distance from the plate's middle to the terminal strips' middles, mm.
 const MIN_STRIP_X: f64 = 13.2;
 /// Distance from the plate's middle to the cable ties, which pass beside the battery's ends, mm.
 const TIE_DISTANCE: f64 = 31.5;
@@ -85,8 +85,8 @@ pub fn make_wing_shapes(board_holes: [Vector; 4]) -> [Vec<Shape>; 2] {
         filled.push(Shape::rectangle(vector(side * middle, 0.0), size, 4.0));
         for [x, y] in WING_OPENINGS {
             let size = vector(x[1] - x[0], y[1] - y[0]);
-            let middle = vector(side * (x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0);
-            cut.push(Shape::rectangle(middle, size, 2.0));
+            let opening_middle = vector(side * (x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0);
+            cut.push(Shape::rectangle(opening_middle, size, 2.0));
         }
     }
     for hole in board_holes {

@@ -26,8 +26,8 @@ const WIRE_HOLE_SIZE: [f64; 2] = [8.4, 6.0];
 /// Distance along the plate from the standoffs' middles to the middle of a hole for leads, mm.
 const HOLE_BEYOND_STANDOFFS: f64 = 2.0;
 
-/// Makes the notch for the lead in a servo's opening. `fit` is the clearance on each side, mm; `outward` is the
-/// direction of the shaft's end of the case: 1 forward, -1 back.
+/// Makes the notch for the lead in a servo's opening. `middle` is the middle of the case; `fit` is the clearance on
+/// each side, mm; `outward` is the direction of the shaft's end of the case: 1 forward, -1 back.
 pub fn make_lead_notch(body: &ServoBody, middle: Vector, fit: f64, outward: f64) -> Shape {
     let reach = body.length / 2.0 + LEAD_SECTION[1] + fit;
     // The notch overlaps the opening for the case.

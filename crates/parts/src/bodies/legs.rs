@@ -16,11 +16,11 @@ use crate::layers::stack::{HEAD_CLEARANCE, LEAF_THICKNESS, PAD_LIP_HEIGHT};
 
 /// Radius of the boss around a foot's nut, mm.
 const FOOT_BOSS_RADIUS: f64 = 5.0;
-/// Distances from the follower's joint to the two screws of the foot's column, mm.
+/// Distances from the follower's joint to the two clamp screws, which fix the foot's column to the coupler, mm.
 const CLAMP_DISTANCES: [f64; 2] = [21.0, 9.0];
-/// Length of the screws that fix the column to the coupler and cut their thread into the column, mm.
+/// Length of the clamp screws, which cut their thread into the column, mm.
 const CLAMP_SCREW_LENGTH: f64 = 10.0;
-/// Depth of these screws' holes, mm.
+/// Depth of the clamp screws' holes in the column, mm.
 const CLAMP_HOLE_DEPTH: f64 = 10.0;
 /// Half of the column's width, mm.
 const COLUMN_HALF_WIDTH: f64 = 3.2;
@@ -94,13 +94,13 @@ fn add_follower(builder: &mut AssemblyBuilder, servo: usize) {
     builder.add_printed(Mount::Follower(servo), prisms);
 }
 
-/// Positions of the two screws between coupler and foot, coupler frame, mm.
+/// Positions of the two clamp screws, coupler frame, mm.
 fn clamp_positions(builder: &AssemblyBuilder) -> [Vector; 2] {
     let ground = builder.robot.lizard().leg.ground;
     CLAMP_DISTANCES.map(|distance| Vector::new(ground - distance, 0.0))
 }
 
-/// Height of the faces under the sunk heads of the screws between coupler and foot, mm.
+/// Height of the faces under the sunk heads of the clamp screws, mm.
 fn clamp_seat_z(builder: &AssemblyBuilder) -> f64 {
     builder.stack.leg_coupler[1] - builder.parts.screw.head_height - HEAD_CLEARANCE
 }
@@ -172,10 +172,10 @@ fn add_foot(builder: &mut AssemblyBuilder, servo: usize) {
     builder.add_screw(&screw, FOOT_SCREW_LENGTH);
     let nut = builder.make_nut(foot, [stack.leaf[0], nut_z]);
     builder.add_body(format!("height nut {leg}"), Kind::Nut, mount, [nut]);
-    // The coupler never turns, so a direction is constant in its frame.
+    // The coupler never turns, so the forward direction is constant in its frame.
     let coupler_direction = builder.layout.legs[servo].coupler_direction;
-    let head_direction = Vector::new(coupler_direction.y, coupler_direction.x);
-    let pad = pads::make_pad_layers(builder.parts, foot, stack.floor, head_direction);
+    let forward = Vector::new(coupler_direction.y, coupler_direction.x);
+    let pad = pads::make_pad_layers(builder.parts, foot, stack.floor, forward);
     builder.add_body(format!("pad {leg}"), Kind::Pad, mount, pad);
 }
 

@@ -1,7 +1,8 @@
 //! The bodies of the robot, and their placements at a pose.
 //!
-//! A robot has about eighty bodies: printed parts, servos, screws, a board, a battery. Each module makes the bodies of
-//! one area of the robot from its robot.toml; [`assembly`] collects them and computes their placements at a pose.
+//! A robot has about two hundred bodies: printed parts, servos, screws, a board, a battery. Each module makes the
+//! bodies of one area of the robot from its robot.toml; [`assembly`] collects them and computes their placements at a
+//! pose.
 
 pub(crate) mod assembly;
 pub(crate) mod builder;

@@ -1,9 +1,9 @@
 //! The pads: domes under the feet, each on the head of the screw that sets its foot's height.
 //!
-//! No foot is lifted, so a flat pad would stop at the edge of a tile or a carpet. A dome slides over such an edge,
-//! because its slope at that height is hardly steeper than friction can hold. The pad is printed from a flexible
-//! filament with its flat side on the bed. The underside has a hole for the hex key. The screw's head snaps in from
-//! above, through a mouth that is narrower than the head.
+//! No foot is lifted, so a flat pad would stop at the edge of a tile or a carpet. A dome slides over such an edge if it
+//! is not too steep where the edge touches it. The pad is printed from a flexible filament with its flat side on the
+//! bed. The underside has a hole for the hex key. The screw's head snaps in from above, through a mouth that is
+//! narrower than the head.
 //!
 //! A strip with a grain, for example of ski climbing skin, can be glued along the dome from head to tail. The strip's
 //! front end is folded up into a notch of the rim, so that it does not catch on an edge of the floor. The notch also
@@ -66,7 +66,8 @@ fn make_notch(parts: &Parts, middle: Vector, forward: Vector) -> Shape {
     }
 }
 
-/// Makes the layers of a pad from the floor up, centred on `middle`. `forward` points to the robot's head.
+/// Makes the layers of a pad from the height `floor` (mm) up, centred on `middle`. `forward` is the unit vector towards
+/// the robot's head.
 pub(crate) fn make_pad_layers(
     parts: &Parts,
     middle: Vector,

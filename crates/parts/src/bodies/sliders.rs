@@ -1,4 +1,5 @@
-//! The sliders: a rod in a sleeve between the arms of a front and a rear servo.
+//! The sliders: a rod in a sleeve between the arms of a front and a rear servo. A slider's pins are the bolts at the
+//! arms' tips.
 //!
 //! A sleeve between the pins would be too short for the stroke, so sleeve and rod lie beside the line between the pins:
 //! the sleeve begins at the rear pin, and the rod may pass this pin.
@@ -67,13 +68,13 @@ fn add_sleeve(builder: &mut AssemblyBuilder, side: Side, lengths: &SliderLengths
     // The bore is open at both ends, so the cut is longer than the sleeve.
     let size = Vector::new(lengths.sleeve + 2.0 * lengths.rod, bore_width);
     let open_bore = Shape::rectangle(middle, size, 0.0);
-    let eye = [Shape::disc(pin, half_width), arm, case.clone()];
+    let eye_and_case = [Shape::disc(pin, half_width), arm, case.clone()];
     let hole = builder.clearance_hole(pin);
     let (low, top) = (stack.sleeve[0], stack.lower_coupler[1]);
     let [bore_low, bore_high] = stack.bore;
     let mut prisms = vec![
-        Prism::new(eye.clone(), [hole.clone()], [low, bore_low]),
-        Prism::new(eye, [hole, open_bore.clone()], [bore_low, top]),
+        Prism::new(eye_and_case.clone(), [hole.clone()], [low, bore_low]),
+        Prism::new(eye_and_case, [hole, open_bore.clone()], [bore_low, top]),
         Prism::new([case.clone()], [open_bore], [top, bore_high]),
         Prism::solid([case], [bore_high, stack.sleeve[1]]),
     ];

@@ -42,7 +42,7 @@ pub fn build_coupon(parts: &Parts) -> [Part; 2] {
     let width = pitch * f64::from(COLUMN_COUNT);
     let plate = Shape::rectangle(vector(width / 2.0, top_y / 2.0), vector(width, top_y), 2.0);
     let (mut floor_cuts, mut upper_cuts, mut walls, mut bores) = (vec![], vec![], vec![], vec![]);
-    let mut roof_zs = Vec::new();
+    let mut roof_heights = Vec::new();
     for column in 0..COLUMN_COUNT {
         let fit = FIT_STEP * f64::from(column);
         let x = pitch * (f64::from(column) + 0.5);
@@ -68,7 +68,7 @@ pub fn build_coupon(parts: &Parts) -> [Part; 2] {
         let bore_size = vector(bore_width, 2.0 * SLEEVE_LENGTH);
         walls.push(Shape::rectangle(middle, wall_size, 0.5));
         bores.push(Shape::rectangle(middle, bore_size, 0.0));
-        roof_zs.push(THICKNESS + parts.thickness + 2.0 * fit);
+        roof_heights.push(THICKNESS + parts.thickness + 2.0 * fit);
     }
     let mut prisms = vec![
         Prism::new([plate.clone()], floor_cuts, [0.0, FLOOR_THICKNESS]),
@@ -77,9 +77,9 @@ pub fn build_coupon(parts: &Parts) -> [Part; 2] {
     // Since the fit grows from column to column, each sleeve's roof begins higher than the previous sleeve's. Each
     // layer therefore has one bore fewer than the layer below it.
     let mut low = THICKNESS;
-    for (column, roof_z) in roof_zs.into_iter().enumerate() {
-        prisms.push(Prism::new(&*walls, &bores[column..], [low, roof_z]));
-        low = roof_z;
+    for (column, roof_height) in roof_heights.into_iter().enumerate() {
+        prisms.push(Prism::new(&*walls, &bores[column..], [low, roof_height]));
+        low = roof_height;
     }
     prisms.push(Prism::solid(walls, [low, low + 1.3]));
     let rod = Shape::rectangle(vector(0.0, 0.0), vector(ROD_LENGTH, ROD_WIDTH), 1.0);

@@ -173,8 +173,8 @@ impl MeshBuilder<'_> {
     fn add_wall(&mut self, face: &Face, side: Segment, end: Vector) {
         let edges = &face.loops[0];
         let is_rising = |&(edge, _): &(usize, bool)| {
-            let [(_, low), (_, high)] = self.solid.edges[edge].ends;
-            low != high
+            let [(_, first_level), (_, last_level)] = self.solid.edges[edge].ends;
+            first_level != last_level
         };
         let first_rising = edges.iter().position(is_rising).unwrap_or(0);
         let mut low = self.collect_corners(&edges[..first_rising]);
@@ -208,7 +208,7 @@ impl MeshBuilder<'_> {
         self.mesh.triangles.extend(triangles);
     }
 
-    /// The corner at which an edge of a loop begins.
+    /// Index of the corner at which an edge of a loop begins.
     fn start_corner(&self, (edge, is_forward): (usize, bool)) -> usize {
         let corners = &self.edge_corners[edge];
         corners[if is_forward { 0 } else { corners.len() - 1 }]

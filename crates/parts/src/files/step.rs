@@ -15,11 +15,11 @@ pub fn format_step(name: &str, solid: &Solid) -> String {
     let mut writer = StepWriter::default();
     let solid_id = writer.add_solid(name, solid);
     writer.add_product(name, solid_id);
-    let data = writer.text;
+    let data_section = writer.text;
     format!(
         "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('{name}, mm'),'2;1');\n\
          FILE_NAME('{name}.step','2000-01-01T00:00:00',(''),(''),'','lizard parts','');\n\
-         FILE_SCHEMA(('AUTOMOTIVE_DESIGN {{ 1 0 10303 214 1 1 1 1 }}'));\nENDSEC;\nDATA;\n{data}ENDSEC;\n\
+         FILE_SCHEMA(('AUTOMOTIVE_DESIGN {{ 1 0 10303 214 1 1 1 1 }}'));\nENDSEC;\nDATA;\n{data_section}ENDSEC;\n\
          END-ISO-10303-21;\n"
     )
 }
@@ -38,7 +38,7 @@ struct StepWriter {
     last_id: usize,
 }
 
-/// Formats a number as STEP requires: with a decimal point, and without an exponent, which some readers misread.
+/// Formats a number as STEP requires: with a decimal point, and without an exponent, which some programs misread.
 fn format_real(number: f64) -> String {
     let text = format!("{number:.9}");
     let text = text.trim_end_matches('0');
@@ -174,7 +174,7 @@ impl StepWriter {
         }
     }
 
-    /// Adds the entities of the product, which readers require, and the units.
+    /// Adds the entities of the product, which CAD programs require, and the units.
     fn add_product(&mut self, name: &str, solid_id: usize) {
         let first_id = self.last_id + 1;
         // `#+3` stands for the third entity of the list, `#NAME` for the part's name.

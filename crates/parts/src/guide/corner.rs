@@ -1,8 +1,8 @@
 //! One corner of the robot, to be printed first: a servo's seat with the pivots of its leg, the servo's link, and the
 //! leg with its strut and its foot.
 //!
-//! Printing the corner takes three hours instead of fifteen for the whole robot, and shows whether the servo fits its
-//! opening and the horn its link, whether the bearings turn without play, and how much a foot yields.
+//! Printing the corner takes three hours instead of about seventeen for the whole robot, and shows whether the servo
+//! fits its opening and the horn its link, whether the bearings turn without play, and how much a foot yields.
 
 use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
 

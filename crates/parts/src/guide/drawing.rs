@@ -95,7 +95,7 @@ impl Drawing {
             if listed_index.is_none() {
                 styles.push(style);
             }
-            let mut data = String::new();
+            let mut path_data = String::new();
             let mut position = (0, 0);
             for ring in rings {
                 let mut start = None;
@@ -105,19 +105,19 @@ impl Drawing {
                     let (dx, dy) = (column - position.0, row - position.1);
                     // After the first point, each pair is a relative line, and a minus sign separates numbers.
                     let _ = match (start, dx < 0) {
-                        (None, _) => write!(data, "m{dx}"),
+                        (None, _) => write!(path_data, "m{dx}"),
                         (Some(_), _) if (dx, dy) == (0, 0) => continue,
-                        (Some(_), true) => write!(data, "{dx}"),
-                        (Some(_), false) => write!(data, " {dx}"),
+                        (Some(_), true) => write!(path_data, "{dx}"),
+                        (Some(_), false) => write!(path_data, " {dx}"),
                     };
-                    let _ = write!(data, "{}{dy}", if dy < 0 { "" } else { " " });
+                    let _ = write!(path_data, "{}{dy}", if dy < 0 { "" } else { " " });
                     position = (column, row);
                     start.get_or_insert(position);
                 }
-                data.push('z');
+                path_data.push('z');
                 position = start.unwrap_or(position);
             }
-            let _ = writeln!(paths, "<path class=\"c{class_index}\" d=\"{data}\"/>");
+            let _ = writeln!(paths, "<path class=\"c{class_index}\" d=\"{path_data}\"/>");
         }
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \

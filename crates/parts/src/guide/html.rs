@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-/// Wraps the text between each pair of marks in an element, and drops the marks.
+/// Wraps the text between each pair of equal Markdown marks, such as `**`, in an HTML element, and drops the marks.
 fn wrap_marked_text(text: &str, mark: &str, tag: &str) -> String {
     let mut parts = text.split(mark);
     let mut result = parts.next().unwrap_or_default().to_owned();

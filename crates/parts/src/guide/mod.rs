@@ -125,8 +125,8 @@ fn make_guide(
         let _ = writeln!(text, "Take {names}.\n");
         let is_in_step = |access_pose: &&AccessPose| access_pose.step == number;
         let mut stages = step.stages.iter();
-        let is_at_bench = stages.any(|stage| stage.turning_place == TurningPlace::Bench);
-        let to_text = |access_pose| format_turns(assembly, access_pose, is_at_bench);
+        let is_on_bench = stages.any(|stage| stage.turning_place == TurningPlace::Bench);
+        let to_text = |access_pose| format_turns(assembly, access_pose, is_on_bench);
         let step_poses = access_poses.iter().filter(is_in_step);
         let turns: Vec<_> = step_poses.map(to_text).collect();
         if !turns.is_empty() {
@@ -277,7 +277,7 @@ fn is_at_corner(body: &Body) -> bool {
 }
 
 /// Formats the guide's text about the links to turn so that a tool can reach some screws.
-fn format_turns(assembly: &Assembly, access_pose: &AccessPose, is_at_bench: bool) -> String {
+fn format_turns(assembly: &Assembly, access_pose: &AccessPose, is_on_bench: bool) -> String {
     let neutral: [f64; 4] = assembly.robot().neutral_pose().into();
     let turns = (0..4).map(|servo| (servo, access_pose.pose[servo] - neutral[servo]));
     let turns = turns.filter(|(_, angle_deg)| angle_deg.abs() > 0.5);
@@ -287,7 +287,7 @@ fn format_turns(assembly: &Assembly, access_pose: &AccessPose, is_at_bench: bool
             false => "clockwise",
         };
         let (name, leg) = (SERVO_NAMES[servo], LEG_NAMES[servo]);
-        let subject = match is_at_bench {
+        let subject = match is_on_bench {
             true => format!("crank and follower {leg}"),
             false => format!("link {name} with its leg"),
         };

@@ -105,6 +105,7 @@ impl Eye {
 
     /// Projects a point in space onto the drawing. The result is in mm, before scaling; y points down.
     fn project(&self, point: Vector, z: f64) -> (f64, f64) {
+        // Nearness is the distance from the robot's middle towards the eye, in plan view and along the line of sight.
         let (x, floor_nearness) = (point.dot(self.right), point.dot(self.towards_eye));
         let nearness = floor_nearness * self.cos + z * self.sin;
         let height = z * self.cos - floor_nearness * self.sin;

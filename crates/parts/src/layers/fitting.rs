@@ -1,7 +1,7 @@
 //! The fittings, which the robot carries in addition to its mechanism: supply, terminal strips, plugs.
 //!
-//! Shops sell such parts in many sizes, so the robot reserves a space for each, into which common products fit. Two
-//! products are named with their sizes; a test checks that they fit.
+//! Shops sell such parts in many sizes, so the robot reserves a space for each, into which common products fit. For
+//! each space, two products are named with their sizes; a test checks that they fit.
 
 use std::fmt;
 
@@ -23,7 +23,7 @@ pub const BATTERY_EXAMPLES: [Example; 2] = [
 /// A product, or a kind of product without a common make, that fits into a reserved space.
 #[derive(Clone, Copy, Debug)]
 pub struct Example {
-    /// The maker's name or number of the product.
+    /// Name or number of the product, or a description of the kind.
     pub name: &'static str,
     /// Size to the right, forward, up, mm; includes the tolerances of the data sheet, if any.
     pub size: [f64; 3],
@@ -99,7 +99,8 @@ pub struct FittingSpec {
     pub grams: f64,
     /// Size of the reserved space: to the right, forward, up, mm.
     pub size: [f64; 3],
-    /// Article to buy, without rating and size; empty for a piece of the second terminal strip and for an option.
+    /// Article to buy, without the largest size; for switch and fuse, the text after the rating. Empty for a piece of
+    /// the second terminal strip and for an option.
     pub article: &'static str,
     /// Position on the robot, in words.
     pub place: &'static str,
@@ -302,14 +303,14 @@ impl Fitting {
         }
     }
 
-    /// Formats the row of the bill of materials; empty for a part that is listed otherwise or not at all.
-    pub fn format_bill_row(self) -> String {
+    /// Formats the name of the row in the bill of materials; empty for a part that is listed otherwise or not at all.
+    pub fn format_item_name(self) -> String {
         let FittingSpec { article, size, .. } = self.spec();
         let [x, y, z] = size;
         let max_size = format!("at most {x} x {y} x {z} mm");
         match self {
             // A second strip is cut into the supply, signal and plus pieces.
-            Self::SupplyStrip => Self::GroundStrip.format_bill_row(),
+            Self::SupplyStrip => Self::GroundStrip.format_item_name(),
             _ if article.is_empty() => String::new(),
             Self::Resistor | Self::Strap | Self::BatteryPlug | Self::BarrelPlug => {
                 article.to_owned()

@@ -115,6 +115,7 @@ impl Outline {
 }
 
 impl Loop {
+    /// Creates a loop from a polyline: counter-clockwise if `is_outer` is true, clockwise around a hole.
     fn from_polyline(line: &Polyline<f64>, is_outer: bool) -> Self {
         let mut line = line
             .remove_redundant(SAME_POINT_MM)

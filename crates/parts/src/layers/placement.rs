@@ -2,7 +2,7 @@
 
 use lizard_kinematics::{Real, Vector};
 
-/// Position and rotation of a body's frame in the chassis frame or in another body's frame.
+/// Position and rotation of a body's frame in an outer frame: the chassis frame or another body's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement<T = f64> {
     /// Origin of the frame, mm.

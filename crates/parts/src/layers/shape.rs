@@ -122,7 +122,8 @@ impl Shape {
     }
 
     /// Computes the distance to another shape, mm: 0 if the shapes touch; if they overlap, minus the length of the
-    /// shortest shift that separates them. A shift of a point changes the distance by at most the shift's length.
+    /// shortest shift that separates them. If points of one shape shift, the distance changes by at most the longest of
+    /// their shifts.
     pub fn distance(&self, other: &Self) -> f64 {
         let mut distance = f64::INFINITY;
         if self.contains(other.points[0]) || other.contains(self.points[0]) {

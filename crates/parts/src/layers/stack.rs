@@ -27,8 +27,8 @@ pub const HEAD_CLEARANCE: f64 = 0.2;
 pub const HEX_HEAD_HEIGHT: f64 = 2.0;
 /// Height of the seat under a servo's flange, mm; the seat lifts the horn above the strut.
 const SEAT_HEIGHT: f64 = 2.6;
-/// Height of a leg's bearing on the plate, mm. The foot is six times as far away, so play of 0.2 mm in the bearing
-/// moves the foot by 1.2 mm.
+/// Height of a leg's bearing on the plate, mm. The foot is six times this height away from the bearing, so play
+/// of 0.2 mm in the bearing moves the foot by 1.2 mm.
 const BEARING_HEIGHT: f64 = 8.5;
 /// Distance from the underside of a leg's crank up to the tip of its anchor's screw, mm.
 const ANCHOR_TIP_GAP: f64 = 0.1;

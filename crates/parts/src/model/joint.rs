@@ -51,7 +51,7 @@ impl Writer<'_> {
         Some(range.map(round))
     }
 
-    /// Largest torque (N m) and largest rate (rad/s) of the motor that drives a body's joint; `None` if no motor does.
+    /// Largest torque (N m) and largest speed (rad/s) of the motor that drives a body's joint; `None` if no motor does.
     pub(super) fn effort_and_velocity(&self, node: Node) -> Option<[f64; 2]> {
         let motor = &self.scene.motors.per_servo[self.driving_servo(node)?];
         Some([motor.stall_torque * MILLI, motor.no_load_speed.to_radians()].map(round))

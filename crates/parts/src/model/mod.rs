@@ -45,7 +45,8 @@ pub struct Pieces<'a> {
 }
 
 impl Pieces<'_> {
-    /// Formats a scene as an MJCF file for MuJoCo. Its struts and play must equal those in [`Pieces::compute`].
+    /// Formats a scene as an MJCF file for MuJoCo, with the robot at `neutral`. The scene's kind of struts and its play
+    /// must equal those of the scene given to [`Pieces::compute`].
     pub fn format_mjcf(&self, neutral: &Solution, scene: &Scene) -> String {
         self.writer(neutral, scene).write_mjcf()
     }

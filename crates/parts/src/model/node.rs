@@ -97,7 +97,7 @@ impl Node {
         }
     }
 
-    /// Name of the node, which is also the name of its joint to the parent.
+    /// Name of the node; in MJCF also the name of its joint to the parent.
     pub fn name(self) -> String {
         match self {
             Self::OnMount(mount) => mount.name(),

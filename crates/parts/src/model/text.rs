@@ -2,7 +2,7 @@
 
 use std::fmt::{Display, Write};
 
-/// Factor from mm to m, and from g to kg.
+/// Factor from mm to m, from g to kg, and from N mm to N m.
 pub(super) const MILLI: f64 = 1e-3;
 
 /// Formats a position in mm as three numbers in metres.

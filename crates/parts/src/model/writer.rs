@@ -68,12 +68,12 @@ impl<'a> Writer<'a> {
     /// Computes mass and inertia of a body.
     pub(super) fn compute_inertia(&self, node: Node) -> Inertia {
         let node_pieces = self.pieces.iter().filter(|piece| piece.node == node);
-        let drawn_inertia =
+        let modelled_inertia =
             node_pieces.fold(Inertia::default(), |sum, piece| sum.plus(&piece.inertia));
         match self.parent(node) {
-            Some(_) => drawn_inertia.scaled(self.scene.limb_mass_factor),
+            Some(_) => modelled_inertia.scaled(self.scene.limb_mass_factor),
             None => self
-                .correct_chassis(&drawn_inertia)
+                .correct_chassis(&modelled_inertia)
                 .plus(&Inertia::point_mass(self.mass_moved_to_chassis())),
         }
     }
@@ -85,17 +85,18 @@ impl<'a> Writer<'a> {
         (1.0 - self.scene.limb_mass_factor) * limbs.map(|piece| piece.inertia.mass).sum::<f64>()
     }
 
-    /// Adjusts the chassis so that the whole robot has the mass and the centre of mass of `[body]`. The mass of undrawn
-    /// parts, such as wires, is added at the plate's middle; a shift of the chassis then corrects the centre of mass.
-    fn correct_chassis(&self, drawn_inertia: &Inertia) -> Inertia {
+    /// Adjusts the chassis so that the whole robot has the mass and the centre of mass of `[body]`. The mass of items
+    /// without a body, such as wires, is added at the plate's middle; a shift of the chassis then corrects the centre
+    /// of mass.
+    fn correct_chassis(&self, modelled_inertia: &Inertia) -> Inertia {
         let body = self.assembly.robot().ground().body;
         let bill = Bill::compute(self.assembly, &[], self.neutral);
         let bodies = self.assembly.bodies().iter();
         let masses = bodies.map(|body| bill::body_grams(body, self.assembly));
         let parts_mass: f64 = masses.sum();
-        // If the mass in `[body]` is less than the parts', the chassis keeps at least half of its drawn mass.
-        let undrawn_mass = (body.mass - parts_mass).max(-drawn_inertia.mass / 2.0);
-        let chassis = drawn_inertia.plus(&Inertia::point_mass(undrawn_mass));
+        // If the mass in `[body]` is less than the parts', the chassis keeps at least half of its modelled mass.
+        let unmodelled_mass = (body.mass - parts_mass).max(-modelled_inertia.mass / 2.0);
+        let chassis = modelled_inertia.plus(&Inertia::point_mass(unmodelled_mass));
         let [forward_moment, left_moment] = [0, 1]
             .map(|i| body.mass * body.centre_of_mass[i] - bill.grams * bill.centre_of_mass[i]);
         chassis.translated([-left_moment, forward_moment, 0.0].map(|moment| moment / chassis.mass))

@@ -207,14 +207,14 @@ impl PosedAssembly<'_> {
         }
     }
 
-    /// Finds the operations on a screw that are impossible once `new_bodies` are added, each with the name of the
-    /// obstacle.
+    /// Finds the impossible operations on a screw among the surrounding bodies, after a stage has added `new_bodies`,
+    /// each with the name of the obstacle. `is_turned_again` is true if the stage turns the screw again.
     fn find_blocked_operations(
         &self,
         screw: &Body,
         new_bodies: &[&Body],
         surrounding_bodies: &[&Body],
-        is_turned_later: bool,
+        is_turned_again: bool,
     ) -> Vec<(ScrewOperation, String)> {
         let Some(axis) = self.find_screw_axis(screw) else {
             return Vec::new();
@@ -244,7 +244,7 @@ impl PosedAssembly<'_> {
         let needs_turning = !matches!(screw.kind, Kind::HexScrew(_));
         // The pad in the way of the hex key, if the key does not fit through the pad's hole.
         let mut blocking_pad = None;
-        if needs_turning && is_complete && (is_new || new_nut.is_some() || is_turned_later) {
+        if needs_turning && is_complete && (is_new || new_nut.is_some() || is_turned_again) {
             let tool_space = make_space_above_head(TOOL_RADIUS, TOOL_LENGTH);
             spaces.push((ScrewOperation::Turn, tool_space));
             let key_space = make_space_above_head(HEX_KEY_RADIUS, TOOL_LENGTH);
@@ -290,12 +290,12 @@ impl Assembly {
                         let servos = screw.mount.servos();
                         surrounding_bodies.retain(|body| body.mount.servos() == servos);
                     }
-                    let is_turned_later = (stage.turns_again)(screw);
+                    let is_turned_again = (stage.turns_again)(screw);
                     let blocked_operations = posed_assembly.find_blocked_operations(
                         screw,
                         &new_bodies,
                         &surrounding_bodies,
-                        is_turned_later,
+                        is_turned_again,
                     );
                     for (operation, obstacle) in blocked_operations {
                         blocked_screws.push(BlockedScrew {

@@ -1,7 +1,8 @@
 //! The steps of the assembly, from the plate to the first walk.
 //!
-//! A step is a section of the guide, with pictures unless it is done at the console. It consists of successive stages, since some parts are joined on the bench
-//! before they are mounted on the robot. `reach.rs` checks which screws can be reached in which stage.
+//! A step is a section of the guide, with pictures if it adds bodies. It consists of successive stages, since some
+//! parts are joined on the bench before they are mounted on the robot. `reach.rs` checks which screws can be reached in
+//! which stage.
 //!
 //! A servo does not report its angle. It is therefore wired and driven to its middle before its link is pressed on, and
 //! its direction is tested before the links are joined: until then, a wrong turn moves no other part.
@@ -17,7 +18,7 @@ pub struct Step {
     pub title: &'static str,
     /// Instructions as Markdown, with each paragraph in one line.
     pub instructions: String,
-    /// Stages, each with the bodies to add and the screws to turn; empty for a step at the console.
+    /// Stages, each with the bodies to add and the screws to turn; empty for a step without bodies and screws.
     pub stages: Vec<Stage>,
     /// Lift of a body in the exploded picture, as a multiple of the standard lift; negative moves it down.
     pub lift: fn(&Body) -> f64,
@@ -119,8 +120,8 @@ fn build_step(
     }
 }
 
-/// Builds a step at the console, which adds no bodies.
-fn console_step(title: &'static str) -> Step {
+/// Builds a step that adds no bodies and turns no screws, such as a step at the console.
+fn step_without_stages(title: &'static str) -> Step {
     build_step(title, |_| 0.0, ExtraView::None, Vec::new())
 }
 
@@ -130,18 +131,18 @@ pub fn build_steps(has_slotted_struts: bool) -> Vec<Step> {
         chassis_step(),
         supply_step(),
         board_step(),
-        console_step("Flash the board"),
+        step_without_stages("Flash the board"),
         links_step(),
-        console_step("Check the signs"),
+        step_without_stages("Check the signs"),
         legs_step(),
         legs_on_plate_step(),
         struts_step(has_slotted_struts),
         sliders_step(),
         ends_step(),
         level_step(),
-        console_step("The first walk"),
-        console_step("A radio module, if you want one"),
-        console_step("A button and an obstacle switch, if you want them"),
+        step_without_stages("The first walk"),
+        step_without_stages("A radio module, if you want one"),
+        step_without_stages("A button and an obstacle switch, if you want them"),
     ]
 }
 

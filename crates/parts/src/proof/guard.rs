@@ -32,7 +32,7 @@ pub fn total_order_key(value: f64) -> i64 {
     bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
 
-/// A box in the space of `N` servo angles: its middle and its half widths, deg.
+/// A box in the space of `N` servo angles: its middle and its half widths, deg. A `servo` is an index in these arrays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region<const N: usize> {
     pub middle: [f64; N],
@@ -130,8 +130,8 @@ impl<'a> RelaxedGuard<'a> {
         guard
     }
 
-    /// Finds the lower or upper bound of the angle of one servo of a pair. Beyond this bound, no pose is accepted at any
-    /// angle of the other servo.
+    /// Finds the lower or upper bound of the angle of one servo of a pair. Beyond this bound, no pose is accepted at
+    /// any angle of the other servo.
     fn find_bound(&self, pair: [usize; 2], index: usize, bound: Bound) -> f64 {
         let sign = match bound {
             Bound::Lower => 1.0,
@@ -181,7 +181,7 @@ impl<'a> RelaxedGuard<'a> {
         };
         let has_all =
             |servos_needed: [usize; 2]| servos_needed.iter().all(|servo| servos.contains(servo));
-        // A leg's margin depends only on the crank's direction, not on the angle.
+        // A leg's margin depends only on the crank's direction, so the angle that is passed has no effect.
         let (lizard, zero) = (self.robot.lizard(), IntervalDual::constant(0.0));
         let violates_leg = servos.iter().any(|&servo| {
             let end = End::from_servo(servo);

@@ -49,7 +49,7 @@ impl Interval {
         Self::new(low.next_down(), high.next_up())
     }
 
-    /// Bounds sine and cosine over all angles in the interval, deg.
+    /// Bounds sine and cosine over all angles (deg) in the interval.
     fn sine_and_cosine(self) -> (Self, Self) {
         // True if the slightly widened interval contains `angle` plus any number of full turns.
         let contains_angle = |angle: f64| {

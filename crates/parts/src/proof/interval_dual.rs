@@ -1,7 +1,7 @@
 //! Forward-mode automatic differentiation with bounds: dual numbers whose value and derivatives are intervals.
 //!
 //! The closed-form equations of the mechanism accept any number type ([`Real`]), and therefore also this one. Each
-//! result includes its derivatives with respect to the servos' angles. No derivative is derived by hand.
+//! result includes its derivatives with respect to the servos' angles. No derivative is worked out by hand.
 
 use std::f64::consts::PI;
 use std::ops::{Add, Div, Mul, Neg, Sub};

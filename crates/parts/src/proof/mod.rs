@@ -38,7 +38,8 @@ pub const MIN_GAP_MM: f64 = 0.2;
 /// Largest overlap of parts designed to touch that still counts as touching, mm.
 const TOUCH_OVERLAP: f64 = 0.02;
 
-/// Number of angles per servo in the grid of poses that shows which pairs are pinned to each other.
+/// Number of angles per servo in the grid of poses that shows which pairs are pinned to each other, like a pin and its
+/// hole.
 const JOINT_GRID_ANGLES: u32 = 6;
 
 /// Two bodies and their smallest distance.
@@ -206,7 +207,8 @@ impl<'a> ProofTasks<'a> {
     /// Completes all tasks and composes the proof. `known_result` returns the result of an earlier call of
     /// [`ProofTasks::complete_one`] for an index. The proof ends at the first parts that do not fit, unless the quick
     /// check has found such parts: then each of its worst pairs is bounded. After parts that may not fit, the remaining
-    /// tasks are completed with fewer regions and without `known_result`.
+    /// tasks are completed with fewer regions and without `known_result`. `progress` is called as in
+    /// [`Assembly::prove`].
     pub fn complete_all(
         &self,
         mut known_result: impl FnMut(usize) -> Option<TaskResult>,
@@ -234,7 +236,7 @@ impl<'a> ProofTasks<'a> {
                 continue;
             };
             proof.region_count += region_count;
-            let clash = nearest_pair.clash(task.min_distance());
+            let clash = nearest_pair.clash(task.required_gap());
             if task.may_touch {
                 proof.touching_pairs.push(nearest_pair);
             } else {
@@ -293,7 +295,7 @@ impl Assembly {
         Some(self.make_nearest_pair(bodies, mm, Some((pose, mm)), None))
     }
 
-    /// Makes the result for two bodies, given as indices in [`Assembly::bodies`]. `lower_bound` is that of their
+    /// Makes the result for two bodies, given as indices in [`Assembly::bodies`]. `lower_bound` is a bound of their
     /// distance, mm; `nearest` is an accepted pose with the distance at this pose, mm; `unproved_angles` are angles of
     /// some servos near which no larger distance could be proved. Angles without effect on the distance become neutral.
     fn make_nearest_pair(

@@ -37,7 +37,7 @@ pub fn find_worst_tasks(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>
     let measured_tasks = tasks
         .iter()
         .map(|task| (find_smallest_distance(task), task));
-    let worst_tasks = measured_tasks.filter(|(distance, task)| *distance < task.min_distance());
+    let worst_tasks = measured_tasks.filter(|(distance, task)| *distance < task.required_gap());
     let mut worst_tasks: Vec<_> = worst_tasks.collect();
     worst_tasks.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     worst_tasks.truncate(MAX_WORST_TASKS);
@@ -52,7 +52,7 @@ fn measure_distance(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
     let placement = b.relative_to(&a);
     let shape_pairs = task.shape_pairs.iter();
     let close_pairs =
-        shape_pairs.filter(|pair| !pair.is_far(&placement, [0.0; 2], task.min_distance()));
+        shape_pairs.filter(|pair| !pair.is_far(&placement, [0.0; 2], task.required_gap()));
     let distances = close_pairs.map(|pair| pair.distance(&placement));
     distances.fold(f64::INFINITY, f64::min)
 }

@@ -166,7 +166,7 @@ impl<const N: usize> Search<'_, N> {
         (nearest_pair, self.region_count)
     }
 
-    /// Angles at the middle of a region, deg, servo order.
+    /// Angles at the middle of a region, deg, servo order; `None` for a servo without effect on the distance.
     fn angles(&self, region: &Region<N>) -> [Option<f64>; 4] {
         let mut angles = [None; 4];
         for (servo, angle) in self.servos.iter().zip(region.middle) {

@@ -50,8 +50,8 @@ pub struct Task {
 }
 
 impl Task {
-    /// Smallest allowed distance between the task's pairs, mm.
-    pub fn min_distance(&self) -> f64 {
+    /// Smallest allowed distance between the shapes of each pair, mm; negative if they are designed to touch.
+    pub fn required_gap(&self) -> f64 {
         match self.may_touch {
             true => -TOUCH_OVERLAP,
             false => MIN_GAP_MM,
@@ -106,7 +106,8 @@ impl Task {
     }
 }
 
-/// Pairs the shapes of two bodies whose heights are less than `max_gap_mm` apart.
+/// Pairs the shapes of the bodies `a` and `b`, which have the indices `i` and `j`, if their heights are less than
+/// `max_gap_mm` apart.
 fn pair_shapes(i: usize, a: &Body, j: usize, b: &Body, max_gap_mm: f64) -> Vec<ShapePair> {
     let mut shape_pairs = Vec::new();
     for p in &a.prisms {
@@ -149,9 +150,9 @@ fn select_holes(prism: &Prism, shape: &Shape) -> Vec<Shape> {
 }
 
 impl ShapePair {
-    /// True if the shapes are certainly at least `min_mm` apart while the second shape's frame deviates: its origin by
-    /// up to the first of `max_deviations`, mm, and the tips of its unit axes by up to the second. This test is quick:
-    /// false does not mean close.
+    /// True if the shapes are certainly at least `min_mm` apart even if the second shape's frame deviates from
+    /// `placement`: its origin by up to the first of `max_deviations`, mm, and the tips of its unit axes by up to the
+    /// second. This test is quick: false does not mean close.
     pub fn is_far(&self, placement: &Placement, max_deviations: [f64; 2], min_mm: f64) -> bool {
         let [(a, a_radius), (b, b_radius)] = self.discs;
         let [origin_deviation, axis_deviation] = max_deviations;

@@ -128,8 +128,8 @@ fn a_spring_holds_a_leg_against_friction_but_a_caught_foot_stalls_its_servo() {
     assert!(lever_arm_at(20.0) - 0.01 < max_lever_arm && max_lever_arm < 22.0);
     assert!((effect.preload_torque - min_lever_arm * effect.preload_force).abs() < 1e-9);
     assert!(effect.friction_torque * 1.8 < effect.preload_torque);
-    // With foot and body held, the pin reaches the slot's end long before the 40 deg of a walk. The torque there is
-    // more than 0.7 of the stall torque of an SG-90.
+    // With foot and body held, the strut's screw reaches the slot's end long before the 40 deg of a walk. The torque
+    // there is more than 0.7 of the stall torque of an SG-90.
     let [min_lag, max_lag] = effect.lag_range;
     let is_expected = 12.0 < min_lag && max_lag < 25.0;
     assert!(is_expected, "{min_lag} to {max_lag} deg");

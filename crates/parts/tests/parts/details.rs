@@ -16,7 +16,7 @@ fn vector(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
 }
 
-/// Lists the points of a rectangle with this centre and size, at intervals of 0.3 mm.
+/// Lists the points of a rectangle with this centre and size, at intervals of at most 0.3 mm.
 fn list_rectangle_points(centre: Vector, size: Vector) -> Vec<Vector> {
     let offsets_over = |size: f64| {
         let count = (size / 0.3).ceil() as i32;
@@ -166,7 +166,7 @@ fn the_horn_screws_do_not_reach_the_servo_boss() {
     }
 }
 
-/// Lists the points along a loop, at intervals of 0.2 mm.
+/// Lists the points along a loop, at intervals of at most 0.2 mm.
 fn list_loop_points(outline_loop: &Loop) -> Vec<Vector> {
     let mut points = Vec::new();
     for (side, end) in outline_loop.sides_with_end_points() {
@@ -266,9 +266,9 @@ fn parts_that_look_alike_have_different_marks() {
         let mut marks = BTreeSet::new();
         for part in &parts {
             let has_same_noun = |listed: &&Part| part_noun(listed) == part_noun(part);
-            let same_noun = parts.iter().filter(has_same_noun);
+            let same_noun_parts = parts.iter().filter(has_same_noun);
             let is_spacer = part.name.starts_with("spacer");
-            let is_unmarked = same_noun.count() == 1 || is_spacer;
+            let is_unmarked = same_noun_parts.count() == 1 || is_spacer;
             assert_eq!(part.mark.is_empty(), is_unmarked, "{}", part.name);
             if part.mark.is_empty() {
                 continue;
@@ -305,9 +305,9 @@ fn no_hole_of_a_printed_part_begins_in_mid_air() {
                 let [([_, top_below], outline_below), (z, outline)] = pair else {
                     continue;
                 };
-                let part = &part.name;
-                assert!((top_below - z[0]).abs() < 1e-9, "{name}: {part}");
-                assert!(z[1] > z[0] + 0.01, "{name}: {part}");
+                let part_name = &part.name;
+                assert!((top_below - z[0]).abs() < 1e-9, "{name}: {part_name}");
+                assert!(z[1] > z[0] + 0.01, "{name}: {part_name}");
                 let is_hole = |outline_loop: &&Loop| outline_loop.area() < 0.0;
                 for hole in outline.loops().filter(is_hole) {
                     // The layer below supports this layer at some point beside the hole.
@@ -318,7 +318,7 @@ fn no_hole_of_a_printed_part_begins_in_mid_air() {
                         let direction = Vector::from_angle(15.0 * f64::from(i));
                         outline_below.contains(middle + direction * (radius + 0.2))
                     });
-                    assert!(is_supported, "{name}: {part} at {z:?}");
+                    assert!(is_supported, "{name}: {part_name} at {z:?}");
                 }
             }
         }

@@ -119,7 +119,7 @@ fn the_converter_is_set_after_the_wires_are_checked_and_before_the_servos_get_po
 }
 
 #[test]
-fn the_steps_name_no_mark_that_a_robot_without_equal_parts_lacks() {
+fn the_steps_name_no_mark_that_only_robots_with_equal_parts_have() {
     for step in build_steps(false) {
         let has_mark = step.instructions.contains("marked 1");
         assert!(!has_mark, "{}", step.title);

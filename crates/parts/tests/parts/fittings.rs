@@ -153,7 +153,7 @@ fn the_fuse_carries_the_converters_current_and_the_bill_lists_both_ratings() {
         (Fitting::Fuse, FUSE_RATING_A),
         (Fitting::Switch, MIN_SWITCH_RATING_A),
     ] {
-        let row = fitting.format_bill_row();
+        let row = fitting.format_item_name();
         assert!(row.contains(&format!(" {rating} A ")), "{row}");
     }
 }

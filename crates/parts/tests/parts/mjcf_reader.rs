@@ -41,7 +41,7 @@ pub struct Placement {
     pub rotation: f64,
 }
 
-/// A spring for each strut.
+/// The spring of each strut in tests of slotted struts.
 pub const STRUT_SPRING: StrutSpring = StrutSpring {
     preload: 4.0,
     rate: 0.4,

@@ -38,7 +38,7 @@ fn read_text(node: Node, tag: &str) -> String {
     first_child(node, tag).text().expect(tag).to_owned()
 }
 
-/// Maps the names of the child elements with a tag to the elements. Fails if a name contains a space or occurs twice.
+/// Maps the names of the child elements with a tag to the elements. Panics if a name contains a space or occurs twice.
 fn elements_by_name<'a>(parent: Node<'a, 'a>, tag: &str) -> BTreeMap<String, Node<'a, 'a>> {
     let mut nodes = BTreeMap::new();
     for node in parent.children().filter(|node| node.has_tag_name(tag)) {
@@ -50,7 +50,7 @@ fn elements_by_name<'a>(parent: Node<'a, 'a>, tag: &str) -> BTreeMap<String, Nod
     nodes
 }
 
-/// A body: placement, mass, centre of mass, and inertia in the order of [`INERTIA_KEYS`].
+/// A body: placement, mass (kg), centre of mass (m), and inertia (kg m^2) in the order of [`INERTIA_KEYS`].
 type ParsedBody = (Placement, f64, Vec<f64>, Vec<f64>);
 
 /// Places a frame at a pose on another frame. The pose has six numbers: x, y, z, roll, pitch, yaw.
@@ -62,6 +62,7 @@ fn place_on(frame: Placement, pose: &[f64]) -> Placement {
     }
 }
 
+/// The elements of the inertia tensor, as URDF and SDF name them, in the order of MuJoCo's `fullinertia`.
 const INERTIA_KEYS: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 
 /// Reads the bodies of a URDF file. The joints between the root and a link determine the link's placement.
@@ -120,7 +121,7 @@ fn read_sdf(document: &Document) -> BTreeMap<String, ParsedBody> {
     for (name, link) in &links {
         let inertial = first_child(*link, "inertial");
         let inertia_node = first_child(inertial, "inertia");
-        let inertia = INERTIA_KEYS.map(|name| parse_numbers(&read_text(inertia_node, name))[0]);
+        let inertia = INERTIA_KEYS.map(|key| parse_numbers(&read_text(inertia_node, key))[0]);
         let mass = parse_numbers(&read_text(inertial, "mass"))[0];
         let centre = parse_numbers(&read_text(inertial, "pose"))[..3].to_vec();
         let placement = compute_placement(&links, name);

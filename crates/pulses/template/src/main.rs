@@ -18,7 +18,7 @@ mod servos {
     servo_pulses::engine!(super::PINS);
 }
 
-/// Computes the width of a frame's pulse, cycles: from 1000 to 2000 us and back in 100 frames.
+/// Computes the width of the pulse in a frame, in cycles. It grows from 1000 to 2000 us and shrinks back in 100 frames.
 fn width_cycles(frame: u8) -> u16 {
     let step = if frame < 50 { frame } else { 100 - frame };
     (1000 + 20 * u16::from(step)) * CYCLES_PER_US

@@ -63,7 +63,7 @@ fn an_error_in_a_file_is_reported_with_its_line_and_key() {
         [48.59, 228.59] | [1] | a.toml:10: servo.A1.limit is an array of 1; it must be an array of two numbers
         [48.59, 228.59] | [1, 2.001] | a.toml:10: servo.A1.limit is 2.001; it must have at most two decimals
         dir = "-" | dir = "left" | a.toml:11: servo.A1.dir is "left"; it must be "+" or "-"
-        arc left | walk\nsave | a.toml:5: boot is not the name of a gait
+        arc left | walk\nsave | a.toml:5: boot must be the name of a gait, or "rest"
         deadman = 1500 | deadman = 1.5 | a.toml:6: deadman must be a whole number of ms
         deadman = 1500 | deadman = -1 | a.toml:6: deadman is -1; it must be between 0 and 60000 ms
         "#
@@ -72,7 +72,7 @@ fn an_error_in_a_file_is_reported_with_its_line_and_key() {
         assert_eq!(error_message(old, new), message);
     }
     let no_trim = error_message("trim = -3.25\n", "");
-    // The line of the table.
+    // A missing key is reported on the line of its table.
     let expected = "a.toml:8: servo.A1.trim is missing; it must be a number";
     assert_eq!(no_trim, expected);
     let unknown_key = error_message("scale = 10.0", "scale = 10.0\nscal = 9");
@@ -123,8 +123,8 @@ fn changing_the_scale_or_the_direction_keeps_the_neutral_pulse_width() {
             let reversed = servo.reversed();
             assert_eq!(pulse_shift_us(reversed), pulse_shift_us(servo));
             assert_eq!(reversed.reversed(), servo);
-            let is_no_negative_zero = reversed.trim.is_sign_positive() || reversed.trim < 0.0;
-            assert!(is_no_negative_zero, "the trim must not be -0");
+            let is_not_negative_zero = reversed.trim.is_sign_positive() || reversed.trim < 0.0;
+            assert!(is_not_negative_zero, "the trim must not be -0");
         }
     }
 }

@@ -293,7 +293,7 @@ mod tests {
                 let error = count as f64 * seconds - cycle_seconds;
                 assert!(error.abs() < 1e-9, "{label} at pace {pace}");
                 let frame_error = seconds - 0.02;
-                // Together, the frames differ from 20 ms each by at most half a frame.
+                // The differences of all frames from 20 ms add up to at most half a frame.
                 assert!(frame_error.abs() <= 0.0101 / count as f64, "{label}");
             }
         });

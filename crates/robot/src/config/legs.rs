@@ -8,8 +8,8 @@
 //! second parallelogram, whose ground link goes from the servo's shaft to the crank's pivot, and whose cranks are two
 //! equal arms that carry the strut's anchors.
 //!
-//! A hip is the centre of a foot's circle. In the neutral pose the foot is exactly to the side of its hip if the
-//! mount angle is zero; otherwise the leg is swept by this angle.
+//! A hip is the centre of a foot's circle. In the neutral pose the foot is exactly to the side of its hip if the mount
+//! angle is zero; otherwise the leg is swept by this angle.
 
 use lizard_contact::{FRONT_SIGN, Feet, LEFT_SIGN, Point};
 use lizard_kinematics::{Lizard, Vector};
@@ -33,8 +33,8 @@ pub struct LegPlan {
     /// The crank's joint with the coupler, in the crank's frame, mm: x is parallel to the servo's crank while the leg
     /// does not lag.
     pub crank_joint: Vector,
-    /// The foot in the coupler's frame, mm: x along the coupler from the crank's joint, y at a
-    /// right angle to it, counter-clockwise.
+    /// The foot in the coupler's frame, mm: x along the coupler from the crank's joint, y a quarter turn
+    /// counter-clockwise from x.
     pub foot: Vector,
     /// Unit vector from the shaft to the crank's pivot: the direction of the strut.
     pub strut_direction: Vector,
@@ -72,8 +72,8 @@ impl LegPlan {
         let shaft = lizard.shafts()[servo];
         let crank_pivot = shaft + chassis_offset(servo, parts.pivot);
         let crank_offset = hip_to_foot.angle() - neutral;
-        // The angle between ground link and crank equals the servo's angle. The follower's pivot
-        // may be at either end of the ground link; the end that is farther from the servo is used.
+        // The angle between ground link and crank equals the servo's angle. The ground link may extend from the
+        // crank's pivot in either direction; the follower's pivot is at the end that is farther from the servo.
         let ground_link = Vector::from_angle(crank_offset) * lizard.leg.ground;
         let [first_candidate, second_candidate] =
             [crank_pivot + ground_link, crank_pivot - ground_link];
@@ -189,7 +189,7 @@ mod tests {
         let [left, right, ..] = *robot("paper").legs();
         let pivot = right.crank_pivot;
         assert!(error(pivot, 10.0 + 28.5, 67.5 - 10.0) < 1e-9, "{right:?}");
-        // The ground link is 50 mm long, and turned by 41.41 deg from straight sideways toward the middle.
+        // The ground link is 50 mm long, and turned by 41.41 deg from straight sideways towards the middle.
         let (across_mm, back_mm) = (37.5, 50.0 * 0.4375f64.sqrt());
         assert!(error(right.follower_pivot - pivot, across_mm, -back_mm) < 1e-4);
         assert!(

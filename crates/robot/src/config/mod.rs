@@ -55,7 +55,7 @@ const LINK_NAMES: [&str; 20] = [
     "l15", "l16", "l17", "l18", "l19",
 ];
 
-/// The contents of robot.toml except gaits and routines.
+/// The contents of robot.toml except the name, the gaits and the routines.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RobotConfig {
     /// The lengths of all links.

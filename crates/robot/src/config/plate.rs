@@ -36,7 +36,7 @@ impl Plate {
     /// Computes the plate that carries these legs and these servos.
     pub(crate) fn new(legs: &[LegPlan; 4], parts: &Parts) -> Self {
         let servo_body = &parts.servo;
-        // A case extends from its shaft toward the middle of the robot.
+        // A case extends from its shaft towards the middle of the robot.
         let case_centres: [Vector; 4] = std::array::from_fn(|servo| {
             let inward = -End::from_servo(servo).sign();
             legs[servo].shaft

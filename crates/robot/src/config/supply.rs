@@ -197,7 +197,7 @@ fn read_rail(supply: &Table, used_pins: &mut UsedPins) -> ReadResult<Option<Rail
     let has_derived_slow_threshold = !table.has_key("slow");
     let mut defaults = DEFAULT_THRESHOLDS;
     if has_derived_slow_threshold && table.has_key("stop") {
-        // A placeholder until the servos are known.
+        // A placeholder above every `stop`, until the servos are known.
         defaults[0] = f64::INFINITY;
     }
     Ok(Some(Rail {

@@ -37,7 +37,11 @@ pub struct KeyError(
 
 impl std::fmt::Display for KeyError {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        write!(f, "robot.toml has no number {}", self.0)
+        write!(
+            f,
+            "robot.toml has no value {} that can be changed; edit the file by hand",
+            self.0
+        )
     }
 }
 
@@ -120,7 +124,7 @@ fn with_value(
     // A subtable such as [servo.A1] has its lines elsewhere.
     let direct_values = entries.values().filter(|value| !value.get_ref().is_table());
     let Some(last_end) = direct_values.map(|value| value.span().end).max() else {
-        let new_text = append(text, &format!("[{table}]\n{line}\n"));
+        let new_text = append_table(text, &format!("[{table}]\n{line}\n"));
         let is_toml = DeTable::parse(&new_text).is_ok();
         return is_toml.then_some(new_text).ok_or_else(key_error);
     };
@@ -157,7 +161,7 @@ pub fn without_key(text: &str, key: &str) -> Result<String, KeyError> {
 pub fn with_gait(text: &str, name: &str, table: &str) -> String {
     match replace_gait(text, name, table) {
         (new_text, true) => new_text,
-        (text, false) => append(&text, table),
+        (text, false) => append_table(&text, table),
     }
 }
 
@@ -246,7 +250,7 @@ pub fn with_steps(text: &str, name: &str, steps: &[String]) -> String {
         return new_text;
     }
     let key = to_key(name);
-    append(text, &format!("[routine.{key}]\nsteps = {steps}\n"))
+    append_table(text, &format!("[routine.{key}]\nsteps = {steps}\n"))
 }
 
 /// Formats a name as part of a key in TOML, with quotation marks if it needs them.
@@ -259,7 +263,7 @@ pub fn to_key(name: &str) -> String {
 }
 
 /// Adds a table at the end of a text, after an empty line.
-fn append(text: &str, table: &str) -> String {
+fn append_table(text: &str, table: &str) -> String {
     let line_break = if text.ends_with('\n') { "" } else { "\n" };
     format!("{text}{line_break}\n{table}")
 }

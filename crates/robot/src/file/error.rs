@@ -1,4 +1,4 @@
-//! Errors in robot.toml: the message for the author, and the location in the file.
+//! Errors in robot.toml: the message for the file's author, and the location in the file.
 
 use std::fmt;
 use std::path::Path;
@@ -38,7 +38,7 @@ impl fmt::Display for Error {
         if !self.key.is_empty() {
             location += &format!(": {}", self.key);
         }
-        // The consequence for the robot comes first, because the reader needs it before the location.
+        // The consequence for the robot comes first, because the author needs it before the location.
         if let Some(consequence) = &self.consequence {
             return write!(f, "{consequence}: {} ({location})", self.problem);
         }

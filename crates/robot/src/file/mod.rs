@@ -1,8 +1,8 @@
 //! robot.toml as a file: its text, its tables, and the messages for all errors in them.
 //!
 //! People write robot.toml by hand, so most files contain mistakes at first. To make a mistake easy to find, its error
-//! states the file, the line, the key, the problem and the correction. This module is independent of the meaning of the
-//! values.
+//! states the file, the line, the key, the problem and the correction. Except for `edit.rs`, this folder does not
+//! depend on the meaning of the values.
 
 pub mod edit;
 mod error;

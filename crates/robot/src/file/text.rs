@@ -25,6 +25,6 @@ pub(crate) fn read_text(path: &Path) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|error| {
         let valid_bytes = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = valid_bytes.iter().filter(|&&byte| byte == b'\n').count() + 1;
-        format!("is not UTF-8 text: line {line} contains other bytes")
+        format!("is not UTF-8 text: line {line} contains other bytes; save the file as UTF-8")
     })
 }

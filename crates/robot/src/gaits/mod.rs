@@ -1,4 +1,4 @@
-//! Gaits in floating point, as robot.toml defines them.
+//! Gaits in floating point, and routines, which are sequences of gaits, as robot.toml defines them.
 //!
 //! A gait is a movement that four legs repeat, each with its own phase. robot.toml defines a gait by a waveform, by a
 //! path of the head or the tail, or by changes to another gait. This module converts each definition to the sweep of

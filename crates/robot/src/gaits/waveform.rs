@@ -1,6 +1,7 @@
 //! The shape of one leg's sweep over a cycle. Feet are never lifted: their pads drag, and the robot walks because
-//! three feet hold while one returns. A waveform is therefore a slow stance, in which the foot moves back, and a fast
-//! swing forward. If the swing is long enough, stance and swing join without a step in speed.
+//! three feet hold while one returns. A wave is therefore a slow stance, in which the foot moves back, and a fast swing
+//! forward, which join without a step in speed. In a held gait, all feet move back together, and then forward one after
+//! the other.
 //!
 //! A waveform maps the phase (one cycle = 1) to -1..1, foot forward = 1.
 
@@ -9,19 +10,19 @@ use crate::gaits::path_leg::PathLeg;
 /// The fraction of the cycle that each of the five moves of a held gait takes.
 const MOVE_FRACTION: f64 = 0.2;
 
-/// A function of the phase with values from -1 to 1.
+/// A function of the phase with values from -1 to 1, except for [`Waveform::Path`].
 #[derive(Debug, Clone, PartialEq)]
 pub enum Waveform {
     /// A leg that does not move.
     Still,
-    /// A linear stance over `duty` of the cycle, then a cubic Hermite swing that
-    /// has the stance's speed at both ends. The swing's peak is 1.
+    /// A linear stance over `duty` of the cycle, then a cubic Hermite swing that has the stance's speed at both ends.
+    /// The swing's peak is 1.
     Wave {
         /// The duty factor: the stance's fraction of the cycle, 0 to 1.
         duty: f64,
     },
-    /// A smoothstep back in the first fifth of the cycle, the stance common to all legs. The swing is a smoothstep
-    /// forward in fifth number `swing_index + 1`, counted from 0. In the other fifths the leg holds.
+    /// A smoothstep back in the first fifth of the cycle, the stance common to all legs, and a smoothstep forward in
+    /// one of the other four fifths, this leg's swing. In the remaining fifths the leg holds.
     Held {
         /// Index of this leg's swing among the four, 0 to 3.
         swing_index: usize,

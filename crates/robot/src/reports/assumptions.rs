@@ -18,7 +18,7 @@ const MIN_TURN_DEG: f64 = 0.5;
 /// Largest difference (mm or deg) between the displacements of a gait and of its mirror image or reverse.
 const MIRROR_TOLERANCE: f64 = 0.02;
 
-/// The note about assumptions without an input of the model.
+/// The note about assumptions that no input of the model represents.
 const UNMODELLED_NOTE: &str = "\
 The model cannot vary the floor's edges and slopes, a missing pad, servos that drive in bursts, a centre of mass farther \
 off, or the limbs' mass.\n\
@@ -54,7 +54,8 @@ impl ModelInputs {
         gait.simulate_with_angle_scale(&self.ground, &motors, pace, self.angle_scale)
     }
 
-    /// Finds the gaits that move the robot noticeably, each with its displacement, without mirror images and reverses.
+    /// Finds the gaits that move the robot noticeably and predictably, each with its displacement. Of gaits that are
+    /// mirror images or reverses of each other, only the first is included.
     fn find_distinct_gaits<'a>(&self, robot: &'a Robot) -> Vec<(&'a CheckedGait, Travel)> {
         let mut gaits: Vec<(&CheckedGait, Travel)> = Vec::new();
         let rigid_ground = robot.ground().with_rigid_drive();
@@ -159,7 +160,7 @@ macro_rules! assumptions {
     };
 }
 
-/// The assumptions in the order of robot.toml.
+/// The assumptions about servos, joints, body, floor, legs and feet, and at the end about several of these together.
 const ASSUMPTIONS: [Assumption; 21] = assumptions! {
     "servo stall torque", "kg cm", 1.2 to 2.2, number(servo.stall_torque_kg_cm);
     "servo time per 60 deg", "s", 0.1 to 0.15, number(servo.s_per_60_deg);

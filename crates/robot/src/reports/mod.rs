@@ -1,8 +1,8 @@
 //! Human-readable tables of a robot's gaits, and messages about poses that are not allowed.
 //!
 //! The author of a gait asks three questions: how close does the gait come to the limits, how far does it move the
-//! robot, and how does this displacement change on another floor, with other feet or with softer legs? One table
-//! answers each of them.
+//! robot, and how does this displacement change on another floor, or with other feet, legs or servos? The table of
+//! gaits in `report.rs` answers the first two questions, the other tables answer the third.
 
 mod assumptions;
 mod drive_effect;

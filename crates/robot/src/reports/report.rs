@@ -266,8 +266,8 @@ impl fmt::Display for Report {
                  edge of 2 mm (docs/judges.md)."
             )?;
         }
-        let loads_servos = |row: &&GaitRow| row.utilisation >= HIGH_UTILISATION;
-        for row in self.gait_rows.iter().filter(loads_servos) {
+        let has_little_reserve = |row: &&GaitRow| row.utilisation >= HIGH_UTILISATION;
+        for row in self.gait_rows.iter().filter(has_little_reserve) {
             let warning = format_reserve_warning(&row.name, row.utilisation);
             write!(f, "\n{warning}")?;
         }

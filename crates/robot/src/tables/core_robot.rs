@@ -17,7 +17,7 @@ pub type CoreRobot = lizard_core::numbers::robot::Robot<'static>;
 static KEPT_SECTIONS: Mutex<Option<HashSet<&'static [u8]>>> = Mutex::new(None);
 
 /// Keeps a section until the program ends, and returns it as a region of flash.
-pub fn flash(section: &[u8]) -> Region<'static> {
+pub fn keep_section(section: &[u8]) -> Region<'static> {
     let mut sections = KEPT_SECTIONS.lock().unwrap_or_else(PoisonError::into_inner);
     let sections = sections.get_or_insert_default();
     if let Some(section_copy) = sections.get(section) {

@@ -10,5 +10,5 @@ pub(crate) mod numbers;
 mod table;
 
 pub use cells::CellMaps;
-pub use core_robot::{CoreRobot, flash};
+pub use core_robot::{CoreRobot, keep_section};
 pub(crate) use table::Tables;

@@ -70,7 +70,7 @@ pub(crate) fn build_content(
         ) as u16),
         supplies: supplies.to_core(),
         ends: kinematics::End::ALL.map(|end| convert_five_bar(&lizard.end(end))),
-        sliders: kinematics::Side::ALL.map(|side| convert_side(&lizard.side(side), limits)),
+        sliders: kinematics::Side::ALL.map(|side| convert_slider(&lizard.side(side), limits)),
         gaits,
         steps,
         names,
@@ -160,7 +160,7 @@ fn find_needed_travels(tables: &Tables, calibrations: &[Calibration; 4]) -> [Swe
 }
 
 /// Converts the slider of a side to integers; its stroke is rounded inward.
-fn convert_side(slider: &kinematics::Slider, limits: &kinematics::Limits) -> Slider {
+fn convert_slider(slider: &kinematics::Slider, limits: &kinematics::Limits) -> Slider {
     let scale = scale::find_slider_scale(slider, limits.stroke_max);
     let to_length = |mm: f64| to_steps(mm, scale);
     let steps_per_mm = scale::steps_per_mm(scale);
@@ -184,8 +184,8 @@ fn to_steps(mm: f64, scale: Scale) -> i32 {
 }
 
 /// Converts a margin's limit to an integer, rounded up.
-fn to_sine(margin: f64) -> Sine {
-    Sine(ceil_with_allowance(margin * ONE_Q15) as i16)
+fn to_sine(limit: f64) -> Sine {
+    Sine(ceil_with_allowance(limit * ONE_Q15) as i16)
 }
 
 /// Rounds up, except for a value that exceeds an integer only by a rounding error.
@@ -215,11 +215,11 @@ mod tests {
         let robot = robot("unequal");
         let links = robot.lizard().links;
         let content = robot.content();
-        let loops = [
+        let five_bars = [
             [links.l0, links.l1, links.l4, links.l2, links.l3],
             [links.l5, links.l6, links.l9, links.l7, links.l8],
         ];
-        for (lengths, mm) in content.ends.iter().zip(loops) {
+        for (lengths, mm) in content.ends.iter().zip(five_bars) {
             let ([left, right], [a, b]) = (lengths.cranks, lengths.couplers);
             let steps = [lengths.base, left, right, a, b];
             assert_eq!(steps.map(f64::from), mm.map(|mm| mm * STEPS_PER_MM));
@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn a_loop_can_nearly_stretch_beyond_three_quarters_of_its_squared_reach() {
+    fn a_five_bar_can_nearly_stretch_beyond_three_quarters_of_its_squared_reach() {
         // The threshold is three quarters of the couplers' squared reach, so base plus cranks must exceed 0.866 of the
         // couplers' sum.
         for (base_and_cranks, expected) in [

@@ -1,7 +1,8 @@
 //! The gaits in the firmware's form: waveforms of 64 samples that several servos share, each servo with its own offset
 //! and gain.
 //!
-//! The core defines the meaning of a table and the interpolation between its samples: [`lizard_core::numbers::gaits`].
+//! The core defines the form of the tables in [`lizard_core::numbers::gaits`], and the interpolation between their
+//! samples in [`Channel::sweep`].
 
 use lizard_avr::Flash;
 use lizard_core::numbers::gaits::{Channel, Gait as TableGait, MAX_WAVES, SAMPLES_PER_WAVE, Wave};

@@ -49,7 +49,7 @@ fn struts_with_at_least_two_newtons_act_like_rigid_links() {
             let ratio = simulate_movement(gait, &ground_with_strut(force)) / rigid_movement;
             assert_near(&format!("{name} at {force} N"), ratio, 1.0, 0.005);
         }
-        // The spring recommended in docs/build.md suffices for a robot of 400 g, and the strongest spring suffices for
+        // docs/build.md recommends springs of 3 to 5 N. For a robot of 400 g, 3 N is enough, and 5 N is enough even for
         // pads with 1.5 times the friction.
         for (force, friction) in [(3.0, 0.7), (5.0, 1.05)] {
             let heavy_ground = GroundContact {

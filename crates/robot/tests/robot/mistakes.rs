@@ -79,15 +79,15 @@ fn load_error(path: &std::path::Path) -> String {
 }
 
 #[test]
-fn a_file_that_is_not_text_is_rejected_without_reading_all_of_it() {
+fn a_file_that_is_too_long_unreadable_or_not_text_is_rejected() {
     // Without a limit, reading would continue until memory is full.
     let too_long = "FILE: is longer than 1 MiB, so it is not a robot file";
     assert_eq!(load_error("/dev/zero".as_ref()), too_long);
     let message = load_error(&std::env::temp_dir());
     assert!(message.starts_with("FILE: cannot be read: "), "{message}");
     let latin_path = write_temporary_file("latin", b"# one\n# caf\xe9\n");
-    let no_text = "FILE: is not UTF-8 text: line 2 contains other bytes";
-    assert_eq!(load_error(&latin_path), no_text);
+    let not_text = "FILE: is not UTF-8 text: line 2 contains other bytes; save the file as UTF-8";
+    assert_eq!(load_error(&latin_path), not_text);
     let mut bytes = paper_text().into_bytes();
     bytes.resize(lizard_robot::MAX_FILE_BYTES as usize, b'\n');
     let long_path = write_temporary_file("long", &bytes);

@@ -76,7 +76,7 @@ fn with_soft_feet_a_foot_1_mm_too_long_costs_less_than_three_percent() {
 }
 
 #[test]
-fn with_stiff_feet_a_foot_0_6_mm_too_long_costs_three_quarters() {
+fn with_stiff_feet_a_foot_0_6_mm_too_long_costs_at_least_three_quarters() {
     let compute_ratio = |name: &str| {
         let gait = gait(paper(), name);
         simulate_movement(gait, &ground_with(3.3, 0.6)) / simulate_movement(gait, paper().ground())

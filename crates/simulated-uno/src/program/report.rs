@@ -21,10 +21,10 @@ impl SerialText {
     pub fn print(&mut self, bytes: &[SerialByte], out: &mut impl Write) -> io::Result<()> {
         for byte in bytes {
             self.last_cycle = byte.cycle;
-            if byte.byte != b'\n' {
-                self.unfinished_line.push(byte.byte);
+            if byte.value != b'\n' {
+                self.unfinished_line.push(byte.value);
             }
-            if byte.byte == b'\n' || self.unfinished_line.len() == MAX_LINE_BYTES {
+            if byte.value == b'\n' || self.unfinished_line.len() == MAX_LINE_BYTES {
                 self.print_line(out)?;
             }
         }

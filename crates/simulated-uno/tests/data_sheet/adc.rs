@@ -7,7 +7,7 @@ const CYCLES_PER_CLOCK: u64 = 128;
 
 /// Compiles a program that can use these macros: `start()` starts a conversion, `wait()` waits for its end, `show()`
 /// writes the result to GPIOR0 as two marks, low byte first, and `convert()` does all three.
-pub fn program(body: &str) -> Image {
+pub fn compile(body: &str) -> Image {
     compile_with_headers(&format!(
         "#define start() (ADCSRA = 0xc7)
         #define wait() while (ADCSRA & 0x40) {{}}
@@ -21,7 +21,7 @@ pub fn program(body: &str) -> Image {
 /// pins.
 fn uno_with_statements(body: &str, pin_mv: &[u16]) -> Uno {
     let body = format!("int main(void) {{ {body} for (;;) {{}} }}");
-    let mut uno = new_uno(program(&body));
+    let mut uno = new_uno(compile(&body));
     for (number, mv) in (0..).zip(pin_mv) {
         uno.set_analog_mv(Pin::a(number), *mv);
     }
@@ -62,7 +62,7 @@ fn the_bandgap_result_is_the_ratio_of_the_bandgap_to_the_supply() {
         (4500.0, 1017.0),
         (2800.0, 1200.0),
     ] {
-        let mut uno = new_uno(program(BANDGAP_PROGRAM));
+        let mut uno = new_uno(compile(BANDGAP_PROGRAM));
         uno.set_supply_mv(supply_mv);
         uno.set_bandgap_mv(bandgap_mv);
         uno.run_ms(3);
@@ -76,13 +76,13 @@ fn the_bandgap_result_is_the_ratio_of_the_bandgap_to_the_supply() {
 #[test]
 #[should_panic(expected = "the bandgap reference must be between 1000 and 1200 mV")]
 fn setting_a_bandgap_outside_the_data_sheet_range_panics() {
-    new_uno(program(BANDGAP_PROGRAM)).set_bandgap_mv(1201.0);
+    new_uno(compile(BANDGAP_PROGRAM)).set_bandgap_mv(1201.0);
 }
 
 #[test]
 #[should_panic(expected = "D9 is not an analog pin")]
 fn setting_the_voltage_of_a_digital_pin_panics() {
-    new_uno(program(BANDGAP_PROGRAM)).set_analog_mv(Pin::d(9), 1);
+    new_uno(compile(BANDGAP_PROGRAM)).set_analog_mv(Pin::d(9), 1);
 }
 
 #[test]
@@ -233,7 +233,7 @@ fn the_two_lowest_prescaler_settings_divide_by_two() {
 
 #[test]
 fn the_adc_interrupt_wakes_the_cpu_and_clears_its_flag() {
-    let mut uno = new_uno(program("ISR(ADC_vect) { GPIOR0 = ADCSRA; show(); }
+    let mut uno = new_uno(compile("ISR(ADC_vect) { GPIOR0 = ADCSRA; show(); }
         int main(void) { SMCR = 1; ADMUX = 0x40; ADCSRA = 0xcf; sei(); for (;;) asm volatile (\"sleep\"); }"));
     uno.set_analog_mv(Pin::a(0), 2500);
     uno.run_ms(1);
@@ -355,7 +355,7 @@ fn a_reset_switches_the_adc_off() {
 
 #[test]
 fn a_supply_ramp_is_linear_and_the_adc_follows_it() {
-    let mut uno = uno_after_ms(2, program(BANDGAP_PROGRAM));
+    let mut uno = uno_after_ms(2, compile(BANDGAP_PROGRAM));
     uno.ramp_supply_mv(3000.0, 100 * CYCLES_PER_MS);
     uno.run_ms(50);
     assert!((uno.supply_mv() - 4000.0).abs() < 1e-6);
@@ -371,7 +371,7 @@ fn a_supply_ramp_is_linear_and_the_adc_follows_it() {
 
 #[test]
 fn stock_simavr_measures_a_low_supply_but_does_not_reset() {
-    let mut uno = Uno::with_image(program(BANDGAP_PROGRAM), Fidelity::Stock);
+    let mut uno = Uno::with_image(compile(BANDGAP_PROGRAM), Fidelity::Stock);
     run_at_supply(&mut uno, 2500.0, 3);
     assert_eq!(conversion_results(&uno)[1], 450);
     assert!(!uno.is_held_in_reset());

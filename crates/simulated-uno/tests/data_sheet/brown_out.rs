@@ -1,6 +1,6 @@
 //! Tests of the simulated chip on a falling and rising supply, against the data sheet, chapters 11.4 and 11.5.
 
-use super::adc::program;
+use super::adc::compile;
 use super::*;
 
 #[test]
@@ -10,7 +10,7 @@ fn a_supply_below_the_brown_out_level_holds_the_chip_in_reset() {
     // (VBOT+), the delay counter starts the MCU"; "VBOT+ = VBOT + VHYST/2" (11.5),
     // with 2.7 V and 50 mV.
     let body = "int main(void) { DDRB = 2; PORTB = 2; for (;;) GPIOR0 = MCUSR; }";
-    let mut uno = new_uno(program(body));
+    let mut uno = new_uno(compile(body));
     run_at_supply(&mut uno, 2676.0, 1);
     assert!(!uno.is_held_in_reset() && uno.is_high(Pin::d(9)));
     run_at_supply(&mut uno, 2674.0, 1);
@@ -30,7 +30,7 @@ fn a_supply_below_the_brown_out_level_holds_the_chip_in_reset() {
 #[test]
 fn a_ramp_resets_and_restarts_the_chip_at_the_brown_out_levels() {
     // From 5000 mV to 2000 mV and back, 1 mV in 1000 cycles.
-    let mut uno = new_uno(program("int main(void) { for (;;) {} }"));
+    let mut uno = new_uno(compile("int main(void) { for (;;) {} }"));
     uno.run_cycles(1000);
     uno.ramp_supply_mv(2000.0, 3_000_000);
     uno.run_cycles(2_325_000 - 100);
@@ -52,7 +52,7 @@ fn the_sram_survives_a_brown_out_but_not_a_loss_of_power() {
     let body = "static volatile unsigned char kept __attribute__((section(\".noinit\")));
         int main(void) { GPIOR0 = kept == 0x5a; GPIOR0 = MCUSR; kept = 0x5a; for (;;) {} }";
     for (lowest_mv, is_kept, flags) in [(1400.0, 1, 0x05), (1200.0, 0, 0x01)] {
-        let mut uno = uno_after_ms(1, program(body));
+        let mut uno = uno_after_ms(1, compile(body));
         run_at_supply(&mut uno, lowest_mv, 1);
         run_at_supply(&mut uno, 5000.0, 1);
         assert_eq!(mark_values(&uno)[2..], [is_kept, flags], "{lowest_mv} mV");
@@ -68,7 +68,7 @@ fn the_sram_survives_a_brown_out_but_not_a_loss_of_power() {
 
 #[test]
 fn a_ramp_continues_while_the_chip_is_in_reset() {
-    let mut uno = new_uno(program("int main(void) { for (;;) GPIOR0 = MCUSR; }"));
+    let mut uno = new_uno(compile("int main(void) { for (;;) GPIOR0 = MCUSR; }"));
     uno.ramp_supply_mv(1000.0, 10 * CYCLES_PER_MS);
     uno.run_ms(11);
     run_at_supply(&mut uno, 2000.0, 1);
@@ -79,7 +79,7 @@ fn a_ramp_continues_while_the_chip_is_in_reset() {
 
 #[test]
 fn without_brown_out_detection_the_chip_runs_down_to_the_power_on_level() {
-    let mut uno = new_uno(program("int main(void) { for (;;) GPIOR0 = 1; }"));
+    let mut uno = new_uno(compile("int main(void) { for (;;) GPIOR0 = 1; }"));
     uno.set_brown_out_mv(None);
     for (mv, is_held) in [(1310.0, false), (1290.0, true), (1390.0, true)] {
         run_at_supply(&mut uno, mv, 1);
@@ -99,7 +99,7 @@ fn an_eeprom_write_survives_a_brown_out_but_is_torn_below_1_8_v() {
         EEAR = 0; EEDR = 0x0f; EECR = 4; EECR |= 2;
         for (;;) {} }";
     for (lowest_mv, expected) in [(1810.0, 0x0f), (1790.0, 0x4f)] {
-        let mut uno = new_uno(program(body));
+        let mut uno = new_uno(compile(body));
         uno.set_torn_bits(0x40);
         uno.run_ms(3);
         run_at_supply(&mut uno, lowest_mv, 1);
@@ -112,7 +112,7 @@ fn an_eeprom_write_survives_a_brown_out_but_is_torn_below_1_8_v() {
 fn the_watchdog_is_stopped_during_a_brown_out() {
     let body = "#include <avr/wdt.h>
         int main(void) { GPIOR0 = MCUSR; MCUSR = 0; wdt_enable(WDTO_15MS); for (;;) {} }";
-    let mut uno = uno_after_ms(20, program(body));
+    let mut uno = uno_after_ms(20, compile(body));
     run_at_supply(&mut uno, 2000.0, 100);
     run_at_supply(&mut uno, 5000.0, 10);
     assert_eq!(mark_values(&uno), [1, 8, 4]);
@@ -122,14 +122,14 @@ fn the_watchdog_is_stopped_during_a_brown_out() {
     // A WDRF that is still set switches the watchdog on at each reset, but not during a brown-out.
     let body = "#include <avr/wdt.h>
         int main(void) { if (!(MCUSR & 8)) wdt_enable(WDTO_15MS); for (;;) {} }";
-    let mut uno = uno_after_ms(20, program(body));
+    let mut uno = uno_after_ms(20, compile(body));
     run_at_supply(&mut uno, 2000.0, 100);
-    assert_eq!(uno.watchdog_resets(), 1);
+    assert_eq!(uno.watchdog_reset_count(), 1);
 }
 
 #[test]
 fn after_power_on_the_chip_starts_only_when_the_supply_is_high_enough() {
-    let mut uno = new_uno(program("int main(void) { for (;;) GPIOR0 = MCUSR; }"));
+    let mut uno = new_uno(compile("int main(void) { for (;;) GPIOR0 = MCUSR; }"));
     uno.set_supply_mv(2000.0);
     uno.power_cycle();
     uno.take_marks();
@@ -147,14 +147,14 @@ fn after_power_on_the_chip_starts_only_when_the_supply_is_high_enough() {
 
 #[test]
 fn ramps_and_power_cuts_affect_firmware_that_sleeps_forever() {
-    let mut uno = new_uno(program(
+    let mut uno = new_uno(compile(
         "int main(void) { GPIOR0 = MCUSR; SMCR = 1; asm volatile (\"sleep\"); for (;;) {} }",
     ));
     uno.ramp_supply_mv(2000.0, CYCLES_PER_MS);
     assert_eq!(*uno.run_ms(2), State::Alive);
     assert!(uno.is_held_in_reset());
     let body = "int main(void) { SMCR = 1; asm volatile (\"sleep\"); for (;;) {} }";
-    let mut sleeping_uno = new_uno(program(body));
+    let mut sleeping_uno = new_uno(compile(body));
     sleeping_uno.cut_power(PowerCut::AtCycle(1000 * CYCLES_PER_US), 0);
     assert_eq!(*sleeping_uno.run_ms(2), State::Off);
 }

@@ -15,8 +15,8 @@ fn run_assembly(source: &str, cycles: u64) -> Uno {
 }
 
 /// Compiles `body` with functions for the EEPROM: `set(address, byte, mode)` and `get(address)`, as in the examples of
-/// the data sheet, and `busy()`.
-pub fn program(body: &str) -> Image {
+/// the data sheet, and `busy()`, which is not 0 during an operation.
+pub fn compile(body: &str) -> Image {
     compile_with_headers(&format!(
         "#define busy() (EECR & 2)
         static __attribute__((unused)) void set(unsigned address, unsigned char byte, unsigned char mode) {{
@@ -34,7 +34,7 @@ pub fn program(body: &str) -> Image {
 
 /// Returns a UNO that has run for a number of milliseconds and whose main program runs these statements once.
 fn run_c(body: &str, ms: u64) -> Uno {
-    let image = program(&format!("int main(void) {{ {body} for (;;) {{}} }}"));
+    let image = compile(&format!("int main(void) {{ {body} for (;;) {{}} }}"));
     uno_after_ms(ms, image)
 }
 
@@ -184,7 +184,7 @@ fn erase_only_sets_all_bits_and_write_only_clears_bits() {
 
 #[test]
 fn a_byte_has_its_old_value_until_the_operation_ends() {
-    let mut uno = new_uno(program("int main(void) { set(9, 0x21, 0); for (;;) {} }"));
+    let mut uno = new_uno(compile("int main(void) { set(9, 0x21, 0); for (;;) {} }"));
     uno.run_until(1000, 1, |uno| !uno.eeprom_operations().is_empty());
     let end_cycle = uno.eeprom_operations()[0].cycle + ATOMIC_CYCLES;
     uno.run_until_cycle(end_cycle - 10);
@@ -219,7 +219,7 @@ fn the_cpu_halts_four_cycles_to_read_and_two_to_write() {
 #[test]
 fn halts_by_the_eeprom_do_not_delay_a_timer() {
     // Timer1 counts while the CPU is halted, so the delays of its interrupt do not add up.
-    let image = program(
+    let image = compile(
         "ISR(TIMER1_COMPA_vect) { GPIOR0 = TCNT1L; }
         int main(void) {
             OCR1A = 1999; TIMSK1 = 2; TCCR1B = 9; sei();
@@ -237,7 +237,7 @@ fn halts_by_the_eeprom_do_not_delay_a_timer() {
 fn the_ready_interrupt_is_requested_while_eepe_is_zero() {
     // "The EEPROM Ready interrupt generates a constant interrupt when EEPE is
     // cleared" (8.6.3). The handler writes three bytes, then disables its interrupt.
-    let image = program(
+    let image = compile(
         "static unsigned char count;
         ISR(EE_READY_vect) {
             GPIOR0 = count;
@@ -320,7 +320,7 @@ fn a_reset_disarms_eempe() {
 
 #[test]
 fn stock_simavr_writes_at_once_and_never_reads_busy() {
-    let image = program("int main(void) { set(0, 0x21, 1); GPIOR0 = EECR; for (;;) {} }");
+    let image = compile("int main(void) { set(0, 0x21, 1); GPIOR0 = EECR; for (;;) {} }");
     let mut uno = Uno::with_image(image, Fidelity::Stock);
     uno.run_cycles(200);
     assert_eq!(mark_values(&uno), [0x10], "{CORRECTION_IS_OBSOLETE}");

@@ -143,7 +143,7 @@ fn resets_by_the_watchdog_are_counted() {
         PORTB = 0; DDRB = 0x20; PORTB = 0x20;",
     );
     for uno in unos_after(70 * CYCLES_PER_MS, &image) {
-        assert_eq!(uno.watchdog_resets(), 4, "every 16 ms");
+        assert_eq!(uno.watchdog_reset_count(), 4, "every 16 ms");
     }
 }
 

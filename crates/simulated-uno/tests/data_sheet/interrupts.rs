@@ -135,10 +135,10 @@ fn interrupts_enabled_after_their_flag_fire_and_flags_are_cleared_separately() {
         ),
     ] {
         let image = compile_with_headers(program);
-        let [simavr_marks, data_sheet_marks] =
+        let [stock_marks, data_sheet_marks] =
             unos_after(100_000, &image).map(|uno| mark_values(&uno));
         assert_eq!(data_sheet_marks, expected, "{message}");
-        assert_eq!(simavr_marks, stock_expected, "{CORRECTION_IS_OBSOLETE}");
+        assert_eq!(stock_marks, stock_expected, "{CORRECTION_IS_OBSOLETE}");
     }
 }
 

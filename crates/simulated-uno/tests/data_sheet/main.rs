@@ -35,8 +35,8 @@ fn unos_after(cycles: u64, image: &Image) -> [Uno; 2] {
     })
 }
 
-/// Failure message of an assertion that stock simavr has an error. The assertion fails when simavr no longer needs the
-/// correction.
+/// Failure message of an assertion that stock simavr deviates from the data sheet. The assertion fails when simavr no
+/// longer needs the correction.
 const CORRECTION_IS_OBSOLETE: &str =
     "stock simavr now follows the data sheet here: drop the correction";
 
@@ -90,14 +90,14 @@ fn numbered_edges(uno: &Uno) -> Vec<(u8, bool)> {
     numbered_edges.collect()
 }
 
-/// Returns the cycles at which the bytes on the serial line end.
+/// Returns the cycles at which the bytes that the program has sent on the serial line end.
 fn transmission_cycles(uno: &Uno) -> Vec<u64> {
     uno.transmitted().iter().map(|byte| byte.cycle).collect()
 }
 
 /// Returns the bytes that the program has sent on the serial line.
 fn transmitted_bytes(uno: &Uno) -> Vec<u8> {
-    uno.transmitted().iter().map(|byte| byte.byte).collect()
+    uno.transmitted().iter().map(|byte| byte.value).collect()
 }
 
 /// Returns the causes of all starts of the program, the first power-on included.

@@ -1,6 +1,6 @@
 //! Tests of power cuts during an EEPROM write.
 
-use super::eeprom::{ATOMIC_CYCLES, program};
+use super::eeprom::{ATOMIC_CYCLES, compile};
 use super::*;
 
 /// Program that writes 0x35 over 0xa6 at address 0, then 0x5c at address 1. If address 0 does not contain 0xa6, as
@@ -12,7 +12,7 @@ const TWO_BYTES_PROGRAM: &str = "int main(void) {
 
 /// Returns a UNO with [`TWO_BYTES_PROGRAM`] at power-on, and 0xa6 at address 0 of its EEPROM.
 fn uno_with_two_bytes() -> Uno {
-    let mut uno = new_uno(program(TWO_BYTES_PROGRAM));
+    let mut uno = new_uno(compile(TWO_BYTES_PROGRAM));
     let mut contents = [0xff; EEPROM_SIZE];
     contents[0] = 0xa6;
     uno.set_eeprom(&contents);
@@ -79,7 +79,7 @@ fn a_power_cut_at_a_cycle_tears_the_byte_according_to_its_phase() {
 fn erase_only_operations_set_torn_bits_and_write_only_operations_keep_them() {
     let tear_byte = |mode: u8, cut: PowerCut, ones: u8| {
         let body = format!("int main(void) {{ set(0, 0x35, {mode}); for (;;) {{}} }}");
-        let mut uno = new_uno(program(&body));
+        let mut uno = new_uno(compile(&body));
         uno.set_eeprom(&[0xa6; EEPROM_SIZE]);
         uno.cut_power(cut, ones);
         assert_eq!(*uno.run_ms(5), State::Off);
@@ -109,7 +109,7 @@ fn a_board_restarts_after_a_power_cut_with_the_same_eeprom() {
 fn a_power_cut_happens_once() {
     let body = "int main(void) { set(0, get(0) - 1, 0); for (;;) {} }";
     for cut in [PowerCut::AtCycle(30_000), PowerCut::InErase(0)] {
-        let mut uno = new_uno(program(body));
+        let mut uno = new_uno(compile(body));
         uno.cut_power(cut, 0xff);
         assert_eq!(*uno.run_ms(5), State::Off);
         uno.power_cycle();

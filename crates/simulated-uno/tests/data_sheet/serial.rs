@@ -9,7 +9,7 @@ const UNO_FRAME_CYCLES: u64 = 10 * 17 * 8;
 
 /// Compiles a program at 115 200 baud that runs `body` in an endless loop; `get()` receives a byte, `put()` sends
 /// one.
-fn program(body: &str) -> Image {
+fn compile(body: &str) -> Image {
     compile_with_headers(&format!(
         "static unsigned char get(void) {{ while (!(UCSR0A & 0x80)) {{}} return UDR0; }}
         static void put(unsigned char byte) {{ while (!(UCSR0A & 0x20)) {{}} UDR0 = byte; }}
@@ -23,7 +23,7 @@ fn program(body: &str) -> Image {
 
 #[test]
 fn an_echo_returns_the_sent_bytes() {
-    for mut uno in unos_after(CYCLES_PER_MS, &program("put(get());")) {
+    for mut uno in unos_after(CYCLES_PER_MS, &compile("put(get());")) {
         uno.send(b"the quick brown fox");
         uno.run_ms(5);
         assert_eq!(transmitted_bytes(&uno), b"the quick brown fox");
@@ -33,7 +33,7 @@ fn an_echo_returns_the_sent_bytes() {
 
 #[test]
 fn an_echo_arrives_a_frame_after_its_byte() {
-    let mut uno = uno_after_ms(1, program("put(get());"));
+    let mut uno = uno_after_ms(1, compile("put(get());"));
     let start = uno.cycle();
     uno.send(b"x");
     uno.run_ms(1);
@@ -45,7 +45,7 @@ fn an_echo_arrives_a_frame_after_its_byte() {
 
 #[test]
 fn bytes_are_sent_back_to_back_in_frames_of_ten_bits() {
-    let uno = uno_after_ms(10, program("put('a');"));
+    let uno = uno_after_ms(10, compile("put('a');"));
     let frame_ends = transmission_cycles(&uno);
     assert!(frame_ends.len() > 100);
     // A frame may end in the middle of an instruction; this does not delay the following frames.
@@ -55,7 +55,7 @@ fn bytes_are_sent_back_to_back_in_frames_of_ten_bits() {
 
 #[test]
 fn a_flood_has_the_baud_rate_over_a_second() {
-    let mut uno = new_uno(program("get();"));
+    let mut uno = new_uno(compile("get();"));
     uno.flood(b"0123456789");
     uno.run_ms(1000);
     let sent_count = uno.sent_byte_count();
@@ -75,13 +75,13 @@ fn two_bytes_wait_in_the_buffer_and_a_third_in_the_shift_register() {
         ("abcd", b"abd", 1),   // c is overwritten by d
         ("abcdef", b"abf", 3), // then d is overwritten by e, and e by f
     ] {
-        let mut uno = uno_after(3200, program(late_body));
+        let mut uno = uno_after(3200, compile(late_body));
         uno.send(sent_text.as_bytes());
         uno.run_ms(4);
         assert_eq!(transmitted_bytes(&uno), kept_bytes, "{sent_text}");
         assert_eq!(uno.overrun_count(), lost_count, "{sent_text}");
     }
-    let mut uno = Uno::with_image(program(late_body), Fidelity::Stock);
+    let mut uno = Uno::with_image(compile(late_body), Fidelity::Stock);
     uno.run_cycles(3200);
     uno.send(b"abcde");
     uno.run_ms(5);
@@ -93,7 +93,7 @@ fn two_bytes_wait_in_the_buffer_and_a_third_in_the_shift_register() {
 fn an_overrun_flag_is_cleared_by_the_next_read() {
     let body = "_delay_ms(2); unsigned char before = UCSR0A, byte = UDR0, after = UCSR0A;
                 (void)byte; GPIOR0 = before; GPIOR0 = after;";
-    let mut uno = uno_after(3200, program(body));
+    let mut uno = uno_after(3200, compile(body));
     uno.send(b"abcd");
     uno.run_ms(3);
     let marks = uno.marks();
@@ -133,14 +133,14 @@ fn the_data_register_interrupt_sends_without_gaps() {
 fn a_byte_written_while_the_transmitter_is_full_is_ignored() {
     // One byte is in the shift register and one in the buffer; a third does not fit.
     let body = "UDR0 = 'a'; UDR0 = 'b'; UDR0 = 'c'; _delay_ms(1); put('d'); for (;;) {}";
-    let uno = uno_after_ms(3, program(body));
+    let uno = uno_after_ms(3, compile(body));
     assert_eq!(transmitted_bytes(&uno), b"abd");
 }
 
 /// Sends a byte at this baud rate to a program that runs `body` in a loop, and returns the first byte that the
 /// program writes to GPIOR0.
 fn send_for_first_mark(baud: f64, byte: u8, body: &str) -> u8 {
-    let mut uno = new_uno(program(body));
+    let mut uno = new_uno(compile(body));
     uno.set_baud(baud);
     uno.run_ms(1);
     uno.send(&[byte]);
@@ -170,7 +170,7 @@ fn a_wrong_baud_rate_changes_the_bytes_that_are_read() {
 
 #[test]
 fn a_new_baud_rate_does_not_change_the_byte_that_is_on_the_line() {
-    let mut uno = uno_after_ms(1, program("GPIOR0 = get();"));
+    let mut uno = uno_after_ms(1, compile("GPIOR0 = get();"));
     uno.send(b"0");
     uno.run_cycles(700);
     uno.set_baud(57_600.0);
@@ -184,7 +184,7 @@ fn a_low_stop_bit_is_a_framing_error_of_its_byte_only() {
     let body = "unsigned char status; while (!((status = UCSR0A) & 0x80)) {}
                 GPIOR0 = status & 0x10; GPIOR0 = UDR0;";
     for fidelity in FIDELITIES {
-        let mut uno = Uno::with_image(program(body), fidelity);
+        let mut uno = Uno::with_image(compile(body), fidelity);
         uno.run_ms(1);
         uno.send(b"a");
         uno.send_with_framing_error(b"bc");
@@ -208,7 +208,7 @@ fn a_framing_error_is_flagged_only_while_its_byte_is_the_next_byte() {
                 for (unsigned char i = 0; i < 3; i++) { GPIOR0 = UCSR0A & 0x90; (void)UDR0; }
                 GPIOR0 = UCSR0A & 0x90;";
     let receive_statuses = |faulty_index: usize| {
-        let mut uno = uno_after(3200, program(body));
+        let mut uno = uno_after(3200, compile(body));
         for (index, byte) in b"abc".iter().enumerate() {
             match index == faulty_index {
                 true => uno.send_with_framing_error(&[*byte]),
@@ -228,7 +228,7 @@ fn a_framing_error_is_flagged_only_while_its_byte_is_the_next_byte() {
 
 #[test]
 fn run_until_line_ends_after_the_line_or_at_the_limit() {
-    let mut uno = new_uno(program("put('o'); put('k'); put('\\n'); _delay_ms(50);"));
+    let mut uno = new_uno(compile("put('o'); put('k'); put('\\n'); _delay_ms(50);"));
     assert!(uno.run_until_line(20 * CYCLES_PER_MS));
     assert_eq!(transmitted_bytes(&uno), b"ok\n");
     assert!(uno.cycle() < 4 * UNO_FRAME_CYCLES);

@@ -13,7 +13,7 @@ fn watchdog_reset_cycles(uno: &Uno) -> Vec<u64> {
 }
 
 /// Compiles a program in which the macro `set(value)` runs the timed sequence of 11.8.2 and writes `value` to WDTCSR.
-fn program(body: &str) -> Image {
+fn compile(body: &str) -> Image {
     compile_with_headers(&format!(
         "#define wdr() asm volatile (\"wdr\")
         #define set(value) do {{ unsigned char v = (value); asm volatile ( \
@@ -23,9 +23,9 @@ fn program(body: &str) -> Image {
     ))
 }
 
-/// Returns a UNO that has run this program, with the macros of [`program`], for a number of milliseconds.
+/// Returns a UNO that has run this program, with the macros of [`compile`], for a number of milliseconds.
 fn run(body: &str, ms: u64) -> Uno {
-    uno_after_ms(ms, program(body))
+    uno_after_ms(ms, compile(body))
 }
 
 /// Runs a main program that clears MCUSR and then runs these statements once. Returns the UNO after `ms` milliseconds.
@@ -51,7 +51,7 @@ fn time_outs_of_all_prescalers_match_table_11_2() {
                 GPIOR0 = 1; set({value}); SMCR = 1; asm volatile (\"sleep\"); for (;;) {{}} }}"
         );
         let expected = MIN_TIMEOUT_CYCLES << wdp;
-        let uno = uno_after(expected + CYCLES_PER_MS, program(&body));
+        let uno = uno_after(expected + CYCLES_PER_MS, compile(&body));
         assert_eq!(watchdog_reset_cycles(&uno).len(), 1, "WDP = {wdp}");
         let elapsed_cycles = cycles_to_reset(&uno, 0);
         assert_within(expected..expected + 12, elapsed_cycles);
@@ -230,17 +230,17 @@ fn after_its_reset_the_watchdog_runs_at_16_ms_until_wdrf_is_cleared() {
         100,
     );
     assert_eq!(mark_values(&cleared_uno), [8, 0]);
-    assert_eq!(cleared_uno.watchdog_resets(), 1);
+    assert_eq!(cleared_uno.watchdog_reset_count(), 1);
 }
 
 #[test]
 fn the_watchdog_resets_a_chip_that_sleeps_with_interrupts_disabled() {
-    let image = program(
+    let image = compile(
         "int main(void) { SMCR = 1; MCUSR = 0; set(8); asm volatile (\"sleep\"); GPIOR0 = 1; for (;;) {} }",
     );
     let mut uno = new_uno(image.clone());
     assert_eq!(*uno.run_ms(40), State::Alive);
-    assert_eq!(uno.watchdog_resets(), 2);
+    assert_eq!(uno.watchdog_reset_count(), 2);
     assert!(uno.marks().is_empty());
     let mut stock_uno = Uno::with_image(image, Fidelity::Stock);
     assert_eq!(*stock_uno.run_ms(40), State::Halted);
@@ -254,7 +254,7 @@ fn a_timer_interrupt_does_not_end_a_sleep_with_interrupts_disabled() {
         40,
     );
     assert!(uno.marks().is_empty());
-    assert_eq!(uno.watchdog_resets(), 2);
+    assert_eq!(uno.watchdog_reset_count(), 2);
 }
 
 #[test]
@@ -277,7 +277,7 @@ fn an_interrupt_in_the_cycle_of_the_sleep_instruction_does_not_end_the_sleep() {
 
 #[test]
 fn the_division_of_a_run_does_not_change_the_cycle_of_a_watchdog_reset() {
-    let image = program("int main(void) { set(8); for (;;) GPIOR0++; }");
+    let image = compile("int main(void) { set(8); for (;;) GPIOR0++; }");
     let mut unbroken_uno = new_uno(image.clone());
     unbroken_uno.run_until_cycle(50 * CYCLES_PER_MS);
     let mut stepped_uno = new_uno(image.clone());
@@ -288,7 +288,7 @@ fn the_division_of_a_run_does_not_change_the_cycle_of_a_watchdog_reset() {
     let mut exact_uno = new_uno(image);
     exact_uno.run_until_cycle(watchdog_reset_cycles(&unbroken_uno)[0]);
     assert_eq!(
-        exact_uno.watchdog_resets(),
+        exact_uno.watchdog_reset_count(),
         1,
         "a reset in the last cycle of a run is part of the run"
     );
@@ -297,8 +297,8 @@ fn the_division_of_a_run_does_not_change_the_cycle_of_a_watchdog_reset() {
 
 #[test]
 fn stock_simavr_does_not_reset_in_interrupt_and_reset_mode() {
-    let image = program("int main(void) { set(0x48); for (;;) {} }");
+    let image = compile("int main(void) { set(0x48); for (;;) {} }");
     let mut uno = Uno::with_image(image, Fidelity::Stock);
     uno.run_ms(100);
-    assert_eq!(uno.watchdog_resets(), 0, "{CORRECTION_IS_OBSOLETE}");
+    assert_eq!(uno.watchdog_reset_count(), 0, "{CORRECTION_IS_OBSOLETE}");
 }

@@ -46,7 +46,7 @@ fn run(board: BoardDouble) -> UploadRun {
     run_with_image(board, &test_image())
 }
 
-/// Uploads [`test_image`] to a board that has another program of 500 bytes and this change.
+/// Uploads [`test_image`] to a board that has another program of 500 bytes, after `change` to this board.
 fn run_over_old_program(change: impl FnOnce(&mut BoardDouble)) -> UploadRun {
     let mut board = BoardDouble::with_program(&[9; 500]);
     change(&mut board);
@@ -91,6 +91,7 @@ impl UploadRun {
         counts
     }
 
+    /// Checks that the upload succeeded although the byte with the index `lost_byte` was lost.
     #[track_caller]
     fn assert_recovered(&self, lost_byte: usize) {
         if let Err(error) = &self.result {

@@ -6,7 +6,8 @@ use super::list::Mutant;
 /// The folder whose files only read and produce console text. Any other file can move a servo or change a saved value.
 const CONSOLE_FOLDER: &str = "crates/core/src/console/";
 
-/// Path parts of files in which no mutant is generated: they do not run on the chip, or contain generated tables.
+/// Parts of the paths of files in which no mutant is generated: these files do not run on the chip, or contain
+/// generated tables.
 const EXCLUDED_PATH_PARTS: [&str; 7] = [
     "tests",
     "autobaud/misread",

@@ -10,9 +10,9 @@
 //! program tries the entries that match at least one argument, or all entries if there is no argument.
 //!
 //! With SAMPLE=60 the program instead tries a random sample of 60 generated mutants ([`generated`]) from all of the
-//! firmware's code, and prints the rate at which tests catch them, with its confidence interval. SEED selects the
-//! sample. For a mutant in the core, the core's own tests run first, then the model checker's tests, then the tests of
-//! the running firmware.
+//! firmware's code, or from the files whose paths contain an argument, and prints the rate at which tests catch them,
+//! with its confidence interval. SEED selects the sample. For a mutant in the core, the core's own tests run first,
+//! then the model checker's tests, then the tests of the running firmware.
 
 mod generated;
 mod list;
@@ -34,7 +34,7 @@ const CPU_TIMEOUT_S: u32 = 400;
 
 /// The outcome of the tests with a mutant.
 enum Outcome {
-    /// At least one test caught the mutant. The text names the failed tests.
+    /// At least one test caught the mutant. The text names the failed tests, or says that the tests hang or crash.
     Caught(String),
     /// No test caught the mutant.
     Missed,
@@ -103,7 +103,7 @@ fn try_generated_mutants(filters: &[String], count: usize, seed: u64) -> Result<
         *caught += usize::from(outcome != "MISSED");
         *tried += 1;
     }
-    let code_kinds = ["that move a servo or a saved value", "in text"];
+    let code_kinds = ["that can move a servo or change a saved value", "in text"];
     for ([caught, tried], code_kind) in tally.into_iter().zip(code_kinds) {
         let (min, max) = generated::wilson_interval(caught, tried);
         let interval = format!("{:.1} to {:.1} % (Wilson, 95 %)", 100.0 * min, 100.0 * max);
@@ -133,7 +133,7 @@ fn try_listed_mutants(filters: &[String]) -> Result<usize, String> {
         let failed = run_firmware_tests(&elf, "")?.unwrap_or(vec!["a test hangs".into()]);
         if !failed.is_empty() {
             return Err(format!(
-                "with the unchanged firmware: {}",
+                "tests fail with the unchanged firmware: {}",
                 failed.join(", ")
             ));
         }
@@ -204,13 +204,13 @@ impl ScratchTree {
         let scratch = Self { folder, files };
         for name in &scratch.files {
             let source = root().join(name);
-            let bytes = fs::read(&source).map_err(|e| format!("{name}: {e}"))?;
+            let bytes = fs::read(&source).map_err(|error| format!("{name}: {error}"))?;
             scratch.write(name, &bytes)?;
             // The build executes scripts/link.
             let copy = scratch.folder.join("tree").join(name);
             fs::metadata(source)
                 .and_then(|metadata| fs::set_permissions(copy, metadata.permissions()))
-                .map_err(|e| format!("{name}: {e}"))?;
+                .map_err(|error| format!("{name}: {error}"))?;
         }
         Ok(scratch)
     }
@@ -428,7 +428,7 @@ mod tests {
     }
 
     #[test]
-    fn a_summary_is_no_test_that_has_run() {
+    fn a_summary_line_does_not_count_as_a_test() {
         let summary = "running 0 tests\n\ntest result: ok. 0 passed; 0 failed\n";
         assert!(!super::has_run_a_test(summary));
         assert!(super::has_run_a_test("running 1 test\ntest walks ... ok\n"));
@@ -440,7 +440,7 @@ mod tests {
         use std::os::unix::fs::PermissionsExt;
         let scratch = super::ScratchTree::copy().expect("the tree is copied");
         let linker = scratch.folder.join("tree/scripts/link");
-        let permissions = linker.metadata().expect("the copy has it").permissions();
+        let permissions = linker.metadata().expect("the linker exists").permissions();
         assert_ne!(permissions.mode() & 0o111, 0, "{:o}", permissions.mode());
     }
 }

@@ -24,7 +24,7 @@ impl Script<'_> {
             72..80 => self.add_dip(),
             80..84 => self.add_sag(),
             84 | 85 => self.add_low_supply(),
-            86..92 => self.add_stall_with_fault(),
+            86..92 => self.add_fault_during_stall(),
             92 => self.add_adjustment(),
             93 => {
                 let cycles = self.rng.u64(100..20_000);
@@ -91,7 +91,7 @@ impl Script<'_> {
     }
 
     /// Stalls the main loop, and adds a reset or a drop of the supply during the stall.
-    fn add_stall_with_fault(&mut self) {
+    fn add_fault_during_stall(&mut self) {
         let ms = self.rng.u64(20..300);
         self.steps.push(Step::Stall(ms * MS));
         self.wait_up_to(ms);

@@ -1,5 +1,5 @@
-// Prints the result of attaching each of nine servos and of attaching to a pin that does not exist. Then writes every
-// number that it receives to a servo, and prints the angle and the width that it reads back.
+// Prints attach() plus attached() for each of nine servos, and attach() for a pin that does not exist. Then writes
+// every number that it receives to a servo, and prints the angle and the width that it reads back.
 #include <ServoPulses.h>
 
 Servo servos[9];

@@ -17,7 +17,7 @@ use lizard_rules::{Event, Limits, Rule, Time};
 use super::{FRAME, Verdict, World, violation};
 use crate::fingerprint::coarse_fingerprint;
 
-/// Tolerance for rounding a pulse that changes within a frame, cycles.
+/// Tolerance for the rounding of a pulse's change from one frame to the next, cycles.
 const ROUNDING_CYCLES: u16 = 2;
 
 /// Number of frames within which any motion of this robot ends.
@@ -43,7 +43,7 @@ pub(super) fn observer_limits(robot: &Robot) -> Limits {
             (first.min(last), first.max(last))
         }),
         levels_mv: [board.slow_mv, board.stop_mv, board.rest_mv].map(u32::from),
-        // The console reports at once that `boot` begins.
+        // Pulses by `boot` are then permitted only from its report on, which the console prints at once.
         can_boot_to_rest: true,
         ..Limits::default()
     }

@@ -14,8 +14,8 @@ fn robot_fingerprint(robot: &RunningRobot) -> u64 {
 }
 
 impl World {
-    /// Sends a line and runs main until the line's immediate effect. `bytes` differ from `line` if noise has changed
-    /// them.
+    /// Sends a line and runs main until main has read the line, or is busy and reads it later. `bytes` differ from
+    /// `line` if noise has changed them.
     pub(super) fn send_line(&mut self, line: &'static str, bytes: &[u8]) -> Verdict {
         let robot_before = self.clone_and_settle();
         self.running_robot.board.send(bytes);

@@ -38,9 +38,9 @@ function makeTurn(shaft: Point, crankLength: number, neutral: number, turnDeg: n
   const [x2, y2] = pointAt(shaft, radius, endDeg);
   // Because y is downward, SVG's sweep flag is 0 for counter-clockwise.
   const arc = makeSvg('path', { class: 'arrow', d: `M ${x1} ${y1} A ${radius} ${radius} 0 0 ${turnDeg > 0 ? 0 : 1} ${x2} ${y2}` });
-  const headPoints = [pointAt(shaft, radius + 6, endDeg - direction * 9), [x2, y2], pointAt(shaft, radius - 6, endDeg - direction * 9)];
-  const head = makeSvg('polyline', { class: 'arrow', points: headPoints.map((point) => point.map((n) => (n as number).toFixed(2)).join()).join(' ') });
-  return [makeLine('ghost', shaft, pointAt(shaft, crankLength, neutral + turnDeg)), arc, head];
+  const arrowheadPoints = [pointAt(shaft, radius + 6, endDeg - direction * 9), [x2, y2], pointAt(shaft, radius - 6, endDeg - direction * 9)];
+  const arrowhead = makeSvg('polyline', { class: 'arrow', points: arrowheadPoints.map((point) => point.map((n) => (n as number).toFixed(2)).join()).join(' ') });
+  return [makeLine('ghost', shaft, pointAt(shaft, crankLength, neutral + turnDeg)), arc, arrowhead];
 }
 
 /** Makes the drawing of the robot; without a highlight, all servos look alike. */

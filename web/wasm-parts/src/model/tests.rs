@@ -1,3 +1,5 @@
+//! Tests of the model of a robot's parts.
+
 use lizard_kinematics::Vector;
 use lizard_twin::Shape;
 

@@ -31,7 +31,7 @@ fn make_ideal_page() -> PageState {
 
 /// Returns the robot's own slider values.
 fn own_floor(page: &PageState) -> Floor {
-    Floor::for_robot(page.robot().expect("a robot was read"))
+    Floor::for_robot(page.robot().expect("a robot is loaded"))
 }
 
 fn predict_walk(page: &PageState) -> GaitPrediction {
@@ -64,7 +64,7 @@ fn real_servos_have_a_dead_band_and_limited_speed_but_ideal_servos_do_not() {
     let mut page = make_paper_page();
     let step_a1 = |page: &mut PageState, cycles: u32| {
         let frame = page.follow_pulses([24_000 + cycles, 24_000, 24_000, 24_000]);
-        let frame = frame.expect("a robot was read");
+        let frame = frame.expect("a robot is loaded");
         let scene = frame.scene.expect("every loop closes");
         let error = page.target_angles[0] - scene.angles[0];
         (scene.angles[0] - 138.590378, error)
@@ -108,7 +108,7 @@ fn follow_cycles(
     let mut follow_cycle = || -> Vec<Frame> {
         let frame_at = |angles: &[f64; 4]| {
             let frame = page.follow_pose(*angles, frame_step);
-            frame.expect("a robot was read")
+            frame.expect("a robot is loaded")
         };
         poses.iter().map(frame_at).collect()
     };
@@ -125,7 +125,7 @@ fn follow_cycles(
 fn a_cycle_followed_frame_by_frame_ends_where_predicted() {
     for name in ["walk", "left", "arc-right", "back"] {
         let mut page = make_paper_page();
-        let robot = page.robot().expect("a robot was read");
+        let robot = page.robot().expect("a robot is loaded");
         let prediction = robot.predict(robot.gait(name).expect("the robot has this gait"));
         // A pose in every frame, and in every second frame, as a board reports poses on USB.
         for frame_step in [1, 2] {

@@ -34,7 +34,7 @@ enum ReceivedLine {
     Mismatch(usize, u8),
     /// A line with a garbled byte.
     Garbled,
-    /// A line of unknown content: a backspace has deleted a byte, and several states may precede this byte.
+    /// A line of unknown content: a backspace has deleted a byte before which several states are possible.
     Unknown,
     /// A command with its line end: the state before the line end, or `usize::MAX` if the content is unknown.
     CompleteCommand(usize),
@@ -127,6 +127,7 @@ impl BitGraph {
         automaton.transitions[0] = (0..0x80).map(|byte| (byte, 0)).collect();
         let mut graph = Self::for_automaton(&automaton);
         graph.successors[0].extend(graph.first_start_bits.clone());
+        // A pause may follow the stop bit of each byte.
         for index in 0..0x80 {
             graph.successors[10 + 10 * index].push(0);
         }

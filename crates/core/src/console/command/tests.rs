@@ -67,8 +67,8 @@ fn every_word_is_parsed_as_its_command() {
     }
 }
 
-/// Parses a line for three consoles. Gaits have priority over every word in the first, over the words from `cal` on in
-/// the second, and over no word in the third.
+/// Parses a line three times: gaits have priority over every word the first time, over the words from `cal` on the
+/// second time, and over no word the third time.
 fn parse_with_three_priorities(line: &str, robot: &Robot) -> [Result<Command, LineError>; 3] {
     const CAL_INDEX: usize = Word::Cal as usize;
     const WORD_COUNT: usize = Word::ALL.len();
@@ -88,8 +88,8 @@ fn a_yielding_word_is_a_command_unless_a_gait_has_the_same_name() {
         let command = parse(example.as_bytes(), &robot);
         assert!(command.is_ok(), "{example}");
         let longer_name = format!("{text} on");
-        let robot_with_longer = Sample::paper().with_gait(&longer_name);
-        for robot in [&robot, &robot_with_longer] {
+        let robot_with_longer_name = Sample::paper().with_gait(&longer_name);
+        for robot in [&robot, &robot_with_longer_name] {
             let commands = parse_with_three_priorities(example, robot);
             assert_eq!(commands, [command; 3], "{example}");
         }
@@ -288,7 +288,7 @@ fn with_shared_robot<T>(call: impl FnOnce(&Sample) -> T) -> T {
 }
 
 #[test]
-fn numbers_beyond_sixteen_bits_saturate_instead_of_wrapping() {
+fn numbers_from_65530_saturate_instead_of_wrapping() {
     for (digits, value) in [
         ("65519", 65_519),
         ("65529", 65_529),

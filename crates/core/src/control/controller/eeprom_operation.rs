@@ -37,8 +37,8 @@ impl Controller {
             || self.rest_pose_write.is_some() && self.safety.allows_writing_now()
     }
 
-    /// True while an order waits for the measurement of the supply, or for the end of a dip, either in a recovery or in
-    /// a lower level. Meanwhile there is nothing to do before the next frame.
+    /// True while an order waits until the supply is measured, or until a dip ends with a recovery or with a lower
+    /// level. Meanwhile there is nothing to do before the next frame.
     pub fn is_waiting_for_supply(&self) -> bool {
         let supply = self.safety.supply();
         let is_supply_undetermined = match supply.measured_level() {

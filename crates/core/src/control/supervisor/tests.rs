@@ -154,7 +154,7 @@ fn a_lower_supply_never_allows_a_command_that_a_higher_supply_refuses() {
 }
 
 #[test]
-fn servos_wake_at_neutral_only_after_power_on_or_an_unknown_state_and_resume_only_if_held() {
+fn servos_resume_only_if_held_and_wake_otherwise_only_after_power_on_or_an_unknown_state() {
     for cause in Cause::ALL {
         for suspected_brown_outs in 0..=BROWN_OUTS_TO_REST {
             for servos_before in ServosBefore::ALL {

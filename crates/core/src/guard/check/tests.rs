@@ -26,7 +26,7 @@ fn each_servo_and_the_rail_require_a_usable_pin_of_their_own() {
     let pins = Sample::asymmetric().content.pins;
     for rail_pin in [0, 14, 19] {
         for servo in 0..4 {
-            // The rail's pin takes the place of this servo's pin, which is tested.
+            // The pins of the other servos, and in place of this servo's pin that of the rail.
             let mut other_pins = pins;
             other_pins[servo] = rail_pin;
             for pin in 0..=u8::MAX {

@@ -176,9 +176,9 @@ fn any_flipped_bit_leaves_the_only_copy_or_the_settings_of_robot_toml() {
     let only_settings = save_settings(&make_settings(&robot, 1), &mut eeprom);
     for bit in 0..8 * 1024 {
         let loaded = load_settings(&robot, &with_flipped_bit(&eeprom, bit));
-        let is_in_content = bit / 8 < 45;
+        let is_in_only_copy = bit / 8 < 45;
         let is_in_other_copy = (64..109).contains(&(bit / 8));
-        let expected_loaded = match (is_in_content, is_in_other_copy) {
+        let expected_loaded = match (is_in_only_copy, is_in_other_copy) {
             (true, _) => (Settings::for_robot(&robot), SavedState::Damaged),
             (_, true) => (only_settings, SavedState::OneCopy),
             _ => (only_settings, SavedState::Latest),

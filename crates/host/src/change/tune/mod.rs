@@ -83,7 +83,7 @@ impl Spreadable for Args {
 /// has no room for the new gait.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
-    // The output may be appended to the file, so the text is read before.
+    // The output may be appended to robot.toml, so the old text is read first.
     let robot_toml = args.spread.robot.text()?;
     let Some(comparison) = tune(&robot, &args)? else {
         return Ok(());

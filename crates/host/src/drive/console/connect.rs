@@ -37,9 +37,9 @@ pub struct BoardFinder {
     port: Option<String>,
     /// The subcommand with the arguments before the port, for messages.
     command: &'static str,
-    /// The USB chip of the port that was chosen first. While that board is unplugged, the port of another chip is not
-    /// its port.
-    chip: OnceCell<[u16; 2]>,
+    /// The USB chip's IDs at the port that was chosen first. While that board is unplugged, the port of another chip is
+    /// not its port.
+    chip_ids: OnceCell<[u16; 2]>,
     simulated_board: Option<SimulatedBoard>,
 }
 
@@ -66,19 +66,19 @@ impl ConnectionArgs {
     pub fn into_finder(self, command: &'static str) -> Result<BoardFinder, Failure> {
         if self.sim {
             let robot = RobotArgs::from_path(self.robot);
-            return simulate_board(self.elf.as_deref(), &robot, command);
+            return start_simulated_board(self.elf.as_deref(), &robot, command);
         }
         Ok(BoardFinder {
             port: self.port,
             command,
-            chip: OnceCell::new(),
+            chip_ids: OnceCell::new(),
             simulated_board: None,
         })
     }
 }
 
 #[cfg(all(feature = "simulator", target_os = "linux"))]
-fn simulate_board(
+fn start_simulated_board(
     elf: Option<&std::path::Path>,
     robot_args: &RobotArgs,
     command: &'static str,
@@ -97,13 +97,13 @@ fn simulate_board(
     Ok(BoardFinder {
         port: Some(board.path().display().to_string()),
         command,
-        chip: OnceCell::new(),
+        chip_ids: OnceCell::new(),
         simulated_board: Some(board),
     })
 }
 
 #[cfg(not(all(feature = "simulator", target_os = "linux")))]
-fn simulate_board(
+fn start_simulated_board(
     _: Option<&std::path::Path>,
     _: &RobotArgs,
     _: &'static str,
@@ -127,10 +127,10 @@ impl BoardFinder {
             Some(port) => (port.clone(), port.clone()),
             None => {
                 let mut ports = usb_ports::list();
-                usb_ports::retain_chip(&mut ports, self.chip.get());
+                usb_ports::retain_chip(&mut ports, self.chip_ids.get());
                 let port = usb_ports::choose(&ports, self.command)
                     .map_err(|error| Failure::Operation(error.to_string()))?;
-                self.chip.get_or_init(|| port.chip);
+                self.chip_ids.get_or_init(|| port.chip_ids);
                 // The product name comes from the board and may contain control characters.
                 (port.name.clone(), escape_controls(&port.to_string()))
             }

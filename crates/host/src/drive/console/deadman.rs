@@ -42,7 +42,7 @@ pub(super) struct Deadman {
     is_unconfirmed: bool,
     /// True from the start of a gait or a routine to its end. A routine may rest in between; the robot then wakes by
     /// itself.
-    pub(super) is_under_way: bool,
+    pub(super) is_gait_under_way: bool,
 }
 
 impl Deadman {
@@ -86,10 +86,10 @@ impl Deadman {
         }
     }
 
-    /// Returns the text of the line to send. [`DeadmanLine::Restore`] also marks the setting as restored, and
-    /// [`DeadmanLine::Set`] as confirmed, if the robot's own setting is known. `None` if the robot's own setting is
-    /// unknown: the program ends, or the user stops the robot, before the robot has reported it, or the answer to `cal`
-    /// was lost.
+    /// Returns the text of the line to send; `None` if the robot's own setting is unknown, because the program ends or
+    /// the user stops the robot before the robot has reported it, or because the answer to `cal` was lost.
+    /// [`DeadmanLine::Restore`] also marks the setting as restored. [`DeadmanLine::Set`] marks it as confirmed if the
+    /// robot's own setting is known.
     pub(super) fn apply_line(&mut self, deadman_line: DeadmanLine) -> Option<String> {
         match deadman_line {
             DeadmanLine::Read => {
@@ -145,7 +145,7 @@ impl Deadman {
         let line = line.to_ascii_lowercase();
         match line.split_whitespace().collect::<Vec<_>>()[..] {
             ["deadman", ms] => self.own_ms = ms.parse().ok(),
-            [word, ..] => self.is_under_way |= Word::find(word.as_bytes()).is_none(),
+            [word, ..] => self.is_gait_under_way |= Word::find(word.as_bytes()).is_none(),
             [] => {}
         }
     }

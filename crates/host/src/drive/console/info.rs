@@ -161,8 +161,8 @@ fn read_status<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError>
     })
 }
 
-/// Parses the firmware's version and the robot in a banner; the robot is `None` for older firmware, which does not
-/// name the robot compiled into it.
+/// Parses the firmware's version and the robot in a banner; the robot is `None` on a board without a robot, and for
+/// older firmware, which does not name the robot compiled into it.
 pub(in crate::drive) fn parse_firmware_and_robot(
     line: &str,
 ) -> (Option<String>, Option<RobotIdentity>) {

@@ -53,6 +53,7 @@ const RETRY_INTERVAL: Duration = Duration::from_millis(300);
 pub fn run(args: ConsoleArgs) -> Result<(), Failure> {
     let is_refused = |file: &&PathBuf| file.exists() || file.as_os_str() == "-";
     if let Some(file) = args.record.as_ref().filter(is_refused) {
+        // Fails before the board is reset.
         recorder::create(file)?;
     }
     run_dialogue(&args.connection.into_finder("console")?, args.record)

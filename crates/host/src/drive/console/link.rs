@@ -338,12 +338,12 @@ mod tests {
     #[test]
     fn a_banner_after_noise_or_a_partial_line_is_found() {
         let noise = "\u{fffd}\x00x\n# t=7 po\r\n";
-        for sent in ["", "ok wal", "# t=12 pose=138.5", "\u{fffd}x", noise] {
-            let bytes: &'static str = format!("{sent}# lizard 0.2.0 robot paper 1a\r\n").leak();
+        for prefix in ["", "ok wal", "# t=12 pose=138.5", "\u{fffd}x", noise] {
+            let bytes: &'static str = format!("{prefix}# lizard 0.2.0 robot paper 1a\r\n").leak();
             let mut link = ScriptedPort::connect(&[Some(bytes)]);
             let banner = link.wait_for_robot().expect("the device is a lizard");
             let expected = Some("# lizard 0.2.0 robot paper 1a");
-            assert_eq!(banner.as_deref(), expected, "{sent:?}");
+            assert_eq!(banner.as_deref(), expected, "{prefix:?}");
         }
     }
 
@@ -357,14 +357,14 @@ mod tests {
 
     #[test]
     fn the_error_quotes_another_device_or_reports_silence() {
-        let get_error = |pieces: &[Option<&'static str>]| {
+        let connect_error = |pieces: &[Option<&'static str>]| {
             let result = ScriptedPort::connect(pieces).wait_for_robot();
             result.expect_err("the device must be refused").to_string()
         };
-        let message = get_error(&[Some("start\nGrbl 1.1\n"), Some("error:20\n")]);
+        let message = connect_error(&[Some("start\nGrbl 1.1\n"), Some("error:20\n")]);
         let start = "this is not a lizard: expected `# lizard ...`, got `start`";
         assert!(message.starts_with(start), "{message}");
-        assert!(get_error(&[]).starts_with("no response"));
+        assert!(connect_error(&[]).starts_with("no response"));
     }
 
     #[test]

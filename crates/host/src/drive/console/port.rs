@@ -141,8 +141,8 @@ fn find_persistent_holder(name: &str) -> Option<String> {
     }
 }
 
-/// Returns another program that has the port open, because two programs that share a port take bytes from each other.
-/// `/proc` does not show the processes of other users.
+/// Finds another program that has the port open: two programs that share a port would take bytes from each other.
+/// `/proc` does not show which files the programs of other users have open.
 pub(in crate::drive) fn find_holder(name: &str) -> Option<String> {
     let port = std::fs::canonicalize(name).ok()?;
     let own_id = std::process::id().to_string();
@@ -174,6 +174,7 @@ fn is_memory_device(_: &str) -> bool {
     false
 }
 
+/// True if the file can be opened and is not a terminal, as every serial port is on Unix.
 fn is_not_terminal(name: &str) -> bool {
     use std::io::IsTerminal;
     std::fs::File::open(name).is_ok_and(|file| !file.is_terminal())

@@ -113,11 +113,11 @@ impl Screen {
     }
 }
 
-/// Counts the rows from the first of the two lines down to the cursor, from the columns of each line. A terminal that
+/// Counts the rows from the first of the two lines down to the cursor, given [`Screen::drawn_columns`]. A terminal that
 /// was made narrower wraps the lines into more rows.
-fn count_rows_above_cursor([status, cursor]: [usize; 2], width: usize) -> usize {
+fn count_rows_above_cursor([status_columns, cursor_column]: [usize; 2], width: usize) -> usize {
     let width = width.max(1);
-    status.div_ceil(width).max(1) + cursor / width
+    status_columns.div_ceil(width).max(1) + cursor_column / width
 }
 
 impl Drop for Screen {

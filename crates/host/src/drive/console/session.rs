@@ -75,7 +75,8 @@ pub struct Session {
     pending_request: Option<(Request, String, Instant)>,
     /// The `stop` that is repeated until the robot answers.
     unanswered_stop: Option<UnansweredStop>,
-    /// True from a missing answer until the next answer, so that the user is informed only once.
+    /// True from a missing answer to the program's own `status` or `watch` until the next answer, so that the user is
+    /// informed only once.
     is_silent: bool,
     /// The time until which answers to repeated `stop` lines may arrive.
     late_answers_until: Instant,
@@ -177,7 +178,7 @@ impl Session {
         self.unanswered_stop.get_or_insert(UnansweredStop::new(now));
     }
 
-    /// Begins again with a board that was connected again. An unanswered `stop` is repeated. The user's other waiting
+    /// Starts over with a board that was plugged in again. An unanswered `stop` is repeated. The user's other waiting
     /// lines are dropped; returns a message about each of them.
     pub fn restart(&mut self, now: Instant, watches_poses: bool) -> Vec<String> {
         let pending_request = self.pending_request.take().map(|(request, ..)| request);
@@ -245,10 +246,10 @@ impl Session {
         Some(line)
     }
 
-    /// Handles a line about `deadman` that the robot has not confirmed; returns the message to the user.
-    /// [`DeadmanLine::Restore`] will be sent once the robot does not walk. After any other line, drops the queued
-    /// lines, because the robot would keep walking out of range.
-    fn handle_unconfirmed_deadman(&mut self, deadman_line: DeadmanLine) -> String {
+    /// Records that the robot has not confirmed a line about `deadman`; returns the message to the user.
+    /// [`DeadmanLine::Restore`] is sent again after the next status in which the robot does not walk. After any other
+    /// line, drops the queued lines, because the robot would keep walking out of range.
+    fn record_unconfirmed_deadman(&mut self, deadman_line: DeadmanLine) -> String {
         if let Some(deadman) = &mut self.deadman {
             deadman.record_unconfirmed();
         }
@@ -274,8 +275,8 @@ impl Session {
             return;
         };
         let is_resting = status.gait == "rest" && status.fault.is_none();
-        deadman.is_under_way = status.is_walking() || deadman.is_under_way && is_resting;
-        if deadman.is_overridden && !deadman.is_under_way && self.queue.is_empty() {
+        deadman.is_gait_under_way = status.is_walking() || deadman.is_gait_under_way && is_resting;
+        if deadman.is_overridden && !deadman.is_gait_under_way && self.queue.is_empty() {
             if deadman.is_unknown() {
                 self.queue.push_back(Request::Deadman(DeadmanLine::Read));
             }
@@ -287,10 +288,10 @@ impl Session {
     pub fn receive(&mut self, line: &str) -> Option<String> {
         let visible_line = Some(line.to_owned());
         if let Some(deadman) = &mut self.deadman {
-            deadman.is_under_way &= !matches!(line, "# done" | "ok rest" | "ok stop");
+            deadman.is_gait_under_way &= !matches!(line, "# done" | "ok rest" | "ok stop");
         }
         let is_stop_refused = self.unanswered_stop.is_some() && is_stop_refusal(line);
-        if (line == "ok stop" || is_stop_refused) && !self.is_stop_pending() {
+        if (line == "ok stop" || is_stop_refused) && !self.is_stop_line_pending() {
             return self.receive_stop_answer(line);
         }
         if let (Some((Request::Deadman(_), ..)), Some(deadman)) =
@@ -336,13 +337,13 @@ impl Session {
                 return None;
             }
             Some((Request::Deadman(deadman_line), ..)) if line.starts_with("err ") => {
-                let message = self.handle_unconfirmed_deadman(deadman_line);
+                let message = self.record_unconfirmed_deadman(deadman_line);
                 return Some(format!("{line} {message}"));
             }
             Some((Request::Deadman(DeadmanLine::Read), ..))
                 if self.deadman.as_ref().is_some_and(Deadman::is_unknown) =>
             {
-                return Some(self.handle_unconfirmed_deadman(DeadmanLine::Read));
+                return Some(self.record_unconfirmed_deadman(DeadmanLine::Read));
             }
             Some((Request::Deadman(_) | Request::Watch, ..)) => return None,
             Some((Request::Line(sent_line), ..)) if line.starts_with("err ") => {
@@ -360,7 +361,7 @@ impl Session {
     }
 
     /// True if a `stop` that was sent as a normal line, for example from a script, is unanswered.
-    fn is_stop_pending(&self) -> bool {
+    fn is_stop_line_pending(&self) -> bool {
         let is_stop = |line: &str| line.eq_ignore_ascii_case("stop");
         matches!(&self.pending_request, Some((Request::Line(line), ..)) if is_stop(line))
     }
@@ -383,7 +384,7 @@ impl Session {
         Some(line.to_owned())
     }
 
-    /// Ends an overdue request; returns the message to the user, if any.
+    /// Ends an overdue request, or reports once that a `stop` has no answer; returns the message to the user, if any.
     pub fn time_out_request(&mut self, now: Instant) -> Option<String> {
         if let Some(stop) = &mut self.unanswered_stop
             && !stop.is_reported
@@ -402,7 +403,7 @@ impl Session {
                 self.record_failure(line, "no answer");
                 message
             }
-            Request::Deadman(deadman_line) => self.handle_unconfirmed_deadman(deadman_line),
+            Request::Deadman(deadman_line) => self.record_unconfirmed_deadman(deadman_line),
             Request::Status | Request::Watch if self.is_silent => return None,
             Request::Status | Request::Watch => {
                 self.is_silent = true;

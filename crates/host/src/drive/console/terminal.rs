@@ -9,7 +9,7 @@ use std::time::Duration;
 /// True once SIGTERM has arrived. Without a handler, the signal would leave the terminal in raw mode.
 static IS_TERMINATED: LazyLock<Arc<AtomicBool>> = LazyLock::new(|| {
     let flag = Arc::new(AtomicBool::new(false));
-    // Without the handler, SIGTERM ends the program at once.
+    // If the handler cannot be registered, SIGTERM still ends the program.
     #[cfg(unix)]
     let _ = signal_hook::flag::register(signal_hook::consts::SIGTERM, Arc::clone(&flag));
     flag

@@ -13,7 +13,7 @@ pub struct UsbPort {
     /// The port's name, such as /dev/ttyACM0 or COM3.
     pub name: String,
     /// The USB chip's vendor ID and product ID.
-    pub chip: [u16; 2],
+    pub chip_ids: [u16; 2],
     /// The product name that the chip reports.
     pub product_name: Option<String>,
 }
@@ -60,20 +60,20 @@ fn to_usb_port(port: SerialPortInfo) -> Option<UsbPort> {
     }
     Some(UsbPort {
         name: port.port_name,
-        chip: [usb.vid, usb.pid],
+        chip_ids: [usb.vid, usb.pid],
         product_name: usb.product,
     })
 }
 
-/// Keeps only the ports with this chip; keeps all ports if `chip` is `None`.
-pub(super) fn retain_chip(ports: &mut Vec<UsbPort>, chip: Option<&[u16; 2]>) {
-    ports.retain(|port| chip.is_none_or(|chip| port.chip == *chip));
+/// Keeps only the ports whose chip has these IDs; keeps all ports if `chip_ids` is `None`.
+pub(super) fn retain_chip(ports: &mut Vec<UsbPort>, chip_ids: Option<&[u16; 2]>) {
+    ports.retain(|port| chip_ids.is_none_or(|chip_ids| port.chip_ids == *chip_ids));
 }
 
 impl UsbPort {
     /// True if the chip has one of Arduino's vendor IDs.
     pub fn has_arduino_vendor_id(&self) -> bool {
-        let [vendor_id, _] = self.chip;
+        let [vendor_id, _] = self.chip_ids;
         ARDUINO_VENDOR_IDS.contains(&vendor_id)
     }
 }
@@ -84,7 +84,7 @@ impl UsbPort {
 /// Fails if there is no such port, or more than one.
 pub fn choose(ports: &[UsbPort], command: &'static str) -> Result<UsbPort, ChoiceError> {
     let mut candidates = ports.to_vec();
-    candidates.retain(|UsbPort { chip: [id, _], .. }| UNO_VENDOR_IDS.contains(id));
+    candidates.retain(|UsbPort { chip_ids, .. }| UNO_VENDOR_IDS.contains(&chip_ids[0]));
     if candidates.is_empty() {
         candidates = ports.to_vec();
     }
@@ -120,7 +120,7 @@ mod tests {
     fn port(name: &str, vendor_id: u16) -> UsbPort {
         UsbPort {
             name: format!("/dev/{name}"),
-            chip: [vendor_id, 0x43],
+            chip_ids: [vendor_id, 0x43],
             product_name: (vendor_id == 0x2341).then(|| "Arduino_Uno".to_owned()),
         }
     }
@@ -152,7 +152,7 @@ mod tests {
         let mut ports = vec![adapter.clone()];
         retain_chip(&mut ports, None);
         assert_eq!(ports, [adapter]);
-        retain_chip(&mut ports, Some(&uno.chip));
+        retain_chip(&mut ports, Some(&uno.chip_ids));
         assert!(ports.is_empty(), "{ports:?}");
     }
 

@@ -111,7 +111,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     json::print_json_or_text(args.json, &report, || format!("{banner}\n"))
 }
 
-/// Chooses the port of the board to write.
+/// Chooses the board's port, for a user who has not named it.
 fn choose_port(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
     usb_ports::choose(ports, "flash").map_err(|error| {
         Failure::Operation(match error {
@@ -128,17 +128,17 @@ fn choose_port(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
 /// True if the port may be a Nano's port: unlike UNOs, Nanos never have one of Arduino's own USB chips.
 fn may_be_nano(ports: &[UsbPort], name: &str) -> bool {
     // The name may be a symbolic link, for example in /dev/serial/by-id.
-    let target = std::fs::canonicalize(name).unwrap_or_else(|_| name.into());
-    // macOS has two names for a port, of which the list contains one, and Windows ignores the case.
-    let target = target.to_string_lossy().replace("/dev/tty.", "/dev/cu.");
-    let target = target.trim_start_matches(r"\\.\");
+    let real_name = std::fs::canonicalize(name).unwrap_or_else(|_| name.into());
+    // macOS has two names for a port, of which the list contains one. Windows ignores the case and a prefix.
+    let real_name = real_name.to_string_lossy().replace("/dev/tty.", "/dev/cu.");
+    let real_name = real_name.trim_start_matches(r"\\.\");
     let mut ports = ports.iter();
-    let port = ports.find(|port| target.eq_ignore_ascii_case(&port.name));
+    let port = ports.find(|port| real_name.eq_ignore_ascii_case(&port.name));
     port.is_some_and(|port| !port.has_arduino_vendor_id())
 }
 
-/// Writes an image to the board, with a progress bar and a summary. Returns the board, whose firmware is now starting,
-/// and the number of pages that were written and kept.
+/// Writes an image to the board, with a progress bar and a summary; if `prints_json` is true, the summary goes to
+/// standard error. Returns the board, whose firmware is now starting, and the numbers of pages written and kept.
 fn write_image(
     board: SerialBoard,
     image: &Image,
@@ -233,7 +233,7 @@ mod tests {
     fn port(name: &str, vendor_id: u16) -> UsbPort {
         UsbPort {
             name: name.to_owned(),
-            chip: [vendor_id, 0x43],
+            chip_ids: [vendor_id, 0x43],
             product_name: None,
         }
     }

@@ -107,8 +107,8 @@ impl Board for SerialBoard {
         self.write_all(bytes).map_err(to_board_error)
     }
 
-    async fn read(&mut self, bytes: &mut [u8], time: Duration) -> Result<usize, BoardError> {
-        let mut deadline = Deadline::after(time);
+    async fn read(&mut self, bytes: &mut [u8], time_limit: Duration) -> Result<usize, BoardError> {
+        let mut deadline = Deadline::after(time_limit);
         let mut filled_count = 0;
         while filled_count < bytes.len() {
             let count = self.read_available(&mut bytes[filled_count..])?;
@@ -122,8 +122,8 @@ impl Board for SerialBoard {
         Ok(filled_count)
     }
 
-    async fn discard(&mut self, time: Duration) -> Result<(), BoardError> {
-        let mut deadline = Deadline::after(time);
+    async fn discard(&mut self, duration: Duration) -> Result<(), BoardError> {
+        let mut deadline = Deadline::after(duration);
         let mut bytes = [0; 256];
         loop {
             self.read_available(&mut bytes)?;

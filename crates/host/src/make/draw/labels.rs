@@ -21,12 +21,12 @@ impl TopView<'_> {
         for servo in 0..4 {
             let shaft = self.shafts()[servo];
             let side = if matches!(servo, 0 | 3) { -1.0 } else { 1.0 };
-            let sign = shaft.y.signum();
+            let y_sign = shaft.y.signum();
             let anchor = outward_anchor(side);
             let colour = SERVO_COLOURS[servo];
             let x = PAGE_SIZE.0 / 2.0 + side * SERVO_NAME_DISTANCE;
-            let y = PAGE_SIZE.1 / 2.0 - sign * SERVO_NAME_DISTANCE;
-            let shaft_point = self.to_page_point(shaft + Vector::new(side * 3.5, sign * 2.0));
+            let y = PAGE_SIZE.1 / 2.0 - y_sign * SERVO_NAME_DISTANCE;
+            let shaft_point = self.to_page_point(shaft + Vector::new(side * 3.5, y_sign * 2.0));
             let pin = pin_name(self.robot.servos()[servo].pin);
             let name_text = format!("{} · {pin}", SERVO_NAMES[servo]);
             let symbol = ["θ1", "θ4", "θ8", "θ5"][servo];
@@ -42,6 +42,7 @@ impl TopView<'_> {
         draw_axes_and_scale_bar(group, self.pixels_per_mm)
     }
 
+    /// Adds to `group` the labels of head, tail, sliders and feet.
     fn draw_part_labels(&self, mut group: Group) -> Group {
         let solution = self.solution;
         let head = solution.head_point();
@@ -85,7 +86,7 @@ fn outward_anchor(side: f64) -> Anchor {
 }
 
 /// Draws the axes of the chassis frame and a scale bar.
-fn draw_axes_and_scale_bar(mut group: Group, scale: f64) -> Group {
+fn draw_axes_and_scale_bar(mut group: Group, pixels_per_mm: f64) -> Group {
     let origin = (50.0, PAGE_SIZE.1 - 50.0);
     for (degrees, name) in [(0.0, "x, right"), (90.0, "y, forward")] {
         let tip = offset_point(origin, degrees, 62.0);
@@ -101,7 +102,7 @@ fn draw_axes_and_scale_bar(mut group: Group, scale: f64) -> Group {
             .add(text_start(name, name_point, 16.0));
     }
     let end = (PAGE_SIZE.0 - 60.0, PAGE_SIZE.1 - 48.0);
-    let start = (end.0 - 50.0 * scale, end.1);
+    let start = (end.0 - 50.0 * pixels_per_mm, end.1);
     for (x, y) in [start, end] {
         group = group.add(line((x, y - 7.0), (x, y + 7.0), DARK, 2.0));
     }

@@ -86,18 +86,20 @@ impl<'a> TopView<'a> {
         self.robot.plate().half_size.y / PAPER_PLATE_HALF_LENGTH_MM
     }
 
+    /// Returns the servo angles, deg.
     pub(super) fn angles(&self) -> [f64; 4] {
         self.solution.pose.into()
     }
 
+    /// Returns the positions of the servos' shafts in the chassis frame, mm.
     pub(super) fn shafts(&self) -> [Vector; 4] {
         self.robot.lizard().shafts()
     }
 
     /// Draws a lizard's pale outline, so that the mechanism looks like an animal.
     fn draw_skin(&self, group: Group) -> Group {
-        // The coordinates are in mm for the paper's robot, and are multiplied by `size_ratio`. The skin's head and tail
-        // follow their points; the flanks are fixed to the chassis.
+        // The coordinates are in mm for the paper's robot, and are multiplied by `size_ratio`. The ends of the skin
+        // follow the head point and the tail point; its flanks are fixed to the chassis.
         let size_ratio = self.size_ratio();
         let (head, tail) = (self.solution.head_point(), self.solution.tail_point());
         let chassis = Vector::default();
@@ -184,6 +186,7 @@ impl<'a> TopView<'a> {
         group.add(add_outline(end_disc, DARK, 2.5))
     }
 
+    /// Returns the position of a servo's foot in the chassis frame, mm.
     pub(super) fn foot(&self, servo: usize) -> Vector {
         self.legs()[servo].foot
     }

@@ -24,7 +24,7 @@ const IOREF_X: f64 = 12.0;
 const POWER_PINS: [&str; 7] = ["IOREF", "RESET", "3.3V", "5V", "GND", "GND", "VIN"];
 /// Distance of SCL from the left edge, tenths of an inch; SDA, AREF and GND are counted from SCL.
 const SCL_X: f64 = 7.4;
-/// The names printed beside the pins to the left of D13, including the analogue reference.
+/// The names printed beside the pins to the left of D13; AREF is the analogue reference.
 const PINS_LEFT_OF_D13: [&str; 4] = ["SCL", "SDA", "AREF", "GND"];
 
 /// Distance of D13 from the left edge, tenths of an inch; D12 to D8 are counted from D13.

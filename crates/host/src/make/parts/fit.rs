@@ -63,6 +63,7 @@ struct PairReport<'a> {
 /// The proof in the `--json` output; the serialized field names are the JSON keys.
 #[derive(Serialize)]
 struct FitReport<'a> {
+    /// True if the proof shows that no two parts overlap or come too close.
     fits: bool,
     /// The reason for a misfit; null if the parts fit.
     reason: Option<String>,

@@ -23,12 +23,12 @@ pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
         .collect();
     let find_point = |r1: f64, r2: f64| cells.get(&to_cell(r1, r2)).copied();
     type ValueFn = fn(&ChartPoint) -> Option<f64>;
-    let get_radius: ValueFn = |p| (p.performance.r_mic > 0.0).then_some(p.performance.r_mic);
-    let get_mean_lci: ValueFn = |p| p.performance.lci.map(|lci| lci.mean);
+    let radius_of: ValueFn = |p| (p.performance.r_mic > 0.0).then_some(p.performance.r_mic);
+    let mean_lci_of: ValueFn = |p| p.performance.lci.map(|lci| lci.mean);
     let panels: [(&str, ValueFn, f64, usize); 3] = [
         ("workspace area / D²", |p| Some(p.performance.area), 2.5, 2),
-        ("radius of the inscribed circle / D", get_radius, 0.5, 2),
-        ("mean LCI in the inscribed circle", get_mean_lci, 1.0, 1),
+        ("radius of the inscribed circle / D", radius_of, 0.5, 2),
+        ("mean LCI in the inscribed circle", mean_lci_of, 1.0, 1),
     ];
     let mut group = add_title(
         Group::new(),
@@ -36,7 +36,7 @@ pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
         "Performance charts of the five-bar",
         "every design r1 + r2 + r3 = 0.9 (crank, coupler, half base, in units of D); dashed: r3 = 0.1 to 0.4; white: no design; ring: the paper's design",
     );
-    for (i, (name, get_value, max, decimals)) in panels.into_iter().enumerate() {
+    for (i, (name, value_of, max, decimals)) in panels.into_iter().enumerate() {
         let corner = (90.0 + 480.0 * i as f64, 150.0);
         let plot = square_plot(corner, PANEL_SIZE, (0.0, PROPORTION_SUM));
         let scale = ColourScale {
@@ -54,7 +54,7 @@ pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
         let y_axis = Axis::new(0.1, if i == 0 { "r2, coupler" } else { "" });
         group = plot.draw_grid(group, &x_axis, &y_axis);
         group = map_plot.draw_map(group, (step_count + 1, step_count + 1), |x, y| {
-            let value = find_point(x, y).and_then(get_value);
+            let value = find_point(x, y).and_then(value_of);
             value.map(|value| scale.colour(value))
         });
         for r3 in [0.1, 0.2, 0.3, 0.4] {

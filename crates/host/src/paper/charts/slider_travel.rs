@@ -7,6 +7,7 @@ use crate::shared::number::round_to_decimals;
 use crate::shared::plot::{Axis, EXCLUDED_COLOUR, Plot, draw_legend_entry};
 use crate::shared::shapes::{Anchor, GREY, add_title, rectangle, render_svg, text, text_start};
 
+/// Number of panels in a row.
 const COLUMN_COUNT: usize = 4;
 /// Width and height of a panel, px.
 const PANEL_SIZE: (f64, f64) = (255.0, 150.0);

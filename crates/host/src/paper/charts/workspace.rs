@@ -13,11 +13,14 @@ use crate::shared::shapes::{DARK, GREY, add_outline, add_title, render_svg, text
 const PAGE_SIZE: (f64, f64) = (1120.0, 900.0);
 const X_AXIS: Axis<'static> = Axis::new(20.0, "x, mm from the middle of l0");
 const Y_AXIS: Axis<'static> = Axis::new(20.0, "y, mm");
+/// Colour of the maximal inscribed circle.
 const CIRCLE_COLOUR: &str = "#d55e00";
+/// Colour of the head's path in the gesture `look`.
 const LOOK_COLOUR: &str = "#009e73";
 const SHAFT_COLOUR: &str = "#0072b2";
 
-/// Draws the limits of each arm, the workspace between them, the inscribed circle, and the head at neutral.
+/// Draws the limits of each arm, the workspace between them, the inscribed circle, the head's path in the gesture
+/// `look`, and the five-bar at neutral.
 pub fn draw_workspace(robot: &Robot) -> String {
     let five_bar = robot.lizard().end(End::Head);
     let workspace = Workspace::for_five_bar(&five_bar);
@@ -47,7 +50,7 @@ pub fn draw_workspace(robot: &Robot) -> String {
         group,
         90.0,
         "Theoretical workspace of the head",
-        "all points that both arms reach; the tail has the same behind",
+        "all points that both arms reach; the tail's workspace is the mirror image",
     );
     let performance = Performance::compute(&five_bar, 32);
     let legend_x = 840.0;

@@ -1,6 +1,6 @@
 //! Selection of the firmware and its robot.
 //!
-//! All lizards run the same code. A section of flash after the code describes the robot. This program contains the
+//! All robots run the same code. A section of flash after the code describes the robot. This program contains the
 //! code, so a user needs only a robot.toml: `lizard flash`, `sim`, `twin`, `console --sim` and all other commands
 //! append the selected robot's section to the code. They never search for compiled firmware. Firmware developers select
 //! their build with `--elf` for a simulation (as `make sim` does), or with `--image` for a board. Only

@@ -57,7 +57,8 @@ impl Exactness {
         let mut width_step = 0;
         for pair in sent_frames.windows(2) {
             for servo in 0..4 {
-                if let (Some(current), Some(next)) = (pair[0].starts[servo], pair[1].starts[servo])
+                if let (Some(current), Some(next)) =
+                    (pair[0].pulse_starts[servo], pair[1].pulse_starts[servo])
                 {
                     let period_error = (next - current).abs_diff(FRAME_CYCLES);
                     max_period_error = period_error.max(max_period_error);

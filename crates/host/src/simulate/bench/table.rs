@@ -5,7 +5,8 @@ use std::io::{self, Write};
 use super::budget::{Bound, BudgetRow, SERVO_LIBRARY_SETUP};
 use crate::shared::number::group_digits;
 
-/// Prints a row for each measurement, then notes about the measured `gait` and missing values.
+/// Prints a row for each measurement, then notes about missing values and the measured `gait`, which is `None` if the
+/// robot has no moving gait.
 ///
 /// # Errors
 /// Fails if writing fails.
@@ -43,9 +44,9 @@ pub fn print(rows: &[BudgetRow], gait: Option<&str>, out: &mut impl Write) -> io
         Some(gait) => format!("The gait is {gait}."),
         None => "-: not measured, because this robot has no moving gait.".to_owned(),
     };
-    let lacks_commands =
+    let lacks_width_error =
         |row: &BudgetRow| row.name == "width minus command, worst" && row.measured.is_none();
-    if rows.iter().any(lacks_commands) {
+    if rows.iter().any(lacks_width_error) {
         writeln!(
             out,
             "\nThis firmware was not built from the same source and robot.toml as this program; \

@@ -22,7 +22,7 @@ pub struct Replay {
 }
 
 impl Replay {
-    /// Simulates the robot with the pulses of a run. `spans` are the run's commands.
+    /// Simulates the robot with the pulses of a run. `spans` are the run's commands and their time spans.
     pub fn simulate(robot: &Robot, log: FrameLog, spans: Vec<Span>, model: ServoModel) -> Self {
         let to_us = |width: u16| (width > 0).then(|| f64::from(width) / CYCLES_PER_US as f64);
         let mut twin = Twin::new(robot, model);
@@ -37,7 +37,7 @@ impl Replay {
     }
 
     /// Returns the indices of the frames during a command.
-    pub fn frames(&self, span: &Span) -> Range<usize> {
+    pub fn frame_range(&self, span: &Span) -> Range<usize> {
         self.log.index_at(span.start_s)..self.log.index_at(span.end_s)
     }
 
@@ -60,7 +60,7 @@ impl Replay {
     pub fn find_last_cycle(&self, span: &Span) -> Option<(&CheckedGait, Range<usize>)> {
         let gait = self.robot.gait(&span.command);
         let gait = gait.filter(|gait| gait.has_movement())?;
-        let frames = self.frames(span);
+        let frames = self.frame_range(span);
         let frames_per_cycle = (gait.period() / FRAME_PERIOD_S).round() as usize;
         let start_frame = frames.end.checked_sub(frames_per_cycle)?;
         (start_frame >= frames.start + frames_per_cycle).then_some((gait, start_frame..frames.end))

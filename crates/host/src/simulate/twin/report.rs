@@ -21,7 +21,8 @@ pub struct CommandReport {
     /// Displacement of the body over the complete command.
     #[serde(rename = "way")]
     pub displacement: Displacement,
-    /// The gait's last complete cycle, and its prediction.
+    /// The gait's last complete cycle, and its prediction; null if the command is not a moving gait, without a count,
+    /// that ran for at least two cycles, or if the script changes the speed.
     pub cycle: Option<Cycle>,
     /// Displacement that `lizard gaits` predicts for one round of a routine with this run's servo model; null for a
     /// routine with inputs, for other commands, and if the script changes the speed.
@@ -31,9 +32,9 @@ pub struct CommandReport {
     pub foot_slip: [f64; 4],
     /// Largest lag of a leg behind its servo, deg.
     pub lag: f64,
-    /// Name and value of the smallest margin.
+    /// Name and value of the smallest margin; null if the linkage's loops close in no frame.
     pub margin: Option<(&'static str, f64)>,
-    /// Smallest and largest slider travel, mm.
+    /// Smallest and largest slider travel, mm; null if the linkage's loops close in no frame.
     pub stroke: Option<[f64; 2]>,
     /// Largest angular rate of a servo, deg/s.
     pub servo_rate: f64,
@@ -83,7 +84,7 @@ pub fn compute_reports(
     changes_speed: bool,
 ) -> Vec<CommandReport> {
     let compute_report = |span: &Span| {
-        let frames = replay.frames(span);
+        let frames = replay.frame_range(span);
         let span_totals = replay.compute_totals(frames.clone());
         let cycle = replay.find_last_cycle(span).filter(|_| !changes_speed);
         let cycle_totals = cycle
@@ -140,7 +141,7 @@ pub fn compute_reports(
         }
     };
     let spans = replay.spans.iter();
-    let spans = spans.filter(|span| !replay.frames(span).is_empty());
+    let spans = spans.filter(|span| !replay.frame_range(span).is_empty());
     spans.map(compute_report).collect()
 }
 

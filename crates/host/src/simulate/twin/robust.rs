@@ -40,8 +40,8 @@ struct Utilisation {
     pace: f64,
     /// The servos' supply voltage, V.
     volts: f64,
-    /// The utilisation on the robot's own floor, and on a floor with the highest friction of the variations; 1 is the
-    /// complete line.
+    /// The utilisation on the robot's own floor, and on a floor with the highest friction of the variations; 1 is on
+    /// the line, a greater value is beyond it.
     #[serde(rename = "share")]
     by_floor: [f64; 2],
 }
@@ -69,8 +69,8 @@ impl Utilisation {
     }
 }
 
-/// Simulates every gait of the run `variation_count` times with different variations of robot and floor, and prints the
-/// spreads.
+/// Simulates every moving gait of the run `variation_count` times with different variations of robot and floor, and
+/// prints the spreads.
 ///
 /// # Errors
 /// Fails if writing fails.

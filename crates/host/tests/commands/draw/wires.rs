@@ -29,8 +29,8 @@ fn with_servo_pins(pins: &[String; 4]) -> String {
     text
 }
 
-/// Returns the files in robots/, and copies of the paper's robot file with many sets and orders of servo pins, each
-/// after its path or its pins' names. Since 17 is prime, four pins at equal steps are always distinct.
+/// Returns the path and the text of each file in robots/, then the pins' names and the text of copies of the paper's
+/// robot file with many sets and orders of servo pins. Since 17 is prime, four pins at equal steps are always distinct.
 fn robot_files_with_many_pin_sets() -> impl Iterator<Item = (String, String)> {
     let pin_name = |number: usize| match number % 17 {
         index @ 0..11 => format!("D{}", index + 2),

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::harness::{Outcome, read_file, robot_path, run, scratch_folder};
 
-/// Formats a gait's movement per cycle as `lizard measure --json` does; all errors are 0.05.
+/// Formats a gait's movement per cycle (mm, mm, deg) as `lizard measure --json` does; all standard errors are 0.05.
 fn format_gait(gait: &str, movement: [f64; 3]) -> Value {
     let format_component = |mean: f64| json!({ "mean": mean, "sd": 0.1, "error": 0.05 });
     let [forward, left, turn] = movement.map(format_component);
@@ -106,9 +106,9 @@ fn the_written_robot_file_differs_only_in_measured_lines() {
         assert!(is_measured || is_blank_or_header, "{line}");
     }
     assert!(new_text.contains("friction_back_over_forward = ") && new_text != old_text);
-    // A second run may replace this file, until a user edits it. A robot that stands ends the run after that check.
-    let still_file = format_measurement(&[format_gait("stand", [0.0; 3])]);
-    let still_file = write_file("still.json", &still_file);
+    // A second run may replace this file, until a user edits it. The measured gait `stand` is refused after this check.
+    let still_measurement = format_measurement(&[format_gait("stand", [0.0; 3])]);
+    let still_file = write_file("still.json", &still_measurement);
     let run_again = || run_measure_keys(&still_file, &["--output", output_name]);
     run_again().expect_refusal_with("moves no servo");
     fs::write(&output, new_text + "# mine\n").expect("the file is written");

@@ -102,15 +102,15 @@ fn a_video_of_a_walk_agrees_with_the_prediction_and_is_refused_as_another_gait()
     });
     let measure_walk = |options: &str| measure(&folder, &format!("--gait walk {options}"));
     let paper = robot_path("paper");
-    let object = measure_walk(&format!("--json --robot {paper}")).expect_json();
+    let measurement = measure_walk(&format!("--json --robot {paper}")).expect_json();
     // Every number is finite: serde_json writes NaN and infinity as null.
-    assert!(!object.to_string().contains("null"), "{object}");
-    let video = object["videos"][0].clone();
-    let object = object["gaits"][0].clone();
+    assert!(!measurement.to_string().contains("null"), "{measurement}");
+    let video = &measurement["videos"][0];
+    let result = &measurement["gaits"][0];
     let find_number = |path: &[&str]| {
-        let value = path.iter().fold(&object, |value, key| &value[*key]);
+        let value = path.iter().fold(result, |value, key| &value[*key]);
         let number = value.as_f64();
-        number.unwrap_or_else(|| panic!("{path:?}: {object}"))
+        number.unwrap_or_else(|| panic!("{path:?}: {result}"))
     };
     let truth = true_displacement(&paper_gait("walk"));
     for (name, truth, max_error) in [
@@ -120,27 +120,27 @@ fn a_video_of_a_walk_agrees_with_the_prediction_and_is_refused_as_another_gait()
     ] {
         for (key, max_error) in [("mean", max_error), ("predicted", 1e-2)] {
             let error = find_number(&[name, key]) - truth;
-            assert!(error.abs() < max_error, "{name} {key}: {object}");
+            assert!(error.abs() < max_error, "{name} {key}: {result}");
         }
     }
     let (cycles, period) = (find_number(&["cycles"]), find_number(&["period"]));
     assert!(cycles >= 3.0 && (period - 1.0).abs() < 0.01);
-    let each_cycle = object["each"].as_array().expect("the value is an array");
+    let each_cycle = result["each"].as_array().expect("the value is an array");
     assert_eq!(each_cycle.len(), cycles as usize);
     let engine_results = read_file("tools/physics/walks.json");
     let engine_results: Value = serde_json::from_str(&engine_results).expect("the file is JSON");
     let mujoco = &engine_results["paper"]["walk"]["rigid, level"]["mujoco"];
-    assert_eq!(&object["mujoco"], mujoco);
+    assert_eq!(&result["mujoco"], mujoco);
     // The stored MuJoCo results stay valid if a comment is added to robot.toml, but not if the mass changes.
     for (change, mujoco) in [
         (("[limits]", "# mine\n[limits]"), mujoco),
         (("mass = 435.0", "mass = 500.0"), &Value::Null),
     ] {
         let robot = TemporaryRobot::from_paper(&[change]);
-        let object = measure_walk(&robot.add_option("--json")).expect_json();
-        assert_eq!(&object["gaits"][0]["mujoco"], mujoco);
+        let measurement = measure_walk(&robot.add_option("--json")).expect_json();
+        assert_eq!(&measurement["gaits"][0]["mujoco"], mujoco);
     }
-    let range = &object["range"];
+    let range = &result["range"];
     let predicted = find_number(&["forward", "predicted"]);
     let [min, max] =
         ["least", "most"].map(|end| range[end].as_f64().expect("the value is a number"));
@@ -165,9 +165,9 @@ fn a_video_of_a_walk_agrees_with_the_prediction_and_is_refused_as_another_gait()
     assert!(message.ends_with("; it resembles walk"), "{message}");
 }
 
-/// Returns the gaits of a result, each with the number of its walks.
-fn count_walks(object: &Value) -> Vec<(&str, usize)> {
-    let gaits = object["gaits"].as_array().expect("the value is an array");
+/// Returns the gaits in the output of `lizard measure --json`, each with the number of its walks.
+fn count_walks(output: &Value) -> Vec<(&str, usize)> {
+    let gaits = output["gaits"].as_array().expect("the value is an array");
     let counts = gaits.iter().map(|result| {
         let name = result["gait"].as_str().expect("the gait has a name");
         (name, result["walks"].as_array().map_or(0, Vec::len))
@@ -189,13 +189,13 @@ fn measure_identifies_gaits_by_given_names_or_by_their_paths() {
     let paper = robot_path("paper");
     let measure_gaits =
         |options: &str| measure(&folder, &format!("--robot {paper} --fps 8 {options}"));
-    let unnamed_result = measure_gaits("--json --picture measured.svg").expect_json();
-    let walks = count_walks(&unnamed_result);
-    assert_eq!(walks, [("walk", 2), ("left", 1)], "{unnamed_result}");
-    let named_result = measure_gaits("--json --gait walk,left,walk").expect_json();
-    assert_eq!(count_walks(&named_result), walks);
+    let unnamed_measurement = measure_gaits("--json --picture measured.svg").expect_json();
+    let walks = count_walks(&unnamed_measurement);
+    assert_eq!(walks, [("walk", 2), ("left", 1)], "{unnamed_measurement}");
+    let named_measurement = measure_gaits("--json --gait walk,left,walk").expect_json();
+    assert_eq!(count_walks(&named_measurement), walks);
     for (index, gait) in [walk, left].iter().enumerate() {
-        let result = &unnamed_result["gaits"][index];
+        let result = &unnamed_measurement["gaits"][index];
         let truth = true_displacement(gait);
         for (component, truth, max_error) in
             [("forward", truth.forward, 0.3), ("turn", truth.turn, 0.5)]

@@ -103,8 +103,8 @@ fn a_printed_sheet_shows_all_tags_at_actual_size() {
             let is_upright = left[0] < right[0] && (left[1] - right[1]).abs() < 1.0;
             assert!(is_upright, "{paper}, tag {id}");
         }
-        for strip in [0, 2] {
-            let spacing_mm = distance_mm(tags[strip].corners[0], tags[strip + 1].corners[0]);
+        for first in [0, 2] {
+            let spacing_mm = distance_mm(tags[first].corners[0], tags[first + 1].corners[0]);
             let error_mm = spacing_mm - sheet::TAG_SPACING;
             assert!(error_mm.abs() < 0.4, "{paper}: {spacing_mm} mm");
         }

@@ -34,7 +34,7 @@ fn every_command_in_docs_paper_prints_the_output_on_the_page() {
     for block in page.split("```console\n").skip(1) {
         let block = block.split("```").next().expect("the block has contents");
         let command_and_output = block.split_once('\n');
-        let (command, expected_output) = command_and_output.expect("the block has both");
+        let (command, expected_output) = command_and_output.expect("the block has an output");
         let args = command.strip_prefix("$ lizard ").expect(command);
         let output = run_line(&with_paper(args), "").expect_success();
         assert!(

@@ -43,7 +43,8 @@ impl Writer<'_> {
     }
 
     /// Writes a pad's contact shapes. Viewers hide these shapes (group 3) and show the printed part instead. The pad
-    /// has friction only against sliding, not against turning or rolling. `priority` selects the pad's friction.
+    /// has friction only against sliding, not against turning or rolling. With `priority`, the pad's friction applies,
+    /// not the floor's.
     pub(super) fn write_pad(&mut self, servo: usize) {
         let pad = self.assembly.robot().parts().pad;
         let [x, y, middle_z] = self.dome_centre(servo);

@@ -8,6 +8,7 @@ use crate::model::text::{MILLI, format_metres, join_numbers, round};
 use crate::model::writer::Writer;
 
 impl Writer<'_> {
+    /// Writes a body with its joint and its shapes, and within it the bodies that move on it.
     pub(super) fn write_body(&mut self, node: Node) {
         let (position, yaw) = self.position_and_yaw(node);
         let (name, position) = (node.name(), format_metres(position));

@@ -214,8 +214,8 @@ fn each_kind_of_margin_is_checked_against_its_own_limit() {
 
 #[test]
 fn a_gait_is_rejected_even_if_only_the_firmwares_guard_rejects_it() {
-    // If the limit is only slightly below the gaits' smallest margin, by one or two units of the firmware's integers,
-    // the floating-point check still accepts every gait, but the guard of at least one robot rejects a gait.
+    // If the limit is only slightly below the gaits' smallest margin, by at most three units of the firmware's
+    // integers, the floating-point check still accepts every gait, but the guard of at least one robot rejects a gait.
     let mut messages = Vec::new();
     for (name, line) in [
         ("paper", "leg = 0.3 "),

@@ -11,7 +11,7 @@ use proptest::test_runner::TestRunner;
 
 use super::*;
 use crate::config::RobotConfig;
-use crate::tables::core_robot::{CoreRobot, flash};
+use crate::tables::core_robot::{CoreRobot, keep_section};
 use crate::tables::numbers;
 use crate::tables::table::Tables;
 use crate::testing::{all_robots, robot};
@@ -101,7 +101,7 @@ impl RobotWithMaps {
         let content = numbers::build_content("random", config, &tables, &[]);
         Self {
             maps: CellMaps::new(&config.lizard, &content),
-            robot: CoreRobot::unchecked(flash(&content.section_bytes()))
+            robot: CoreRobot::unchecked(keep_section(&content.section_bytes()))
                 .expect("the section is complete"),
         }
     }

@@ -189,7 +189,7 @@ impl Board for BoardDouble {
         Ok(())
     }
 
-    async fn read(&mut self, bytes: &mut [u8], _time: Duration) -> Result<usize, BoardError> {
+    async fn read(&mut self, bytes: &mut [u8], _time_limit: Duration) -> Result<usize, BoardError> {
         self.check_connection()?;
         if self.sends_endlessly {
             bytes.fill(b'x');
@@ -202,7 +202,7 @@ impl Board for BoardDouble {
         Ok(count)
     }
 
-    async fn discard(&mut self, _time: Duration) -> Result<(), BoardError> {
+    async fn discard(&mut self, _duration: Duration) -> Result<(), BoardError> {
         self.check_connection()?;
         self.output.clear();
         Ok(())

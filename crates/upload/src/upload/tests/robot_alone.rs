@@ -3,7 +3,7 @@
 use super::*;
 
 /// The robot.toml of the paper's robot.
-const PAPER: &str = include_str!("../../../../../robots/paper.toml");
+const PAPER_TOML: &str = include_str!("../../../../../robots/paper.toml");
 
 #[test]
 fn the_first_page_of_a_robot_alone_is_blanked_first_and_written_last() {
@@ -25,8 +25,8 @@ fn the_first_page_of_a_robot_alone_is_blanked_first_and_written_last() {
 
 #[test]
 fn a_changed_gait_takes_less_than_a_second_on_the_serial_line() {
-    let slower_toml = PAPER.replacen("period = 1.25", "period = 1.5", 1);
-    assert_ne!(slower_toml, PAPER);
+    let slower_toml = PAPER_TOML.replacen("period = 1.25", "period = 1.5", 1);
+    assert_ne!(slower_toml, PAPER_TOML);
     let slower_robot = Robot::parse(&slower_toml).expect("the robot file is valid");
     let image = Image::robot_alone(slower_robot.section()).expect("the image fits");
     let run = run_with_image(board_with_robot("paper"), &image);

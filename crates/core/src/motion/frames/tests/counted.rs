@@ -4,7 +4,7 @@ use std::format;
 
 use super::*;
 
-/// Number of frames by which a gait may run longer than its count.
+/// The number of frames by which a gait may run longer than its count; negative if it runs shorter.
 const ALLOWED_EXCESS: core::ops::RangeInclusive<f64> = -2.0..=1.2;
 
 /// Runs a motion to its standstill. Returns the number of cycles that its last gait covers. This function counts cycles

@@ -95,8 +95,7 @@ fn run_steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, 
         if !terminal::is_open() {
             return Err(io::Error::from(io::ErrorKind::UnexpectedEof).into());
         }
-        // Polls without waiting: if the terminal is closed during a wait, crossterm never returns from
-        // the wait.
+        // Polls without waiting: if the terminal is closed during a wait, crossterm never returns from the wait.
         if !event::poll(Duration::ZERO)? {
             if last_read.elapsed() >= READ_INTERVAL {
                 guide.read_messages()?;

@@ -1,8 +1,9 @@
-//! The line to which an answer of the robot can belong.
+//! The match between the robot's answers and the lines that were sent.
 
 use lizard_core::console::text::Text;
 
-/// True if `answer` can belong to `line`: after `ok`, it must begin with the first word of the line.
+/// True if `answer` can belong to `line`: after `ok`, it must begin with the first word of the line, or with the word
+/// that stands for it. A refusal can belong to any line.
 pub(super) fn can_answer(answer: &str, line: &str) -> bool {
     let line = line.to_ascii_lowercase();
     let word = match line.split_whitespace().next() {

@@ -81,7 +81,7 @@ fn poses_are_shown_only_if_the_user_asks_for_them() {
 }
 
 #[test]
-fn stop_of_a_script_is_answered_in_upper_case_too() {
+fn a_stop_in_upper_case_from_a_script_is_answered_too() {
     let (now, mut session) = start(false, false);
     session.queue("STOP");
     session.take_next_line(now);
@@ -154,7 +154,7 @@ fn a_stop_of_an_unplugged_robot_is_repeated_and_its_silence_counts_from_the_reco
 }
 
 #[test]
-fn only_a_complete_refusal_of_stop_without_pulses_ends_the_repetition() {
+fn only_a_complete_refusal_of_stop_ends_its_repetition() {
     for (refusal, next_line) in [
         ("err 7 the servos are resting; send stand first", "stand"),
         ("err 10 no robot in the flash", "stand"),

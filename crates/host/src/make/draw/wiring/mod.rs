@@ -89,6 +89,7 @@ pub fn draw_wiring(robot: &Robot) -> String {
     render_svg((PAGE_WIDTH, inputs_y + inputs::panel_height(robot)), group)
 }
 
+/// True for the pins from A0 on, whose numbers are 14 and more.
 fn is_analogue(pin: u8) -> bool {
     pin >= 14
 }
@@ -214,7 +215,7 @@ fn draw_board_notes() -> Group {
         .add(text_start("computer", (42.0, usb_y - 12.0), 13.0))
 }
 
-/// The supply voltages of servos for which the drawn converter serves, V.
+/// The servos' supply voltages for which the drawn 5 V converter is suitable, V.
 const DRAWN_SERVO_VOLTS: RangeInclusive<f64> = 4.5..=5.5;
 
 /// Returns the remarks below the drawing, about facts that a drawing cannot show.

@@ -77,7 +77,7 @@ pub fn draw(top: f64) -> Group {
     group = draw_case(group, corner, (150.0, 160.0), "#e6eef7").add(module_text);
     for (pin, module_pin, offset) in ROWS {
         let y = top + offset;
-        let [board_label_x, label_x] = [BOARD_PINS_X - 10.0, MODULE_PINS_X + 10.0];
+        let [board_label_x, module_label_x] = [BOARD_PINS_X - 10.0, MODULE_PINS_X + 10.0];
         let module_terminal = format!("radio-module-{module_pin}");
         group = group
             .add(text_end(
@@ -85,7 +85,7 @@ pub fn draw(top: f64) -> Group {
                 (board_label_x, y + 5.0),
                 13.0,
             ))
-            .add(text_start(module_pin, (label_x, y + 5.0), 13.0))
+            .add(text_start(module_pin, (module_label_x, y + 5.0), 13.0))
             .add(draw_terminal(
                 &format!("radio-{pin}"),
                 (BOARD_PINS_X, y),

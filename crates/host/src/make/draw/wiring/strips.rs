@@ -30,7 +30,7 @@ const FIRST_SUPPLY_HOLE: (f64, f64) = (96.0, 259.0);
 const FIRST_SIGNAL_WAY_X: f64 = 265.0;
 /// Distance between neighbouring ways of the signal strip, pixels.
 const SIGNAL_WAY_PITCH: f64 = 48.0;
-/// y of the signal strip's upper and lower edge, pixels.
+/// Vertical positions of the signal strip's upper and lower edges, pixels.
 const SIGNAL_EDGES_Y: (f64, f64) = (597.0, 633.0);
 /// Distance of the board's jumper from the middle of its way, away from the strip's middle way, pixels.
 const JUMPER_OFFSET: f64 = 5.0;
@@ -145,7 +145,8 @@ fn draw_way(group: Group, start: (f64, f64), end: (f64, f64), number: usize) -> 
         .add(text_middle(&number.to_string(), (x, y + 4.5), 12.0))
 }
 
-fn draw_case(corner: (f64, f64), size: (f64, f64)) -> svg::node::element::Rectangle {
+/// Draws the case of a strip.
+fn draw_strip(corner: (f64, f64), size: (f64, f64)) -> svg::node::element::Rectangle {
     add_outline(rectangle(corner, size, "#f2f2f2").set("rx", 4), DARK, 1.3)
 }
 
@@ -153,7 +154,7 @@ fn draw_case(corner: (f64, f64), size: (f64, f64)) -> svg::node::element::Rectan
 pub fn draw() -> Group {
     let draw_upright_strip = |way_count: usize, (left, top): (f64, f64)| {
         let size = (STRIP_WIDTH, PITCH * way_count as f64);
-        draw_case((left, top - PITCH / 2.0), size)
+        draw_strip((left, top - PITCH / 2.0), size)
     };
     let supply_strip = (FIRST_SUPPLY_HOLE.0 - STRIP_WIDTH, FIRST_SUPPLY_HOLE.1);
     let mut group = Group::new()
@@ -176,7 +177,7 @@ pub fn draw() -> Group {
     }
     let (top, bottom) = SIGNAL_EDGES_Y;
     let corner = (FIRST_SIGNAL_WAY_X - SIGNAL_WAY_PITCH / 2.0, top);
-    group = group.add(draw_case(corner, (5.0 * SIGNAL_WAY_PITCH, bottom - top)));
+    group = group.add(draw_strip(corner, (5.0 * SIGNAL_WAY_PITCH, bottom - top)));
     for way in 0..5 {
         let x = signal_way_x(way);
         group = draw_way(group, (x, top + 3.0), (x, bottom - 3.0), way + 1);

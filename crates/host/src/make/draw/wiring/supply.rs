@@ -45,7 +45,7 @@ const CONVERTER_IN_PLUS_Y: f64 = PLUS_Y - SINGLE_WAY_WIRE_OFFSET;
 const CONVERTER_MINUS_Y: f64 = 104.0;
 /// The capacitor's horizontal position.
 const CAPACITOR_X: f64 = 150.0;
-/// Horizontal positions of the two wires down to the barrel plug.
+/// Horizontal positions of the plus and minus wires down to the barrel plug.
 const BARREL_PLUG_WIRES_X: [f64; 2] = [20.0, 34.0];
 
 /// The supply's parts, each with the index of its way (terminal) on the ground strip.
@@ -235,12 +235,12 @@ fn draw_fuse_switch_and_way(mut group: Group) -> Group {
     ] {
         group = group.add(text_middle(label, (middle(ends), y), size));
     }
-    let ends = [
+    let parts = [
         ("fuse", FUSE_CONTACTS_X),
         ("switch", SWITCH_CONTACTS_X),
         ("way", SINGLE_WAY_HOLES_X),
     ];
-    for (name, [left, right]) in ends {
+    for (name, [left, right]) in parts {
         group = group
             .add(draw_terminal(&format!("{name}-1"), (left, PLUS_Y), RED))
             .add(draw_terminal(&format!("{name}-2"), (right, PLUS_Y), RED));

@@ -22,6 +22,7 @@ pub const LEAD_WIDTH: f64 = 1.8;
 
 /// A wire or a component's lead.
 pub struct Wire {
+    /// The id of its SVG element.
     pub name: String,
     pub path: Path,
     pub colour: &'static str,

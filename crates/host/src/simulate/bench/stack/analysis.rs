@@ -135,7 +135,7 @@ impl<'a> StackAnalysis<'a> {
             let unknown_frame = || error("reserves a frame of an unknown size");
             let mut next_addresses = vec![next_address];
             match instruction.effect {
-                // A call of the next instruction reserves two bytes, because it is shorter than two pushes.
+                // The compiler reserves two bytes by calling the next instruction, which is shorter than two pushes.
                 Effect::Call(target) if target == next_address => {
                     state.depth += RETURN_ADDRESS_BYTES
                 }
@@ -200,10 +200,10 @@ impl<'a> StackAnalysis<'a> {
 
     /// Creates an error in the function at `entry`, caused by the instruction at `address`.
     pub fn new_error(&self, entry: u32, address: u32, reason: &'static str) -> StackError {
-        let is_before = |symbol: &&simulated_uno::Symbol| {
+        let is_at_or_before = |symbol: &&simulated_uno::Symbol| {
             symbol.is_function && u64::from(entry) >= symbol.address
         };
-        let symbols = self.image.symbols().iter().filter(is_before);
+        let symbols = self.image.symbols().iter().filter(is_at_or_before);
         let nearest_symbol = symbols.max_by_key(|symbol| symbol.address);
         StackError {
             function: nearest_symbol.map_or_else(|| "the code".to_owned(), |symbol| symbol.path()),
