@@ -161,7 +161,11 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
             assert!(!printed_lines.contains(&"# done".to_string()));
         }
     }
-    assert!(events_that_rest.into_iter().eq(["a low supply", "rest", "stop"]));
+    assert!(
+        events_that_rest
+            .into_iter()
+            .eq(["a low supply", "rest", "stop"])
+    );
 }
 
 #[test]
