@@ -57,7 +57,7 @@ prove: ## compare the guard with floating point for every pose; takes a minute o
 physics: ## compare the contact model with MuJoCo for every gait; WRITE=1 stores the results, ONE_IN=10 selects every tenth row
 mutants: ## mutation tests: report mutants that no test detects; PART=board, core or kinematics; SAMPLE=60 SEED=1: random mutants and their detection rate
 other-robots: ## run every test of the image with the robots in robots/ and with random valid robots; SEED=1 COUNT=10, EXCEPT=large+grain
-trouble: ## fault injection: stalls, resets, supply dips and lost radio packets at random times; SEED=1, COUNT=10000, ONLY=number of a scenario
+trouble: ## fault injection: stalls, resets, supply dips and failures of a radio link at random times; SEED=1, COUNT=10000, ONLY=number of a scenario
 explore: ## run the model checker: commands, resets, stalls and weak supplies in any order; STATES=10000000
 fuzz: ## search for harmful bytes with libFuzzer; TARGET=console or memory, MINUTES=1
 package: ## package the stand-alone crates as for a registry, and build each from its package
@@ -71,7 +71,7 @@ parallel-test: ## split long computations with GNU parallel, merge the parts, an
 arduino-test: ## compare the C++ library in arduino/, compiled as in the Arduino IDE, with the Rust engine; SERVO=folder of the Servo library
 python-test: ## build the Python package's wheel, install it in target/python, test it there
 addresses-test: ## check that the addresses in crates/Cargo.toml, set in a copy, appear in the program, a package, the page and the book
-desks: ## build `lizard` for Linux on ARM and for Windows, run it, compare its output; compile it for macOS
+desks: ## build `lizard` for Linux on ARM and for Windows, run it, compare its output; check that it compiles for macOS
 clean: ## remove everything that was built
 	rm -rf target crates/target out dist tools/judge/node_modules web/node_modules web/tests/node_modules web/node/node_modules web/dist web/public web/generated
 

@@ -1,5 +1,5 @@
-// Reads an SDF file with one model with libsdformat, and prints it as JSON for scripts/models-test: the bodies' poses in
-// the model, and the joints with their poses, axes and ranges. Exits with 1 if the file is invalid.
+// Reads an SDF file with one model with libsdformat, and prints it as JSON for scripts/models-test: the bodies' poses
+// in the model, and the joints with their poses, axes and ranges. Exits with 1 if the file is invalid.
 #include <iostream>
 #include <sdf/sdf.hh>
 

@@ -1,7 +1,8 @@
 // Prints a release's bill of materials as SPDX 2.3 in JSON (https://spdx.github.io/spdx-spec/v2.3/):
 //     node scripts/spdx.mjs VERSION COMMIT
 // Run it in the root of the built tree. The document describes the programs, the image and the page. Crates come from
-// `cargo metadata`, Node's packages from the lock files, libraries from Debian. SOURCE_DATE_EPOCH is the document's time.
+// `cargo metadata`, Node's packages from the lock files, libraries from Debian. SOURCE_DATE_EPOCH is the document's
+// time.
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 

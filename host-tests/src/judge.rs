@@ -111,7 +111,7 @@ pub fn run_on_avr8js(
     objcopy.args(["-I", "binary", "-O", "ihex"]);
     run_program(objcopy.args([&flash_path, &hex_path]), "binutils-avr", "")?;
     let mut script = String::new();
-    if let Some((pin, mv)) = supplies::healthy_rail(robot) {
+    if let Some((pin, mv)) = supplies::find_healthy_rail_input(robot) {
         script += &format!("analogue {} {mv}\n", pin.number());
     }
     for SerialByte { cycle, value } in received {

@@ -91,7 +91,7 @@ impl Board for Uno {
     #[inline(always)]
     fn connect(&mut self, servo_pins: [u8; 4], rail_pin: Option<u8>) {
         pulses::connect_pins(servo_pins);
-        self.converter.connect(rail_pin);
+        self.converter.connect_rail(rail_pin);
     }
 
     #[inline(always)]

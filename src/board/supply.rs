@@ -1,18 +1,18 @@
 //! The supply voltages, measured by the analogue-to-digital converter.
 //!
 //! The converter compares a voltage with its own supply, AVcc. Therefore its reading of the chip's 1.1 V reference
-//! determines AVcc without any external part. A conversion takes 104 us, and the reference settles within 70 us after
-//! its selection (data sheet, sections 24.4 and 29.5). Therefore a frame selects the channel, the next frame starts the
-//! conversion, and the frame after that reads the result.
+//! determines AVcc without any external part. A conversion takes 104 us, the first one 200 us, and the reference
+//! settles within 70 us after its selection (data sheet, sections 24.4 and 29.5). Therefore a frame selects the
+//! channel, the next frame starts the conversion, and the frame after that reads the result.
 
 use avr_device::atmega328p::ADC;
 use lizard_core::control::supply::Reading;
 
 /// The ADMUX bits that select AVcc as the converter's reference; the channel is added to them.
-const AVCC: u8 = 0x40;
+const AVCC_AS_REFERENCE: u8 = 0x40;
 
-/// The channel that measures the chip's 1.1 V reference.
-const REFERENCE_CHANNEL: u8 = 0x0e;
+/// The channel of the chip's 1.1 V (bandgap) reference.
+const BANDGAP_CHANNEL: u8 = 0x0e;
 
 /// The Arduino number of the first analogue pin, A0.
 const A0: u8 = 14;
@@ -40,7 +40,7 @@ pub struct Converter {
 impl Converter {
     /// Creates the converter from its registers, switches it on, and selects the reference.
     pub fn new(registers: ADC) -> Self {
-        select_channel(&registers, REFERENCE_CHANNEL);
+        select_channel(&registers, BANDGAP_CHANNEL);
         // SAFETY: any value of ADCSRA is valid; this value switches the converter on.
         registers.adcsra.write(|w| unsafe { w.bits(CONVERTER_ON) });
         Self {
@@ -53,8 +53,8 @@ impl Converter {
         }
     }
 
-    /// Connects the rail to the pin with this Arduino number; if that is `None`, the rail is not measured.
-    pub fn connect(&mut self, pin: Option<u8>) {
+    /// Connects the rail to the pin with this Arduino number; `None` if the rail is not measured.
+    pub fn connect_rail(&mut self, pin: Option<u8>) {
         self.rail_channel = pin.map(|pin| pin.wrapping_sub(A0) & 7);
     }
 
@@ -90,7 +90,7 @@ impl Converter {
                 if self.is_measuring_rail {
                     self.reading.rail = value;
                     self.is_complete = true;
-                    select_channel(&self.registers, REFERENCE_CHANNEL);
+                    select_channel(&self.registers, BANDGAP_CHANNEL);
                 } else {
                     self.reading.reference = value;
                     select_channel(&self.registers, channel);
@@ -103,5 +103,7 @@ impl Converter {
 
 fn select_channel(registers: &ADC, channel: u8) {
     // SAFETY: a UNO allows AVcc as the converter's reference, and `channel` exists.
-    registers.admux.write(|w| unsafe { w.bits(AVCC | channel) });
+    registers
+        .admux
+        .write(|w| unsafe { w.bits(AVCC_AS_REFERENCE | channel) });
 }

@@ -4,7 +4,7 @@
 // Packages for other platforms are skipped.
 import { createHash } from 'node:crypto';
 import { mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
-import { dirname, join, normalize, resolve } from 'node:path';
+import { basename, dirname, join, normalize, resolve } from 'node:path';
 import { gunzipSync } from 'node:zlib';
 
 const judgeFolder = import.meta.dirname ?? dirname(new URL(import.meta.url).pathname);
@@ -66,20 +66,23 @@ async function install(path, entry) {
   const archive = await download(url);
   const checksum = `sha512-${createHash('sha512').update(archive).digest('base64')}`;
   if (checksum !== integrity) throw new Error(`${url} has checksum ${checksum}, expected ${integrity}`);
-  // Two processes may install the same package at the same time, because .ci/run runs targets in parallel.
-  const newFolder = `${folder}.new.${process.pid}`;
+  // Two processes may install the same package at the same time, because .ci/run runs targets in parallel. The name
+  // begins with a dot, so that a pattern such as node-linux-* does not match it.
+  const newFolder = join(dirname(folder), `.${basename(folder)}.${process.pid}`);
+  rmSync(newFolder, { recursive: true, force: true });
   for (const { name, bytes, mode } of readTar(gunzipSync(archive))) {
     // All files of an archive are in one top folder, usually `package`.
     const file = join(newFolder, normalize(`/${name}`).replace(/^\/[^/]+\//, ''));
     mkdirSync(dirname(file), { recursive: true });
     writeFileSync(file, bytes, { mode });
   }
-  rmSync(folder, { recursive: true, force: true });
   try {
     renameSync(newFolder, folder);
-  } catch (error) {
-    rmSync(newFolder, { recursive: true, force: true });
-    if (readInstalledVersion(folder) !== version) throw error;
+  } catch {
+    // The folder exists: it has another version, or another process has just installed this version.
+    if (readInstalledVersion(folder) === version) return rmSync(newFolder, { recursive: true, force: true });
+    rmSync(folder, { recursive: true, force: true });
+    renameSync(newFolder, folder);
   }
   console.log(`setup: ${path} ${version}`);
 }

@@ -16,7 +16,7 @@ try:
 except ImportError as error:
     sys.exit(f"view.py: {error}; `make physics` installs MuJoCo into target/physics")
 
-SPACE = 32
+SPACE_KEY = 32
 
 
 def main():
@@ -32,7 +32,7 @@ def main():
 
     def on_key(code):
         nonlocal is_paused
-        is_paused ^= code == SPACE
+        is_paused ^= code == SPACE_KEY
 
     with mujoco.viewer.launch_passive(
         walk.model, walk.data, key_callback=on_key, show_left_ui=False, show_right_ui=False
@@ -41,14 +41,14 @@ def main():
             window.cam.type = mujoco.mjtCamera.mjCAMERA_TRACKING
             window.cam.trackbodyid = walk.model.body("chassis").id
             window.cam.distance = 0.45
-        frame_s = 1 / 60
+        redraw_s = 1 / 60
         while window.is_running():
-            frame_start = time.monotonic()
-            frame_end = walk.data.time + frame_s
-            while walk.data.time < frame_end and not is_paused:
+            redraw_start = time.monotonic()
+            redraw_end = walk.data.time + redraw_s
+            while walk.data.time < redraw_end and not is_paused:
                 walk.step()
             window.sync()
-            time.sleep(max(0.0, frame_s - (time.monotonic() - frame_start)))
+            time.sleep(max(0.0, redraw_s - (time.monotonic() - redraw_start)))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
-// The robot's activity, a gait or a command, as the console's lines name it. The name of an activity is also the
-// command that starts it.
+// The robot's activity, a gait or a command, as the console's lines name it. The name of a gait or a routine
+// is also the command that starts it.
 import type { Description } from './robot';
 import { DONE_LINE, STAND, WORDS } from './words';
 

@@ -67,7 +67,7 @@ export class ShownRobot {
     } catch (error) {
       // A later call has replaced this one.
       if (loadNumber !== this.loadCount) return;
-      // An earlier call may have emptied `file` before this one.
+      // Not the value before this call: an earlier call may already have emptied `file`.
       this.file = this.changes?.file ?? '';
       throw error;
     }
@@ -85,7 +85,10 @@ export class ShownRobot {
     return null;
   }
 
-  /** Restores saved changes unless the robot's file has changed since; returns true if the changes were restored. */
+  /**
+   * Restores saved changes unless the robot's file has changed since; returns true if the changes were restored. If the
+   * saved robot.toml is refused, servos and supply are restored all the same.
+   */
   async restoreSaved({ original, toml, floor, servos, volts }: SavedChanges): Promise<boolean> {
     if (original !== this.original) return false;
     this.setServos(servos);
@@ -126,7 +129,10 @@ export class ShownRobot {
     return image;
   }
 
-  /** The page's stored predictions; null if the robot, its floor or its servos differ from the file. */
+  /**
+   * The page's stored predictions; null if the robot, its floor or its servos differ from the file, or if there are
+   * none.
+   */
   get filePredictions(): Predictions | null {
     return this.toml === this.original && this.state.floor.value === null && this.servos === 'own' ? this.predictions : null;
   }
@@ -143,6 +149,7 @@ export class ShownRobot {
     this.storeChanges();
   }
 
+  /** The name of the servo model: see `setServos`. */
   get servos(): string {
     return this.state.servos.value;
   }
@@ -154,6 +161,7 @@ export class ShownRobot {
     this.storeChanges();
   }
 
+  /** The supply voltage of the simulated board. */
   get volts(): number {
     return this.state.volts.value;
   }

@@ -118,7 +118,7 @@ testPage('a newer robot file replaces the user\'s stored changes, and a message 
 testPage('the pace slider shows the robot\'s pace after a typed line and after a reset', openStanding, async (page) => {
   await advance(page, 3000);
   await sendLine(page, 'speed 35', 'ok speed 35');
-  const slider = page.getByLabel('Pace');
+  const slider = page.locator('#speed');
   assert.equal(await slider.inputValue(), '35');
   await page.locator('#reset').click();
   // The page has not requested a status yet.

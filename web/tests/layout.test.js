@@ -16,23 +16,24 @@ const readBounds = (page) =>
     }),
   );
 
-/** Sets the height of all letters relative to the font's size; their width changes with it. */
-function setLetterHeight(height) {
+/** Sets the height of the lower-case letters as a fraction of the font size; all letters scale with it. */
+function setXHeight(height) {
   const sheet = new CSSStyleSheet();
   sheet.replaceSync(`* { font-size-adjust: ${height} }`);
   document.adoptedStyleSheets = [sheet];
 }
 
-for (const [letters, letterHeight] of [['narrow', 0.45], ['wide', 0.62]]) {
+for (const [letters, xHeight] of [['narrow', 0.45], ['wide', 0.62]]) {
   for (const [width, height] of [[1400, 700], [1280, 800], [390, 844]]) {
     test(`the layout does not change after the first frame: ${letters} letters, ${width} x ${height} pixels`, async () => {
       const page = await openBlankPage({ viewport: { width, height } });
-      await page.addInitScript(setLetterHeight, letterHeight);
+      await page.addInitScript(setXHeight, xHeight);
       // Without the stored predictions, as for a user's own robot.
       await page.route(/predictions/, (route) => route.fulfill({ status: 404 }));
-      let allowPredictions;
-      const predictionsAllowed = new Promise((resolve) => (allowPredictions = resolve));
-      await page.route(/robot-worker/, (route) => predictionsAllowed.then(() => route.continue()));
+      // The worker that predicts is held back until the robot has started.
+      let releaseWorker;
+      const workerReleased = new Promise((resolve) => (releaseWorker = resolve));
+      await page.route(/robot-worker/, (route) => workerReleased.then(() => route.continue()));
       await page.goto(`${address()}#room=drive`);
       await page.waitForFunction(() => document.querySelector('#floor').dataset.zoom);
       const firstBounds = await readBounds(page);
@@ -40,7 +41,7 @@ for (const [letters, letterHeight] of [['narrow', 0.45], ['wide', 0.62]]) {
       await advance(page, 2500);
       await page.waitForFunction(() => /^on a simulated UNO/.test(document.querySelector('#where').textContent));
       assert.deepEqual(await readBounds(page), firstBounds, 'the layout changed when the robot started');
-      allowPredictions();
+      releaseWorker();
       await page.waitForFunction(() => {
         const getDistanceText = (gait) => document.querySelector(`#gaits button[data-command="${gait.command}"] small`).textContent;
         return window.lizard.robot.description.gaits.filter(({ moves }) => moves).every(getDistanceText);

@@ -1,5 +1,5 @@
-// A link that loses lines, a hidden page, and a robot that restarts: a stop reaches the robot, no gait starts by itself,
-// and the page shows only the states that the robot has reported.
+// A link that loses lines, a hidden page, and a robot that restarts: a stop reaches the robot, no gait starts by
+// itself, and the page shows only the states that the robot has reported.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 

@@ -49,7 +49,7 @@ async function lookFromAbove(page) {
 
 testPage('the page reports an unprintable length with the nearest length that lizard parts accepts', () => openUnfolded('#lengths-panel'), async (page) => {
   const length = await typeLength(page, 'leg.crank', 46);
-  await page.locator('#fit-message', { hasText: /^The parts fit: no two come nearer than \d\.\d\d mm\.$/ }).waitFor();
+  await page.locator('#fit-message', { hasText: /^The parts fit: no two come closer to each other than \d\.\d\d mm\.$/ }).waitFor();
   await typeLength(page, 'leg.crank', 52);
   await page.locator('#fit-message', { hasText: /^These lengths cannot be printed: .* would overlap by [\d.]+ mm\.$/ }).waitFor();
   const useButton = page.locator('#fit-use');
@@ -193,8 +193,8 @@ testPage('the archive has the files of lizard parts, byte for byte', () => openU
   assert.ok(paths.length > 100, `${paths.length} files`);
   // The smallest distance between two parts that `lizard fit` prints.
   const { stdout } = await runLizard('fit', '--robot', join(ROOT, 'robot.toml'));
-  const smallestMm = /no two parts come nearer than ([0-9.]+) mm/.exec(stdout)[1];
-  assert.match(await page.locator('#files-message').innerText(), new RegExp(`^${paths.length} files. No two parts come nearer than ${smallestMm} mm`));
+  const smallestMm = /no two parts come closer to each other than ([0-9.]+) mm/.exec(stdout)[1];
+  assert.match(await page.locator('#files-message').innerText(), new RegExp(`^${paths.length} files. No two parts come closer to each other than ${smallestMm} mm`));
 });
 
 testPage('the page saves nothing if making the files is stopped', openStanding, async (page) => {

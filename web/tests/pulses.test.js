@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 
 import { loadHex } from '../../tools/judge/src/hex.js';
-import { TIMEOUT_MS, openPage, useBrowser, testPage } from './browser.js';
+import { TIMEOUT_MS, advance, openPage, openUnfolded, sendLine, useBrowser, testPage } from './browser.js';
 import { makeFolder } from './temporary-folder.js';
 
 useBrowser();
@@ -119,4 +119,13 @@ for (const [robotName, toml] of [['robot.toml', TOML], ['a robot that was edited
   );
   const periods = new Set(rises.slice(1).map((rise, n) => (rise - rises[n]) % 320_000));
   assert.deepEqual([...periods], [0], 'a frame is exactly 20 ms');
+});
+
+testPage('the pulses are shown, and none while the robot rests', () => openUnfolded('#pulses'), async (page) => {
+  const waitForWidths = (pattern) =>
+    page.waitForFunction((pattern) => [...document.querySelectorAll('#widths td:nth-child(3)')].every(({ textContent }) => new RegExp(pattern).test(textContent)), pattern);
+  await waitForWidths('^1500\\.00$');
+  await sendLine(page, 'rest', 'ok rest');
+  await advance(page, 1000);
+  await waitForWidths('^none$');
 });

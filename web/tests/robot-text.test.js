@@ -107,7 +107,7 @@ testPage('a file can be opened, or dropped anywhere on the page', openTextEditor
 async function copyLink(page) {
   await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
   await page.getByRole('button', { name: 'Copy a link' }).click();
-  await page.getByText('The link is copied').waitFor();
+  await page.getByText('Link copied').waitFor();
   return page.evaluate(() => navigator.clipboard.readText());
 }
 

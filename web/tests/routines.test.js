@@ -294,7 +294,7 @@ testPage('an invalid or existing name is refused, and the recorded steps stay', 
   for (const [name, refusal] of [
     ['walk', 'routine.walk has the name of a gait; choose another name'],
     ['stop', 'routine.stop is not a routine name: "stop" is a console command'],
-    ['a"b', 'it must consist of lower-case letters, digits and dashes, and begin with a letter'],
+    ['a"b', 'it must consist of lower-case letters, digits and hyphens, and begin with a letter'],
     ['patrol', 'The routine patrol already exists; choose another name.'],
   ]) {
     await page.locator('#routine-name').fill(name);

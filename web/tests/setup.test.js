@@ -324,7 +324,7 @@ testPage('the page sends a valid calibration file to the robot and reports the e
     ['<img src=x onerror="window.foreignScriptRan=1">.toml', 'hello', /^<img .*>\.toml:1: `hello` is missing the = /],
     ['a.toml', 'format = "lizard calibration 2"', /^a\.toml:1: format must be "lizard calibration 1"/],
     ['b.toml', SAVED_CALIBRATION.replace('2.25', '400'), /^b\.toml:\d+: servo\.A2\.trim is 400; it must be between -360 and 360 deg/],
-    ['c.toml', SAVED_CALIBRATION.replace('"stand"', '"stand\\nsave"'), /^c\.toml:\d+: boot must be the name of a gait, or "rest"$/],
+    ['c.toml', SAVED_CALIBRATION.replace('"stand"', '"stand\\nsave"'), /^c\.toml:\d+: boot must be the name of a gait or a routine, or "rest"$/],
     ['d.toml', SAVED_CALIBRATION.replace('scale = 10.0', 'scale = 99.0'), /^The robot refuses "scale 1 99\.00": scale must be 5\.\.20/],
   ];
   for (const [name, body, message] of wrongFiles) {

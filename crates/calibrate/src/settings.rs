@@ -45,7 +45,7 @@ pub async fn send_settings<C: Console>(
 /// The error of a failed replacement of settings.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReplaceError<E> {
-    /// The robot refused a value or did not answer; it has its old settings.
+    /// The robot refused a value, did not answer, or sent an answer that cannot be read; it has its old settings.
     #[error("{0}; nothing was saved, and the robot keeps its old settings")]
     Refused(ConsoleError<E>),
     /// Neither the new nor the old settings are completely in effect.

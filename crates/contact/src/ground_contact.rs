@@ -9,14 +9,14 @@
 //! the ratio of friction to stiffness decides the lag of a leg behind its servo.
 
 use crate::drive::Drive;
-use crate::feet::{Body, Feet};
+use crate::leg_geometry::{Body, LegGeometry};
 use crate::stance::Stance;
 
 /// The contact of a robot with a floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundContact {
-    /// Positions of the hips, and geometry of the legs.
-    pub feet: Feet,
+    /// Positions of the hips, and length and mounting of the legs.
+    pub legs: LegGeometry,
     /// Mass and centre of mass.
     pub body: Body,
     /// Stiffness and lengths of the feet, which decide their loads.
@@ -33,7 +33,7 @@ pub struct GroundContact {
 /// The paper's robot on feet of equal length, with rigid struts.
 #[cfg(test)]
 pub(crate) const PAPER_GROUND: GroundContact = GroundContact {
-    feet: crate::feet::PAPER_FEET,
+    legs: crate::leg_geometry::PAPER_LEGS,
     body: Body::DEFAULT,
     stance: Stance::LEVEL,
     friction_coefficient: DEFAULT_FRICTION,

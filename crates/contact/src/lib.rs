@@ -13,14 +13,15 @@
 //! reads no file.
 //!
 //! # When not to use it
-//! No leg lifts its foot, and no foot tilts. Only [`Walker::drive`] models motors and inertia; everything else is
-//! quasi-static, so speed has no effect. For a robot that lifts its feet or moves very fast, use a physics engine.
+//! No leg lifts its foot, and no foot tilts. Everything is quasi-static, so speed has no effect, except in
+//! [`Walker::run_motors`], which models motors and inertia. For a robot that lifts its feet or moves very fast, use a
+//! physics engine.
 //!
 //! ```
-//! use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, GroundContact, Stance};
+//! use lizard_contact::{Body, DEFAULT_FRICTION, Drive, GroundContact, LegGeometry, Stance};
 //!
 //! let ground = GroundContact {
-//!     feet: Feet { hip_forward: 55.0, hip_side: [35.0; 2], mount_angle: 0.0, reach: 45.0 },
+//!     legs: LegGeometry { hip_forward: 55.0, hip_side: [35.0; 2], mount_angle: 0.0, reach: 45.0 },
 //!     body: Body::DEFAULT,
 //!     stance: Stance::LEVEL,
 //!     friction_coefficient: DEFAULT_FRICTION,
@@ -41,11 +42,11 @@
 
 mod body_pose;
 mod drive;
-mod feet;
 mod friction;
 mod ground_contact;
 mod joints;
 mod lag_energy;
+mod leg_geometry;
 mod legs;
 mod linear;
 mod motor;
@@ -58,15 +59,16 @@ mod walker;
 
 pub use body_pose::BodyPose;
 pub use drive::{Drive, DriveKind};
-pub use feet::{Body, Feet, GRAVITY};
 pub use friction::Point;
 pub use ground_contact::{DEFAULT_FRICTION, GroundContact};
 pub use joints::JointFriction;
+pub use leg_geometry::{Body, GRAVITY, LegGeometry};
 pub use legs::{FORWARD_TURN_SIGN, FRONT_SIGN, LEFT_SIGN};
 pub use motor::{Motor, Motors};
+pub use prediction::Prediction;
 pub use stance::Stance;
 pub use strut::{SLOT_LENGTH, Strut};
-pub use travel::{Prediction, Travel};
+pub use travel::Travel;
 pub use walker::{Contacts, Walker};
 
 /// Asserts that a value differs from the expected one by less than `max_error`.

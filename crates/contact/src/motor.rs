@@ -105,8 +105,8 @@ mod tests {
     use super::*;
     use crate::assert_near;
     use crate::drive::{Drive, DriveKind};
-    use crate::feet::Body;
     use crate::ground_contact::{GroundContact, PAPER_GROUND};
+    use crate::leg_geometry::Body;
     use crate::walker::Walker;
 
     const JOINTS: JointFriction = JointFriction {
@@ -141,7 +141,7 @@ mod tests {
     /// Turns all servos from 0 towards `target` (deg) for this number of seconds.
     fn turn_servos(ground: GroundContact, motors: &Motors, target: f64, seconds: f64) -> Walker {
         let mut walker = Walker::new(ground, [0.0; 4]);
-        walker.drive([Some(target); 4], seconds, motors);
+        walker.run_motors([Some(target); 4], seconds, motors);
         walker
     }
 
@@ -169,13 +169,13 @@ mod tests {
         let mut walker = Walker::new(heavy_ground, [0.0; 4]);
         let targets = [8e3, 8e3, -8e3, -8e3].map(Some);
         let mut drive_and_compute_mean_angle = || {
-            walker.drive(targets, 0.02, &motors_with(quick_motor, JOINTS));
+            walker.run_motors(targets, 0.02, &motors_with(quick_motor, JOINTS));
             walker.servo_sweeps().map(f64::abs).iter().sum::<f64>() / 4.0
         };
         // Rotors and legs accelerate in the first 20 ms, which therefore do not count.
         let start_angle = drive_and_compute_mean_angle();
         let mean_rate = (drive_and_compute_mean_angle() - start_angle) / 0.02;
-        let pad_torque = heavy_ground.mean_friction_force() * heavy_ground.feet.reach;
+        let pad_torque = heavy_ground.mean_friction_force() * heavy_ground.legs.reach;
         let expected_rate = SG90.no_load_speed * (1.0 - pad_torque / SG90.stall_torque);
         assert_near(mean_rate / expected_rate, 1.0, 0.1);
     }
@@ -184,8 +184,8 @@ mod tests {
     fn on_ice_legs_that_swing_forward_move_the_body_back_by_their_mass_fraction() {
         let ice = ground_with(435.0, 1e-4);
         let walker = turn_servos(ice, &motors_with(SG90, JOINTS), 20.0, 0.5);
-        let leg_travel_mm =
-            ice.feet.positions(walker.leg_sweeps())[0][0] - ice.feet.positions([0.0; 4])[0][0];
+        let leg_travel_mm = ice.legs.foot_positions(walker.leg_sweeps())[0][0]
+            - ice.legs.foot_positions([0.0; 4])[0][0];
         assert!(leg_travel_mm > 15.0, "the legs moved {leg_travel_mm} mm");
         let mass_fraction = 4.0 * ice.body.leg_mass() / ice.body.mass;
         let body_travel_mm = walker.body_pose().travel().forward;
@@ -217,7 +217,7 @@ mod tests {
         let final_angles = |directions: [f64; 4], joints| {
             let mut walker = Walker::new(LIGHT_GROUND, [0.0; 4]);
             let targets = directions.map(|direction| Some(1000.0 * direction));
-            walker.drive(targets, 0.04, &motors_with(SG90, joints));
+            walker.run_motors(targets, 0.04, &motors_with(SG90, joints));
             walker.servo_sweeps()
         };
         let first_leg_only = [1.0, 0.0, 0.0, 0.0];
@@ -271,7 +271,7 @@ mod tests {
         let turn_first_servo = |target: f64, seconds: f64| {
             let mut walker = Walker::new(ground_with_play, [0.0; 4]);
             let targets = [target, 0.0, 0.0, 0.0].map(Some);
-            walker.drive(targets, seconds, &motors_with(SG90, JOINTS));
+            walker.run_motors(targets, seconds, &motors_with(SG90, JOINTS));
             [walker.servo_sweeps(), walker.lags(), walker.leg_sweeps()].map(|angles| angles[0])
         };
         let [servo, lag, _] = turn_first_servo(10.0, 1.0);

@@ -6,7 +6,7 @@
 
 use crate::friction::Twist;
 use crate::ground_contact::GroundContact;
-use crate::travel::{Prediction, Travel};
+use crate::travel::Travel;
 use crate::walker::Walker;
 
 /// Relative change of a load or of the friction ratio in the test for ties. No real pads on a real floor are more even.
@@ -18,6 +18,34 @@ const RELATIVE_TOLERANCE: f64 = 0.05;
 const MIN_LENGTH_TOLERANCE: f64 = 1.0;
 /// Difference up to which a turn is always determined, rad.
 const MIN_TURN_TOLERANCE: f64 = 0.5 * std::f64::consts::PI / 180.0;
+
+/// A predicted travel. A component is `None` if friction does not determine it: if two feet pull one way and two the
+/// other way, the slightest difference between the pads decides.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prediction {
+    /// Distance forward, mm.
+    pub forward: Option<f64>,
+    /// Distance to the left, mm.
+    pub left: Option<f64>,
+    /// Turn, deg, counter-clockwise positive.
+    pub turn: Option<f64>,
+}
+
+impl Prediction {
+    /// True if friction determines all three components.
+    pub fn is_determined(&self) -> bool {
+        self.forward.is_some() && self.left.is_some() && self.turn.is_some()
+    }
+
+    /// Returns the components of `travel` that this prediction determines.
+    pub fn keep_determined(&self, travel: Travel) -> Self {
+        Self {
+            forward: self.forward.and(Some(travel.forward)),
+            left: self.left.and(Some(travel.left)),
+            turn: self.turn.and(Some(travel.turn)),
+        }
+    }
+}
 
 /// A walk on slightly uneven pads, compared with the walk on even pads.
 struct UnevenWalk {

@@ -8,8 +8,8 @@
 //!
 //! The model therefore treats a foot as a spring that can only push: a foot that would have to pull is in the air.
 
-use crate::feet::Body;
 use crate::friction::Point;
+use crate::leg_geometry::Body;
 use crate::linear::solve_symmetric;
 
 /// The stiffness and the lengths of the feet.

@@ -136,7 +136,12 @@ impl Walker {
 
     /// Lets motors turn the servos towards these sweeps (deg) for this number of seconds. A servo without a target is
     /// held by the friction of its gears.
-    pub fn drive(&mut self, targets: [Option<f64>; 4], seconds: f64, motors: &Motors) -> Contacts {
+    pub fn run_motors(
+        &mut self,
+        targets: [Option<f64>; 4],
+        seconds: f64,
+        motors: &Motors,
+    ) -> Contacts {
         let mut contacts = Contacts::NONE;
         let min_step_count = seconds / motors.compute_time_step() - STEP_COUNT_TOLERANCE;
         let step_count = min_step_count.ceil().max(1.0);
@@ -180,7 +185,7 @@ impl Walker {
             Some(_) => start_sweeps[i] + self.servo_rates[i] * seconds,
             None => start_sweeps[i],
         });
-        let start_points = self.ground.feet.positions(self.leg_sweeps());
+        let start_points = self.ground.legs.foot_positions(self.leg_sweeps());
         // In a short step a loaded motor turns nearly as far as an unloaded motor, so this is a good estimate.
         let unloaded_lags = motor_steps.map(|step| step.map_or(0.0, |step| step.unloaded_lag()));
         let lag_estimates = std::array::from_fn(|i| self.lags[i].to_radians() + unloaded_lags[i]);
@@ -208,14 +213,14 @@ impl Walker {
     fn compute_inertia(&self, seconds: f64) -> Inertia {
         const KG_PER_G: f64 = 1e-3;
         const M_PER_MM: f64 = 1e-3;
-        let GroundContact { feet, body, .. } = self.ground;
-        let ([front, hind], leg_mass) = (feet.hip_side, body.leg_mass());
+        let GroundContact { legs, body, .. } = self.ground;
+        let ([front, hind], leg_mass) = (legs.hip_side, body.leg_mass());
         let to_stiffness = |mass: f64| {
             mass * KG_PER_G * M_PER_MM / (seconds * seconds * self.ground.mean_friction_force())
         };
         let stiffness = to_stiffness(body.mass - 4.0 * leg_mass);
         let squared_hip_distance =
-            feet.hip_forward * feet.hip_forward + (front * front + hind * hind) / 2.0;
+            legs.hip_forward * legs.hip_forward + (front * front + hind * hind) / 2.0;
         let per_step = |velocity: f64| velocity * seconds;
         Inertia {
             stiffness: [stiffness, stiffness, stiffness * squared_hip_distance],
@@ -258,7 +263,7 @@ impl Walker {
 
     /// Finds the displacement in a small step of the servos to these sweeps, deg.
     fn find_displacement(&self, servo_sweeps: [f64; 4]) -> (Pads, Displacement) {
-        let start_points = self.ground.feet.positions(self.leg_sweeps());
+        let start_points = self.ground.legs.foot_positions(self.leg_sweeps());
         let mut lag_estimates = self.lags.map(f64::to_radians);
         let mut pads = self.build_pads(start_points, servo_sweeps, lag_estimates, [None; 4]);
         let mut displacement = pads.minimise_cost(None);
@@ -283,10 +288,10 @@ impl Walker {
         lag_estimates: [f64; 4],
         motor_steps: [Option<MotorStep>; 4],
     ) -> Pads {
-        let feet = &self.ground.feet;
+        let legs = &self.ground.legs;
         let end_sweeps = std::array::from_fn(|i| servo_sweeps[i] - lag_estimates[i].to_degrees());
-        let end_points = feet.positions(end_sweeps);
-        let derivatives = feet.sweep_derivatives(end_sweeps);
+        let end_points = legs.foot_positions(end_sweeps);
+        let derivatives = legs.sweep_derivatives(end_sweeps);
         // With the positions in the middle of the step, the reverse step is its exact inverse.
         let positions = build_points(&|i, j| (start_points[i][j] + end_points[i][j]) / 2.0);
         let previous_lags = self.lags.map(f64::to_radians);
@@ -295,7 +300,7 @@ impl Walker {
         let loads = stance.relative_loads(body, positions);
         let drive = &self.ground.drive;
         // No pad carries more than the whole robot.
-        let max_pad_torque = 4.0 * feet.reach * friction_ratio.max(1.0);
+        let max_pad_torque = 4.0 * legs.reach * friction_ratio.max(1.0);
         let force_unit = self.ground.mean_friction_force();
         let is_compliant = drive.can_lag() || motor_steps.iter().any(Option::is_some);
         Pads {

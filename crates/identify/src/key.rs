@@ -39,7 +39,7 @@ pub const KEYS: [Key; KEY_COUNT] = [
         assumption_name: "mounting of the legs",
         derivative_step: 1.0,
         min_value: f64::NEG_INFINITY,
-        field: |ground| &mut ground.feet.mount_angle,
+        field: |ground| &mut ground.legs.mount_angle,
     },
     Key {
         name: "leg.drive.play",

@@ -17,7 +17,7 @@ const CHANGES: [f64; 7] = [2.0, 0.5, 6.0, -5.0, 0.5, 0.15, 0.08];
 /// Changes the key with this index in `KEYS`.
 fn change_key(ground: &mut GroundContact, key_index: usize, change: f64) {
     let value = match key_index {
-        0 => &mut ground.feet.mount_angle,
+        0 => &mut ground.legs.mount_angle,
         1 => &mut ground.drive.play,
         2 => &mut ground.body.centre_of_mass[0],
         3 => &mut ground.body.centre_of_mass[1],

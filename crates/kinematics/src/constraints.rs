@@ -220,8 +220,8 @@ mod tests {
         }
     }
 
-    /// Compares a matrix with the difference quotients of the residuals of the loop equations. `residuals_after` returns
-    /// the residuals after a step of the joint of a column, rad or mm.
+    /// Compares a matrix with the difference quotients of the residuals of the loop equations. `residuals_after`
+    /// returns the residuals after a step of the joint of a column, rad or mm.
     fn compare_with_difference_quotients<const N: usize>(
         name: &str,
         matrix: [[f64; N]; 8],

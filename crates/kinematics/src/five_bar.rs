@@ -16,12 +16,12 @@ use crate::fault::Fault;
 use crate::real::{Lanes, Real};
 use crate::vector::Vector;
 
-/// Gap between the crank tips, mm, below which the end point counts as undefined: rounding errors
-/// alone move it by more than 0.1 mm.
-const MIN_GAP: f64 = 1e-12;
+/// Gap between the crank tips, mm, below which the end point counts as undefined: rounding errors alone move it by more
+/// than 0.1 mm.
+const COINCIDENCE_GAP: f64 = 1e-12;
 
-/// The links of a five-bar; all but the base must be longer than 0. Its own frame has the origin in
-/// the middle of the base, x from the left shaft to the right one, y away from the chassis.
+/// The links of a five-bar; all but the base must be longer than 0. The five-bar's own frame has its origin in the
+/// middle of the base, x from the left shaft to the right one, and y away from the chassis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiveBar {
     /// Distance between the shafts, mm: l0, l5. May be 0.
@@ -108,7 +108,7 @@ impl<T: Real> FiveBarPose<T> {
         self.right_crank.cross(self.right_coupler)
     }
 
-    /// A sum that is finite if and only if every number of the pose is finite.
+    /// A sum that is finite only if every number of the pose is finite.
     #[inline(always)]
     fn finiteness_probe(&self) -> T {
         self.end_point.x + self.end_point.y + self.type2 + self.type1_left() + self.type1_right()
@@ -195,7 +195,7 @@ impl FiveBar {
     /// Returns, for each lane, true if the loop closes. For the cranks of a lane with an open loop, [`FiveBar::close`]
     /// returns the fault.
     #[inline(always)]
-    pub fn closes<const N: usize>(&self, pose: &FiveBarPose<Lanes<N>>) -> [bool; N] {
+    pub fn are_loops_closed<const N: usize>(&self, pose: &FiveBarPose<Lanes<N>>) -> [bool; N] {
         let (Lanes(d), Lanes(probe)) = (pose.gap.length(), pose.finiteness_probe());
         let mut is_closed = [false; N];
         for i in 0..N {
@@ -215,7 +215,7 @@ impl FiveBar {
             Err(Fault::TooFarApart { gap: d, max_gap })
         } else if d < min_gap {
             Err(Fault::TooClose { gap: d, min_gap })
-        } else if d < MIN_GAP {
+        } else if d < COINCIDENCE_GAP {
             Err(Fault::Coincident)
         } else if !probe.is_finite() {
             Err(Fault::NotFinite)
@@ -224,8 +224,8 @@ impl FiveBar {
         }
     }
 
-    /// The pose at crank directions of length one, without a check that the loop closes. The pose of an open
-    /// loop (see [`FiveBar::closes`]) is meaningless. The compiler leaves out the parts that the caller does not use.
+    /// The pose at crank directions of length one, without a check that the loop closes. The pose of an open loop (see
+    /// [`FiveBar::are_loops_closed`]) is meaningless. The compiler leaves out the parts that the caller does not use.
     #[inline(always)]
     pub fn pose_unchecked<T: Real>(
         &self,
@@ -236,27 +236,27 @@ impl FiveBar {
         let left_tip = Vector::constant(self.left_shaft()) + left * self.left_crank_length;
         let right_tip = Vector::constant(self.right_shaft()) + right * self.right_crank_length;
         let gap = right_tip - left_tip;
-        let square = gap.length_squared();
+        let gap_squared = gap.length_squared();
         let (l2, l3) = (self.left_coupler_length, self.right_coupler_length);
         let area = match mode {
-            AssemblyMode::Ahead => double_area(l2, l3, square.sqrt_or_zero()),
-            AssemblyMode::Behind => -double_area(l2, l3, square.sqrt_or_zero()),
+            AssemblyMode::Ahead => double_area(l2, l3, gap_squared.sqrt_or_zero()),
+            AssemblyMode::Behind => -double_area(l2, l3, gap_squared.sqrt_or_zero()),
         };
         // The end point relative to the left tip: `foot` is its coordinate along the gap, relative to the gap's length;
         // `rise` is its component perpendicular to the gap.
-        let foot = (square + T::constant((l2 - l3) * (l2 + l3))) / (square * 2.0);
-        let rise = gap.rotated_left().scaled(area / square);
-        let left_vector = gap.scaled(foot) + rise;
-        let right_vector = gap.scaled(foot - T::constant(1.0)) + rise;
+        let foot = (gap_squared + T::constant((l2 - l3) * (l2 + l3))) / (gap_squared * 2.0);
+        let rise = gap.rotated_left().scaled(area / gap_squared);
+        let from_left_tip = gap.scaled(foot) + rise;
+        let from_right_tip = gap.scaled(foot - T::constant(1.0)) + rise;
         FiveBarPose {
             five_bar: *self,
             left_crank: left,
             right_crank: right,
             left_tip,
             right_tip,
-            left_coupler: left_vector * (1.0 / l2),
-            right_coupler: right_vector * (1.0 / l3),
-            end_point: left_tip + left_vector,
+            left_coupler: from_left_tip * (1.0 / l2),
+            right_coupler: from_right_tip * (1.0 / l3),
+            end_point: left_tip + from_left_tip,
             gap,
             type2: area * (1.0 / (l2 * l3)),
         }

@@ -265,7 +265,7 @@ impl Lizard {
     }
 
     /// The five-bar of an end at four crank directions in servo order (length one, chassis frame), of which only the
-    /// end's own two are used. It is meaningless if the loop does not close: see [`FiveBar::closes`].
+    /// end's own two are used. It is meaningless if the loop does not close: see [`FiveBar::are_loops_closed`].
     #[inline(always)]
     pub fn end_pose_unchecked<T: Real>(&self, end: End, cranks: [Vector<T>; 4]) -> FiveBarPose<T> {
         let [left, right] = end.pick(cranks);
@@ -274,7 +274,7 @@ impl Lizard {
     }
 
     /// The slider of a side at four crank directions in servo order (length one, chassis frame), of which only the
-    /// side's own two are used. It is meaningless if the slider has no direction: see [`Slider::closes`].
+    /// side's own two are used. It is meaningless if the slider has no direction: see [`Slider::are_loops_closed`].
     #[inline(always)]
     pub fn side_pose_unchecked<T: Real>(
         &self,

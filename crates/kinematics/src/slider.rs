@@ -88,7 +88,7 @@ impl Slider {
     /// Returns, for each lane, true if the slider has a direction. For the arms of a lane without one,
     /// [`Slider::close`] returns the fault.
     #[inline(always)]
-    pub fn closes<const N: usize>(&self, pose: &SliderPose<Lanes<N>>) -> [bool; N] {
+    pub fn are_loops_closed<const N: usize>(&self, pose: &SliderPose<Lanes<N>>) -> [bool; N] {
         let (Lanes(d), Lanes(s)) = (pose.d, pose.s);
         let mut is_closed = [false; N];
         for i in 0..N {
@@ -98,7 +98,7 @@ impl Slider {
     }
 
     /// The pose with arms along two unit vectors, without a check that the slider has a direction:
-    /// see [`Slider::closes`]. The compiler leaves out the parts that the caller does not use.
+    /// see [`Slider::are_loops_closed`]. The compiler leaves out the parts that the caller does not use.
     #[inline(always)]
     pub fn pose_unchecked<T: Real>(&self, rear: Vector<T>, front: Vector<T>) -> SliderPose<T> {
         let rear_tip = rear * self.rear_arm;

@@ -32,8 +32,8 @@ pub struct Component {
 pub fn format_verdict(difference: f64) -> String {
     match difference.abs() {
         size if size <= AGREEMENT_LIMIT => "agrees".to_owned(),
-        size if difference > 0.0 => format!("{size:.1} errors more"),
-        size => format!("{size:.1} errors less"),
+        size if difference > 0.0 => format!("{size:.1} std. errors more"),
+        size => format!("{size:.1} std. errors less"),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The range of a prediction when one assumption at a time is moved to an end of its plausible range.
 
-use lizard_robot::{CheckedGait, MovementRange, Robot};
+use lizard_robot::{CheckedGait, DisplacementRange, Robot};
 use serde::Serialize;
 
 use crate::component::COMPONENT_LABELS;
@@ -29,12 +29,12 @@ pub(crate) struct PredictionRange {
 impl PredictionRange {
     /// Computes the range of a gait's prediction. `pace` is a multiple of the gait's nominal pace.
     pub(crate) fn compute(robot: &Robot, gait: &CheckedGait, pace: f64) -> Self {
-        let movement_range = MovementRange::compute(robot, gait, pace);
-        let (smallest, largest) = (movement_range.min, movement_range.max);
+        let displacement_range = DisplacementRange::compute(robot, gait, pace);
+        let (smallest, largest) = (displacement_range.min, displacement_range.max);
         Self {
-            component: COMPONENT_LABELS[if movement_range.is_turn { 2 } else { 0 }],
-            min: smallest.movement,
-            max: largest.movement,
+            component: COMPONENT_LABELS[if displacement_range.is_turn { 2 } else { 0 }],
+            min: smallest.displacement,
+            max: largest.displacement,
             min_assumption: smallest.assumption,
             max_assumption: largest.assumption,
         }

@@ -183,7 +183,7 @@ impl LargestDeviation {
         let (name, unit) = self.component.split_once(", ").unwrap_or_default();
         format!(
             "path within a cycle {verdict}: largest deviation in {point_count} phases {:+.2} {unit} {name} at \
-             phase {:.2}, {:.1} errors\n",
+             phase {:.2}, {:.1} std. errors\n",
             self.difference,
             self.phase,
             self.standardised_difference.abs()

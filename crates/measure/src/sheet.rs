@@ -29,7 +29,7 @@ const INSTRUCTIONS: [&str; 9] = [
     "3. Tape the strips flat on the floor, one on either side of the robot's path, 30 to 40 cm apart and",
     "    roughly parallel to the path. Their exact positions do not matter.",
     "4. Glue the card to stiff cardboard, and the cardboard to the board: the tag's centre above the robot's",
-    "    centre, the arrow toward the head. Measure the tag's height above the floor for --height.",
+    "    centre, the arrow towards the head. Measure the tag's height above the floor for --height.",
     "5. Record from above with a camera that stands still and sees all five tags the whole time. Start before",
     "    the robot moves, and record five to ten cycles of one gait.",
 ];

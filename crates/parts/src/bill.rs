@@ -391,7 +391,7 @@ const PADS_TEXT: &str = "Print all four pads in TPU (95A) from one roll: the fla
                     edges catch on sharp terraces, so smooth each dome with a thin film of flexible glue or silicone, and leave its hole open.";
 
 /// The guide's text about the servos.
-const SERVOS_TEXT: &str = "Use plain analog servos, all four of one make. According to the model, digital servos lose \
+const SERVOS_TEXT: &str = "Use plain analogue servos, all four of one make. According to the model, digital servos lose \
                      13 % of `walk`'s distance, and servos with a light rotor more than half.";
 
 /// Formats items to buy as a Markdown table.

@@ -31,8 +31,8 @@ pub struct Part {
     pub is_flexible: bool,
     /// Name of the part that this part may replace; `None` for a part of the robot itself.
     pub replaces: Option<String>,
-    /// Engraved digits: the numbers of the part's servos, such as `13` for A1 and A3. Empty if no other part's
-    /// name begins with the same noun.
+    /// Engraved digits: the numbers of the part's servos, such as `13` for A1 and A3. Empty for
+    /// spacers, and if no other part's name begins with the same noun.
     pub mark: String,
 }
 

@@ -76,7 +76,7 @@ impl SpringEffect {
             preload_torque: strut.preload * lever_arm_range[0],
             lag_range,
             torque_range,
-            friction_torque: ground.mean_friction_force() * ground.feet.reach,
+            friction_torque: ground.mean_friction_force() * ground.legs.reach,
             stall_torque: robot.motors().per_servo[0].stall_torque,
         })
     }

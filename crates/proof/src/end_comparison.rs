@@ -64,7 +64,7 @@ impl<'a> EndComparison<'a> {
         let mode = AssemblyMode::Ahead;
         let five_bar = &self.float_five_bar;
         let pose = five_bar.pose_unchecked(mode, crank_left, crank_right);
-        let are_closed = five_bar.closes(&pose);
+        let are_closed = five_bar.are_loops_closed(&pose);
         let Lanes(type2) = pose.type2;
         let Lanes(type1_left) = pose.type1_left();
         let Lanes(type1_right) = pose.type1_right();

@@ -11,9 +11,9 @@ pub struct Positions {
     first_sweep: i16,
     /// The angle of each position in the chassis frame, degrees.
     pub degrees: Vec<f64>,
-    /// The crank's direction in the frame of its end, Q15.
+    /// The crank's direction at each position, in the frame of its end, Q15.
     pub guard_directions: Vec<Direction>,
-    /// The crank's direction in the frame of its end, in floating point.
+    /// The crank's direction at each position, in the frame of its end, in floating point.
     pub float_directions: Vec<Vector>,
 }
 

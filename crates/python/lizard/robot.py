@@ -72,7 +72,7 @@ class Robot:
         self._port_error: OSError | None = None
         self._is_connected = False
         self._reset_count = 0
-        # Beginning of the answer that a line that starts a gait waits for; None if no such line waits.
+        # While `go` waits for the answer to its line: how this answer begins. Otherwise None.
         self._awaited_prefix: str | None = None
         # `deadman` before and while this program drives the robot, ms.
         self._own_deadman: int | None = None
@@ -348,24 +348,23 @@ class Robot:
             raise RobotError("this robot is closed")
 
     def _set_deadman(self) -> None:
-        if self._driving_deadman is not None:
-            return
-        own_deadman = self._own_deadman
-        if own_deadman is None:
-            notes = self._send_until_answered("cal")
-            match = re.search(r"^# deadman (\d+)$", "\n".join(notes), re.MULTILINE)
-            if match is None:
-                raise NoAnswer("the answer to `cal` has no `deadman`")
-            own_deadman = int(match[1])
-            if own_deadman == DRIVING_DEADMAN:
-                own_deadman = 0
-            self._own_deadman = own_deadman
-        driving_deadman = min(own_deadman or DRIVING_DEADMAN, DRIVING_DEADMAN)
         while self._driving_deadman is None:
             reset_count = self._reset_count
+            own_deadman = self._own_deadman
+            if own_deadman is None:
+                notes = self._send_until_answered("cal")
+                match = re.search(
+                    r"^# deadman (\d+)$", "\n".join(notes), re.MULTILINE
+                )
+                if match is None:
+                    raise NoAnswer("the answer to `cal` has no `deadman`")
+                own_deadman = int(match[1])
+                if own_deadman == DRIVING_DEADMAN:
+                    own_deadman = 0
+            driving_deadman = min(own_deadman or DRIVING_DEADMAN, DRIVING_DEADMAN)
             self._send_until_answered(f"deadman {driving_deadman}")
             with self._condition:
-                # A reset loses `deadman`, also after the answer.
+                # A reset restores the saved `deadman`, also after the answers.
                 if self._reset_count == reset_count:
                     self._own_deadman = own_deadman
                     self._driving_deadman = driving_deadman

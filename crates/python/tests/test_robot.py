@@ -101,23 +101,23 @@ def test_a_robot_that_was_reset_just_before_a_gait_walks_with_deadman(
     assert (robot.is_going, read_deadman(robot)) == (True, 901)
 
 
-def test_a_robot_that_was_reset_just_after_its_answer_to_deadman_walks_with_deadman(
-    robot, monkeypatch
-):
+def test_deadman_is_set_again_after_a_reset_just_after_its_answer(robot, monkeypatch):
+    robot.send("deadman 700")
     send = robot._send_until_answered
 
     def send_before_reset(line: str) -> list[str]:
         answer = send(line)
-        if line == "deadman 901" and robot._reset_count == 0:
+        if line == "deadman 700" and robot._reset_count == 0:
             robot._port.board.reset()
             while robot._reset_count == 0:
                 time.sleep(0.01)
         return answer
 
     monkeypatch.setattr(robot, "_send_until_answered", send_before_reset)
-    # The line after `deadman` starts the gait.
+    # Without a gait, because the lines that keep a gait alive would also set `deadman`.
     robot._set_deadman()
-    assert read_deadman(robot) == 901
+    # The reset has restored the saved value, 0.
+    assert (robot._own_deadman, read_deadman(robot)) == (0, 901)
 
 
 def test_stop_restores_deadman_even_if_the_robot_rests_already(robot):

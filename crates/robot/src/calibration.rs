@@ -236,7 +236,10 @@ impl Calibration {
         let root = Table::root(document, &["format", "boot", "deadman", "servo"])?;
         let boot = root.text("boot")?;
         if !is_gait_name(boot) {
-            return Err(root.error("boot", "must be the name of a gait, or \"rest\""));
+            return Err(root.error(
+                "boot",
+                "must be the name of a gait or a routine, or \"rest\"",
+            ));
         }
         let deadman = root.number("deadman", (0.0, f64::from(MAX_DEADMAN_MS)), "ms")?;
         if deadman.fract() != 0.0 {

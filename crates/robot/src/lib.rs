@@ -51,12 +51,13 @@ pub use config::{
 pub use file::{Error, MAX_FILE_BYTES, edit, explain_mistake};
 pub use gaits::{Bars, Harmonic, Path, PathLeg, Routine, Stride, Waveform, to_command};
 pub use lizard_contact::{
-    Body, BodyPose, Contacts, DEFAULT_FRICTION, Drive, DriveKind, Feet, GRAVITY, GroundContact,
-    JointFriction, Motor, Motors, Prediction, SLOT_LENGTH, Stance, Strut, Travel, Walker,
+    Body, BodyPose, Contacts, DEFAULT_FRICTION, Drive, DriveKind, GRAVITY, GroundContact,
+    JointFriction, LegGeometry, Motor, Motors, Prediction, SLOT_LENGTH, Stance, Strut, Travel,
+    Walker,
 };
 pub use reports::violations;
 pub use reports::{
-    Assumptions, DriveEffect, Extreme, GaitRow, MovementRange, OPEN_INPUTS_NOTE, PACES_PERCENT,
+    Assumptions, DisplacementRange, DriveEffect, Extreme, GaitRow, OPEN_INPUTS_NOTE, PACES_PERCENT,
     Report, RoutineRow, Sensitivity, ServoTable, UNDETERMINED_NOTE, plausible_range,
 };
 pub use robot::Robot;

@@ -423,7 +423,7 @@ fn read_name<'a>(root: &Table<'a>) -> ReadResult<&'a str> {
     let is_allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     if name.is_empty() || name.len() > MAX_NAME_BYTES || !name.chars().all(is_allowed) {
         let message =
-            format!("must be at most {MAX_NAME_BYTES} lower-case letters, digits and dashes");
+            format!("must be at most {MAX_NAME_BYTES} lower-case letters, digits and hyphens");
         return Err(Error::new("name", message));
     }
     Ok(name)

@@ -107,7 +107,7 @@ static uint64_t next_edge(const struct adc *adc, uint64_t cycle)
 static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
 	struct adc *adc = param;
-	uint64_t cycle = instruction_effect_cycle(adc->interrupts->instruction);
+	uint64_t cycle = instruction_store_cycle(adc->interrupts->instruction);
 	uint8_t old = avr->data[address];
 	uint8_t control = value & (ADEN | ADATE | ADIE | ADPS);
 	control |= (old & ADIF & ~value) | (old & ADSC);
@@ -131,7 +131,7 @@ static void write_channel(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 	uint8_t old = avr->data[address] & MUX;
 	if (old != (value & MUX)) {
 		adc->previous_mv = channel_mv(adc, old);
-		adc->selected_at = instruction_effect_cycle(adc->interrupts->instruction);
+		adc->selected_at = instruction_store_cycle(adc->interrupts->instruction);
 	}
 	avr->data[address] = value & (REFS | ADLAR | MUX);
 }

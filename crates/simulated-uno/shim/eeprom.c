@@ -99,7 +99,7 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 {
 	struct eeprom *eeprom = param;
 	const struct instruction *instruction = eeprom->interrupts->instruction;
-	uint64_t cycle = instruction_effect_cycle(instruction);
+	uint64_t cycle = instruction_store_cycle(instruction);
 	uint8_t touched = instruction_touched_bits(instruction);
 	uint8_t ones = value & touched;
 	bool is_armed = cycle <= eeprom->armed_until;

@@ -17,7 +17,7 @@ void instruction_run(struct instruction *instruction)
 	instruction->is_executing = false;
 }
 
-uint64_t instruction_effect_cycle(const struct instruction *instruction)
+uint64_t instruction_store_cycle(const struct instruction *instruction)
 {
 	const avr_t *avr = instruction->avr;
 	if (!instruction->is_executing)

@@ -4,10 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define INITIAL_CAPACITY 1024 /* items */
+
 void list_push(struct list *list, const void *item)
 {
 	if (list->count == list->capacity) {
-		list->capacity = list->capacity ? list->capacity * 2 : 1024;
+		list->capacity = list->capacity ? list->capacity * 2 : INITIAL_CAPACITY;
 		list->items = realloc(list->items, list->capacity * list->item_size);
 		if (!list->items)
 			abort();

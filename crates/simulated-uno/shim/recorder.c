@@ -14,7 +14,7 @@ static void on_pin(struct avr_irq_t *irq, uint32_t value, void *param)
 	if (level == !!(recorder->levels & bit))
 		return;
 	recorder->levels ^= bit;
-	uint64_t cycle = instruction_effect_cycle(recorder->instruction);
+	uint64_t cycle = instruction_store_cycle(recorder->instruction);
 	list_push(&recorder->edges, &(struct edge){ cycle, pin->number, level });
 }
 
@@ -22,7 +22,7 @@ static void on_mark(avr_t *avr, avr_io_addr_t address, uint8_t value, void *para
 {
 	struct recorder *recorder = param;
 	avr->data[address] = value;
-	uint64_t cycle = instruction_effect_cycle(recorder->instruction);
+	uint64_t cycle = instruction_store_cycle(recorder->instruction);
 	list_push(&recorder->marks, &(struct mark){ cycle, value });
 }
 

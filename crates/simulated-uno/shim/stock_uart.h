@@ -11,13 +11,13 @@
 #include "list.h"
 
 struct stock_uart {
-	avr_uart_t *uart;                       /* simavr's USART0 */
-	const struct instruction *instruction;  /* gives the cycle of a transmitted byte */
+	avr_uart_t *simavr_uart;                /* simavr's USART0 */
+	const struct instruction *instruction;  /* gives the cycle at which a byte is transmitted */
 	struct serial_record *transmitted;       /* record of the transmitted bytes */
 };
 
 /* Switches off simavr's pauses and its echo to stdout, and records the transmitted bytes. */
-void stock_uart_attach(struct stock_uart *stock, const struct instruction *instruction,
+void stock_uart_attach(struct stock_uart *uart, const struct instruction *instruction,
                        struct serial_record *transmitted);
 /* Returns a receiver that passes the sender's bytes to this UART. */
-struct receiver stock_uart_receiver(struct stock_uart *stock);
+struct receiver stock_uart_receiver(struct stock_uart *uart);

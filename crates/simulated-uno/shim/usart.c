@@ -45,7 +45,7 @@ static void update_receive_flags(struct usart *usart)
 	if (usart->has_overrun)
 		*status |= DOR;
 	if (usart->received_count) {
-		avr_raise_interrupt(avr, &usart->stock->uart->rxc); /* sets RXC */
+		avr_raise_interrupt(avr, &usart->stock->simavr_uart->rxc); /* sets RXC */
 		*status |= RXC; /* also if the interrupt was already pending */
 	}
 }
@@ -87,7 +87,7 @@ static uint8_t read_data(avr_t *avr, avr_io_addr_t addr, void *param)
 	for (int i = 0; i < usart->received_count; i++)
 		usart->received[i] = usart->received[i + 1];
 	usart->has_overrun = false;
-	usart->stock->uart->rxc.pending = 0;
+	usart->stock->simavr_uart->rxc.pending = 0;
 	interrupts_request_check(usart->interrupts);
 	update_receive_flags(usart);
 	avr->data[REG_UDR0] = byte;
@@ -101,11 +101,11 @@ static avr_cycle_count_t finish_frame(avr_t *avr, avr_cycle_count_t when, void *
 	if (usart->has_waiting_byte) {
 		usart->sent_byte = usart->waiting_byte;
 		usart->has_waiting_byte = false;
-		avr_raise_interrupt(avr, &usart->stock->uart->udrc);
+		avr_raise_interrupt(avr, &usart->stock->simavr_uart->udrc);
 		return when + FRAME_BITS * usart_cycles_per_bit(avr);
 	}
 	usart->is_sending = false;
-	avr_raise_interrupt(avr, &usart->stock->uart->txc);
+	avr_raise_interrupt(avr, &usart->stock->simavr_uart->txc);
 	return 0;
 }
 
@@ -123,7 +123,7 @@ static void write_data(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *para
 		usart->waiting_byte = value;
 		usart->has_waiting_byte = true;
 		avr->data[REG_UCSR0A] &= ~UDRE;
-		usart->stock->uart->udrc.pending = 0;
+		usart->stock->simavr_uart->udrc.pending = 0;
 	}
 }
 
@@ -133,7 +133,7 @@ static void write_status(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *pa
 	uint8_t *status = &avr->data[REG_UCSR0A];
 	if (value & TXC) {
 		*status &= ~TXC;
-		usart->stock->uart->txc.pending = 0;
+		usart->stock->simavr_uart->txc.pending = 0;
 	}
 	*status = (*status & ~(U2X | MPCM)) | (value & (U2X | MPCM));
 }

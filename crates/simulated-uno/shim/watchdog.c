@@ -64,7 +64,7 @@ static int on_request(avr_io_t *io, uint32_t request, void *param)
 static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
 	struct watchdog *watchdog = param;
-	uint64_t cycle = instruction_effect_cycle(watchdog->interrupts->instruction);
+	uint64_t cycle = instruction_store_cycle(watchdog->interrupts->instruction);
 	uint8_t old = avr->data[address];
 	bool may_change = cycle <= watchdog->change_window_end && !(value & WDCE);
 	uint8_t control = (value & WDIE) | (old & WDIF & ~value);

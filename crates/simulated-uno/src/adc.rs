@@ -24,7 +24,7 @@ impl Uno {
     /// If the pin is not one of A0 to A5.
     pub fn set_analog_mv(&mut self, pin: Pin, mv: u16) {
         let channel = pin.number().checked_sub(Pin::a(0).number());
-        let channel = channel.unwrap_or_else(|| panic!("{pin} is not an analog pin"));
+        let channel = channel.unwrap_or_else(|| panic!("{pin} is not an analogue pin"));
         // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim takes the channel modulo the
         // number of channels.
         unsafe { ffi::uno_set_analog(self.raw, channel, mv) }

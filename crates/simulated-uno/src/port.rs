@@ -7,8 +7,9 @@
 //! The line has the baud rate that a program sets at the port, or 115200 until then. If this rate differs from the
 //! chip's baud rate, each side reads bytes that the other side has not sent.
 //!
-//! The port differs from a cable in two ways. A second opening resets the chip only if all programs had closed the
-//! port. Toggling DTR while the port is open has no effect: programs that try it get `Inappropriate ioctl for device`.
+//! As with a cable on Linux, a second opening resets the chip only if all programs had closed the port. Unlike
+//! with a cable, toggling DTR while the port is open has no effect: programs that try it get `Inappropriate ioctl for
+//! device`.
 //!
 //! ```no_run
 //! use std::time::Duration;
@@ -34,8 +35,8 @@ use crate::{FREQUENCY, Radio, State, Uno, ffi};
 
 /// The time between two updates of the port and the chip, the same as in the UNO's USB chip.
 const UPDATE_PERIOD: Duration = Duration::from_millis(1);
-/// The longest simulated time that the chip catches up after a delay of this program. A longer time could let the
-/// chip's watchdog expire before the program at the port has run.
+/// The most simulated time by which the chip catches up after a delay of this program. With more, the chip's watchdog
+/// could expire before the program at the port has run.
 const MAX_CATCH_UP: Duration = Duration::from_millis(20);
 /// The largest number of bytes on their way to the chip. Further bytes wait in the pseudo terminal, as in the driver of
 /// a USB port.
@@ -60,7 +61,8 @@ impl Port {
     /// Creates a port that no program has open.
     ///
     /// # Errors
-    /// Fails if the system has no pseudo terminals left.
+    /// Fails if the system has no pseudo terminals left. Fails with [`io::ErrorKind::TimedOut`] if a program that was
+    /// started at the same time keeps the port open.
     pub fn new() -> io::Result<Self> {
         Ok(Self {
             pty: Pty::new()?,

@@ -30,7 +30,7 @@ use crate::serial::MAX_BAUD;
 /// The baud rate until a program sets another one.
 const DEFAULT_BAUD: u32 = 115_200;
 /// The longest time between fork and exec of a new process on a busy machine.
-const MAX_START_TIME: Duration = Duration::from_secs(10);
+const MAX_EXEC_DELAY: Duration = Duration::from_secs(10);
 
 /// A pseudo terminal. It exists until this value is dropped.
 #[derive(Debug)]
@@ -91,8 +91,8 @@ impl Pty {
         &self.path
     }
 
-    /// Checks the port. Returns true if it has been opened after it was closed. Detects every opening, however short,
-    /// and however short the pause before it.
+    /// Checks the port. Returns true if it has been opened after it was closed. Detects every opening, however short
+    /// the opening or the pause before it, except one that begins and ends within a call that discards unread bytes.
     ///
     /// # Errors
     /// Fails if the system is out of memory.
@@ -152,8 +152,8 @@ impl Pty {
         };
         tcflush(&other_end, QueueSelector::IFlush)?;
         drop(other_end);
-        // A port that was opened only for reading closes without CLOSE_WRITE, which distinguishes this opening from an
-        // opening by a program. If the port is open at the end, a program has opened it.
+        // A port that was opened only for reading closes with CLOSE_NOWRITE, unlike the port of a program that also
+        // writes. If the port is open at the end, a program has opened it.
         let mut was_closed = false;
         wait_until(|| {
             self.read_events(|event| was_closed |= event.contains(ReadFlags::CLOSE_NOWRITE))?;
@@ -203,9 +203,9 @@ fn is_port_open(our_end: &File) -> io::Result<bool> {
     Ok(!fds[0].revents().contains(PollFlags::HUP))
 }
 
-/// Waits until a condition holds, at most [`MAX_START_TIME`]. Returns false if the condition does not hold by then.
+/// Waits until a condition holds, at most [`MAX_EXEC_DELAY`]. Returns false if the condition does not hold by then.
 fn wait_until(mut condition: impl FnMut() -> io::Result<bool>) -> io::Result<bool> {
-    let end = Instant::now() + MAX_START_TIME;
+    let end = Instant::now() + MAX_EXEC_DELAY;
     while !condition()? {
         if Instant::now() > end {
             return Ok(false);

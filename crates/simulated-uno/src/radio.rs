@@ -179,8 +179,8 @@ impl Radio {
         sent_bytes.iter().map(read_byte).collect()
     }
 
-    /// Takes the bytes that the module has received from the chip. Returns the bytes that have arrived at the chip by the
-    /// cycle `now`, and those that have arrived at the phone. Must be called every millisecond of the chip's time.
+    /// Takes the bytes that the module has received from the chip. Returns the bytes that have arrived at the chip by
+    /// the cycle `now`, and those that have arrived at the phone. Must be called every millisecond of the chip's time.
     pub fn pass(&mut self, received: &[u8], now: u64) -> [Vec<u8>; 2] {
         if self.next_link_change.is_some_and(|change| change <= now) {
             return self.toggle_link(now);

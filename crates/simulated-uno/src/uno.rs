@@ -27,8 +27,9 @@ pub enum Fidelity {
 pub enum State {
     /// Running, asleep until an interrupt or a reset, or held in reset by the supply.
     Alive,
-    /// Asleep with interrupts disabled, while neither the watchdog nor the supply is about to reset the chip: only
-    /// [`Uno::reset`], [`Uno::power_cycle`] or a sudden drop of the supply below the brown-out level ends this.
+    /// Asleep with interrupts disabled. With [`Fidelity::DataSheet`], this is the state only if neither the watchdog
+    /// nor a ramp or cut of the supply will reset the chip. [`Uno::reset`] and [`Uno::power_cycle`] end this; with
+    /// [`Fidelity::DataSheet`], so does [`Uno::set_supply_mv`] with a voltage below the brown-out level.
     Halted,
     /// Stopped by an invalid instruction or address.
     Crashed {

@@ -49,10 +49,10 @@ impl Variation {
         let mut rng = Rng::with_seed(seed);
         let mut sample_in = |(low, high): (f64, f64)| low + (high - low) * rng.f64();
         let mut ground = *ground;
-        ground.feet.mount_angle += sample_in((-MAX_MOUNT_SHIFT_DEG, MAX_MOUNT_SHIFT_DEG));
-        ground.feet.hip_forward += sample_in((-MAX_HIP_SHIFT_MM, MAX_HIP_SHIFT_MM));
+        ground.legs.mount_angle += sample_in((-MAX_MOUNT_SHIFT_DEG, MAX_MOUNT_SHIFT_DEG));
+        ground.legs.hip_forward += sample_in((-MAX_HIP_SHIFT_MM, MAX_HIP_SHIFT_MM));
         let hip_side_shift = sample_in((-MAX_HIP_SHIFT_MM, MAX_HIP_SHIFT_MM));
-        for side in &mut ground.feet.hip_side {
+        for side in &mut ground.legs.hip_side {
             *side += hip_side_shift;
         }
         for position in &mut ground.body.centre_of_mass {
@@ -105,7 +105,7 @@ impl Variation {
             let mut run_cycle = || {
                 let start_pose = walker.body_pose();
                 for (_, phase) in gait.frames().skip(1) {
-                    walker.drive(compute_targets(phase).map(Some), FRAME_PERIOD_S, &motors);
+                    walker.run_motors(compute_targets(phase).map(Some), FRAME_PERIOD_S, &motors);
                 }
                 walker.body_pose().travel_from(start_pose)
             };

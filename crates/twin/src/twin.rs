@@ -61,7 +61,9 @@ impl Twin {
             ServoModel::Motors(motors) => {
                 let forward_targets =
                     std::array::from_fn(|i| targets[i].map(|target| FORWARD_TURN_SIGN[i] * target));
-                let contacts = self.walker.drive(forward_targets, FRAME_PERIOD_S, &motors);
+                let contacts = self
+                    .walker
+                    .run_motors(forward_targets, FRAME_PERIOD_S, &motors);
                 let servo_sweeps = self.walker.servo_sweeps();
                 self.sweeps = std::array::from_fn(|i| FORWARD_TURN_SIGN[i] * servo_sweeps[i]);
                 contacts
@@ -98,8 +100,8 @@ impl Twin {
             errors,
             lags: self.walker.lags(),
             feet: ground
-                .feet
-                .positions(self.walker.leg_sweeps())
+                .legs
+                .foot_positions(self.walker.leg_sweeps())
                 .map(|foot| body_pose.to_floor(foot)),
             slips: contacts.slid_distances,
             loads: contacts.loads.map(|fraction| fraction * mean_load),

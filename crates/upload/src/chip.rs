@@ -1,4 +1,4 @@
-//! Board chips, identified by their signatures. An image built for one chip type may not run on another.
+//! The chips of boards, identified by their signatures. An image for one type of chip may fail on another.
 
 use std::fmt;
 
@@ -10,11 +10,11 @@ impl Chip {
     /// The ATmega328P of an Arduino UNO.
     pub const ATMEGA328P: Self = Self([0x1e, 0x95, 0x0f]);
 
-    /// The chip type with its article; `None` if the signature is not in the list.
-    fn description(self) -> Option<&'static str> {
+    /// The type's name with its article; `None` if the signature is unknown.
+    fn name_with_article(self) -> Option<&'static str> {
         Some(match self.0 {
             [0x1e, 0x95, 0x0f] => "an ATmega328P",
-            [0x1e, 0x95, 0x14] => "an ATmega328, not an ATmega328P",
+            [0x1e, 0x95, 0x14] => "an ATmega328 without P",
             [0x1e, 0x95, 0x16] => "an ATmega328PB",
             [0x1e, 0x94, 0x06] => "an ATmega168",
             [0x1e, 0x94, 0x0b] => "an ATmega168P",
@@ -28,7 +28,7 @@ impl Chip {
 impl fmt::Display for Chip {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [a, b, c] = self.0;
-        let description = self.description().unwrap_or("of an unknown type");
+        let description = self.name_with_article().unwrap_or("of an unknown type");
         write!(f, "{description} (signature {a:02X} {b:02X} {c:02X})")
     }
 }

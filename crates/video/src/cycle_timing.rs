@@ -31,14 +31,15 @@ const MAX_MISFIT_FRACTION: f64 = 0.5;
 /// Smallest squared difference between the movements of two consecutive cycles that counts as a change, as a fraction
 /// of the mean of both movements' squares.
 const MIN_CHANGE_FRACTION: f64 = 0.15;
-/// Smallest scale of a prediction with which the gait is compared: on a real floor, a robot may move half as far as
-/// predicted.
-const MIN_SCALE: f64 = 0.5;
+/// Range of the scale of a prediction with which a path is compared: on a real floor, a robot may move half as far as
+/// predicted, or twice as far. Each pace is compared with the same scales, so only the variation within a cycle
+/// distinguishes the paces.
+pub(crate) const SCALE_RANGE: [f64; 2] = [0.5, 2.0];
 /// Multiples of a cycle's duration with which the path is compared.
-const PERIOD_MULTIPLES: [u32; 3] = [2, 4, 8];
+pub(crate) const PERIOD_MULTIPLES: [u32; 3] = [2, 4, 8];
 /// Largest squared error with another cycle duration at which that duration is accepted, as a fraction of the squared
-/// error with the expected duration. With a multiple of the duration, the squared error must also be below this
-/// fraction of the measured movements' sum of squares.
+/// error with the expected duration. A multiple of the duration is accepted if its misfit is below this fraction of the
+/// misfit with the expected duration, or of 1 if that misfit is larger.
 const MAX_MISFIT_RATIO: f64 = 0.3;
 
 /// The timing of a walk's cycles.
@@ -98,8 +99,7 @@ impl Movements {
         }
         let squared_error = squared_norm(&self.residuals(gait, start, period));
         let (slow_misfit, multiple) = self.misfit_at_best_multiple(gait);
-        if slow_misfit < MAX_MISFIT_RATIO * self.misfit_at(gait, start, period, MIN_SCALE).min(1.0)
-        {
+        if slow_misfit < MAX_MISFIT_RATIO * self.misfit_at(gait, start, period).min(1.0) {
             return Err(VideoError::WrongPace { ratio: multiple });
         }
         let squares = |(time, measured): &(f64, [f64; 3])| {
@@ -145,15 +145,15 @@ impl Movements {
     /// Computes the misfit of a gait: the squared difference between measured and predicted movements, as a fraction of
     /// the measured movements' squares, for the cycle start, the duration and the scale of the prediction that fit best.
     pub(crate) fn compute_misfit(&self, gait: &Gait) -> f64 {
-        self.compute_misfit_with_periods(gait, gait.period, &likely_periods(gait), MIN_SCALE)
+        self.compute_misfit_with_periods(gait, gait.period, &likely_periods(gait))
     }
 
-    /// Computes the misfit of a gait with cycles of several times their usual duration. Returns the smallest misfit and
-    /// its multiple of the duration.
+    /// Computes the misfit of a gait with cycles of several times their usual duration, for the cycle start and the scale
+    /// of the prediction that fit best. Returns the smallest misfit and its multiple of the duration.
     pub(crate) fn misfit_at_best_multiple(&self, gait: &Gait) -> (f64, u32) {
         let misfits = PERIOD_MULTIPLES.map(|multiple| {
             let period = f64::from(multiple) * gait.period;
-            let misfit = self.compute_misfit_with_periods(gait, period, &[period], 1.0);
+            let misfit = self.compute_misfit_with_periods(gait, period, &[period]);
             (misfit, multiple)
         });
         let best = misfits.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
@@ -161,21 +161,15 @@ impl Movements {
     }
 
     /// Computes the misfit of a gait for cycle starts within `period`, cycle durations in `periods`, and scales of the
-    /// prediction from `min_scale` to 1.
-    fn compute_misfit_with_periods(
-        &self,
-        gait: &Gait,
-        period: f64,
-        periods: &[f64],
-        min_scale: f64,
-    ) -> f64 {
-        let misfit = |start: f64, period: f64| self.misfit_at(gait, start, period, min_scale);
+    /// prediction in [`SCALE_RANGE`].
+    fn compute_misfit_with_periods(&self, gait: &Gait, period: f64, periods: &[f64]) -> f64 {
+        let misfit = |start: f64, period: f64| self.misfit_at(gait, start, period);
         self.minimise(period, periods, misfit).0
     }
 
-    /// Computes the misfit of a gait for a cycle start, a cycle duration, and the scale of the prediction from
-    /// `min_scale` to 1 that fits best.
-    fn misfit_at(&self, gait: &Gait, start: f64, period: f64, min_scale: f64) -> f64 {
+    /// Computes the misfit of a gait for a cycle start, a cycle duration, and the scale of the prediction in
+    /// [`SCALE_RANGE`] that fits best.
+    fn misfit_at(&self, gait: &Gait, start: f64, period: f64) -> f64 {
         let (mut products, mut squares) = (0.0, 0.0);
         for (time, measured) in &self.movements {
             let phase = (time - start) / period;
@@ -184,7 +178,7 @@ impl Movements {
             products += axis_products.iter().sum::<f64>();
             squares += movement_length(predicted).powi(2);
         }
-        let scale = (products / squares).clamp(min_scale, 1.0);
+        let scale = (products / squares).clamp(SCALE_RANGE[0], SCALE_RANGE[1]);
         1.0 - scale * (2.0 * products - scale * squares) / self.sum_of_squares()
     }
 

@@ -1,15 +1,17 @@
 //! The gait that a walk shows, if it is unambiguous.
 //!
-//! The movements over quarters of a cycle are compared with each gait's predictions for the cycle start and duration
-//! that fit best. Since every robot differs from its prediction, a good fit alone is no proof: the second best gait
-//! must fit much worse according to the F-test for two variances.
+//! The movements over quarters of a cycle are compared with each gait's predictions for the cycle start, the duration
+//! and the scale that fit best. Since every robot differs from its prediction, a good fit alone is no proof: the second
+//! best gait must fit much worse according to the F-test for two variances.
 
+use crate::cycle_timing::PERIOD_MULTIPLES;
 use crate::cycles;
 use crate::gait::Gait;
 use crate::path::PathPoint;
 use crate::video_error::VideoError;
 
-/// Largest misfit of an accepted gait: the misfit of a robot that moves a third as far, or twice as far, as predicted.
+/// Largest misfit of an accepted gait: the misfit of a robot that moves a third as far, or four times as far, as
+/// predicted.
 const MAX_MISFIT: f64 = 0.25;
 /// Smallest ratio of the second best gait's misfit to the best gait's: the 1 % critical value of Fisher's F if both
 /// variances come from four quarters of a cycle on three axes.
@@ -45,7 +47,20 @@ pub(crate) fn match_gait(path: &[PathPoint], gaits: &[Gait]) -> GaitMatch {
                     (best_slow_misfit, pace_ratio) = (slow_misfit, multiple);
                 }
             }
-            Err(error) => first_error = first_error.or(Some(error)),
+            Err(error) => {
+                first_error = first_error.or(Some(error));
+                // At a slow pace, the cycles may look uneven at the usual duration.
+                for multiple in PERIOD_MULTIPLES {
+                    let mut slow_gait = gait.clone();
+                    slow_gait.period *= f64::from(multiple);
+                    if let Ok((_, _, movements)) = cycles::select_even_walk(path, &slow_gait) {
+                        let slow_misfit = movements.compute_misfit(&slow_gait);
+                        if slow_misfit < best_slow_misfit {
+                            (best_slow_misfit, pace_ratio) = (slow_misfit, multiple);
+                        }
+                    }
+                }
+            }
         }
     }
     fits.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -17,7 +17,8 @@ pub struct Mean {
     pub value: f64,
     /// Standard deviation of single cycles.
     pub standard_deviation: f64,
-    /// Standard error of the mean: the true value is within two of them with a probability of 95 %.
+    /// Standard error of the mean: the true value is within two standard errors of `value` with a probability of
+    /// 95 %.
     pub standard_error: f64,
     /// The part of the standard error that more cycles do not reduce: the errors of camera, clock and ruler.
     pub systematic_error: f64,

@@ -26,7 +26,7 @@ const VISITED_POSES: [(f64, bool); 19] = [
     (0.0, true), (15.0, true), (30.0, true), (15.0, true), (0.0, true),
     (0.0, false), (15.0, false),
 ];
-/// Sizes of the small steps, deg: each is a move from the last visited pose toward neutral, followed by the move back.
+/// Sizes of the small steps, deg: each is a move from the last visited pose towards neutral, followed by the move back.
 const SMALL_STEP_SIZES: [f64; 10] = [0.2, 0.4, 0.6, 0.8, 1.0, 1.25, 1.6, 2.0, 2.5, 3.0];
 
 /// A command to the servo: a pose and a direction.

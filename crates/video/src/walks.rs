@@ -2,6 +2,7 @@
 //!
 //! Within a cycle of a gait, the robot may stand still for a while. Only a longer standstill counts as a rest.
 
+use crate::cycle_timing::SCALE_RANGE;
 use crate::gait::{Gait, MIN_MOVEMENT, movement_in_mm, movement_length};
 use crate::path::PathPoint;
 
@@ -27,7 +28,7 @@ pub(crate) fn find_walks(path: &[PathPoint], min_rest_duration: f64) -> Vec<[f64
             _ => end..end + 1,
         };
         for end in ends.map(|end| end.min(path.len())) {
-            if is_still(&path[first..end]) {
+            if is_still(&path[first..end], MAX_REST_DEVIATION) {
                 is_resting[first..end].fill(true);
             }
         }
@@ -51,7 +52,7 @@ pub(crate) fn find_walks(path: &[PathPoint], min_rest_duration: f64) -> Vec<[f64
 }
 
 /// Returns the smallest duration of a rest between two walks of these gaits, s: longer than any standstill within their
-/// cycles.
+/// cycles, even if the robot moves only half as far as predicted.
 pub fn min_rest_duration(gaits: &[Gait]) -> f64 {
     let longest_seconds = gaits.iter().map(longest_standstill).fold(0.0, f64::max);
     (longest_seconds * MIN_REST_RATIO).max(MIN_REST)
@@ -66,16 +67,18 @@ fn longest_standstill(gait: &Gait) -> f64 {
         pose: gait.pose_at(i as f64 / count as f64),
     };
     let path: Vec<PathPoint> = (0..2 * count).map(point_at).collect();
+    // A robot that moves less far than predicted stays within the deviation of a rest for longer.
+    let max_deviation = MAX_REST_DEVIATION / SCALE_RANGE[0];
     let standstill_from = |first: usize| {
-        let ends =
-            (first + MIN_FRAMES..first + count).take_while(|end| is_still(&path[first..*end]));
+        let ends = (first + MIN_FRAMES..first + count)
+            .take_while(|end| is_still(&path[first..*end], max_deviation));
         ends.last().map_or(0.0, |end| seconds_at(end - 1 - first))
     };
     (0..count).map(standstill_from).fold(0.0, f64::max)
 }
 
-/// True if the poses scatter no more than while a robot rests.
-fn is_still(path: &[PathPoint]) -> bool {
+/// True if the poses scatter by less than `max_deviation`, mm (root mean square).
+fn is_still(path: &[PathPoint], max_deviation: f64) -> bool {
     let count = path.len() as f64;
     let movement_to = |point: &PathPoint| movement_in_mm(point.pose.travel_from(path[0].pose));
     let movements: Vec<[f64; 3]> = path.iter().map(movement_to).collect();
@@ -85,8 +88,7 @@ fn is_still(path: &[PathPoint]) -> bool {
         movement_length([0, 1, 2].map(|axis| movement[axis] - mean[axis])).powi(2)
     };
     path.len() >= MIN_FRAMES
-        && (movements.iter().map(squared_deviation).sum::<f64>() / count).sqrt()
-            < MAX_REST_DEVIATION
+        && (movements.iter().map(squared_deviation).sum::<f64>() / count).sqrt() < max_deviation
 }
 
 /// True if the robot moves away from its first pose.

@@ -58,7 +58,7 @@ struct ScenarioRun<'a> {
 #[must_use]
 pub fn run_scenario(image: &Image, robot: &Robot, scenario: &Scenario) -> Record {
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
-    supplies::connect(&mut uno, robot);
+    supplies::connect_healthy_robot(&mut uno, robot);
     uno.set_boot_loader(scenario.has_boot_loader);
     uno.set_noise_seed(scenario.number);
     let mut run = ScenarioRun {

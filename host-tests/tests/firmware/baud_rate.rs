@@ -14,7 +14,8 @@ use crate::{
 pub const GARBLED_ANSWER: &str = "err 1 the line was garbled; send it again";
 
 /// The baud rates, each with the number of `status` lines until the first answer after a cold start. One line is lost
-/// at each rate that the robot tries first, and one more because the robot receives only part of it.
+/// at each rate that the robot tries before the right one. One more is reported as garbled, because its start may have
+/// arrived at the previous rate.
 const BAUD_RATES: [(f64, u32); 4] = [(115_200.0, 1), (57_600.0, 3), (38_400.0, 4), (9_600.0, 5)];
 
 /// Sends `status` until the robot answers, and returns the number of lines sent.
@@ -28,10 +29,11 @@ pub fn ask_until_answered(bench: &mut FirmwareBench) -> u32 {
             return sent_count;
         }
     }
-    panic!("no answer at any rate");
+    panic!("no answer to 40 `status` lines");
 }
 
-/// Checks that the robot answers the first line, a second after an event that followed communication at `baud`.
+/// Waits a second after `event`, and checks that the robot answers the first line; `baud` was the rate before the
+/// event.
 fn assert_answered_at_once(bench: &mut FirmwareBench, baud: f64, event: &str) {
     bench.run_ms(1_000);
     assert_eq!(ask_until_answered(bench), 1, "{baud} baud, {event}");
@@ -51,7 +53,7 @@ fn boot_at(baud: f64) -> FirmwareBench {
 fn a_robot_finds_each_baud_rate_within_a_few_lines() {
     // Stock simavr delivers every byte at any rate, so only the corrected simulation can test this.
     for (baud, expected_line_count) in BAUD_RATES {
-        // The senders are slow, exact and fast.
+        // A slow, an exact and a fast sender.
         for factor in [0.985, 1.0, 1.02] {
             let mut bench = boot_to_stand(Fidelity::DataSheet);
             bench.uno.set_baud(baud * factor);
@@ -63,11 +65,12 @@ fn a_robot_finds_each_baud_rate_within_a_few_lines() {
 }
 
 #[test]
-fn a_command_at_another_rate_is_reported_as_garbled_and_not_executed() {
+fn a_short_command_at_an_unconfirmed_rate_is_reported_as_garbled_and_not_executed() {
     let mut bench = boot_to_stand(Fidelity::DataSheet);
     bench.uno.set_baud(9_600.0);
     let line_count = bench.lines().len();
     for _ in 0..12 {
+        // `cal` is too short to confirm a guessed rate.
         bench.uno.send(b"cal\n");
         bench.run_ms(350);
     }
@@ -110,7 +113,7 @@ fn a_reset_or_power_on_restores_115_200_baud_and_a_hang_keeps_the_rate() {
 }
 
 #[test]
-fn the_baud_rate_search_moves_no_pulse_by_a_cycle() {
+fn the_baud_rate_search_moves_no_pulse_edge() {
     run_in_both_simulations(|fidelity| {
         let [undisturbed_edges, disturbed_edges] = [false, true].map(|is_disturbed| {
             let mut bench = boot_to_walk(fidelity);

@@ -170,7 +170,7 @@ fn a_stuck_button_or_a_short_press_starts_nothing() {
 }
 
 #[test]
-fn stop_rest_reset_hang_or_weak_supply_end_the_patrol_and_no_press_restarts_it() {
+fn stop_rest_reset_hang_or_low_supply_end_the_patrol_and_no_press_restarts_it() {
     for start_patrol in [start_waiting_patrol, start_walking_patrol] {
         type Event = fn(&mut FirmwareBench);
         let events: [(&str, Event); 5] = [
@@ -184,7 +184,7 @@ fn stop_rest_reset_hang_or_weak_supply_end_the_patrol_and_no_press_restarts_it()
                 bench.uno.stall_main(270 * CYCLES_PER_MS);
                 bench.uno.run_ms(4_000);
             }),
-            ("a weak supply", |bench| {
+            ("a low supply", |bench| {
                 bench.uno.set_supply_mv(3_850.0);
                 bench.run_ms(500);
                 bench.uno.set_supply_mv(5_000.0);

@@ -8,13 +8,15 @@ use crate::measurements::peek_word;
 use crate::pulses::servo_edges;
 use crate::run_in_both_simulations;
 
-/// Data addresses of registers, data sheet, section 30.
+/// Data addresses of registers (data sheet, register summary).
 const TCCR1A: u16 = 0x80;
 const TCCR1B: u16 = 0x81;
 const TCNT1: u16 = 0x84;
 const OCR1A: u16 = 0x88;
 const SMCR: u16 = 0x53;
 const PORTS: [u16; 3] = [0x25, 0x28, 0x2b];
+/// Value of OCR1A: the last count of a servo's slot of 4 ms.
+const TOP: u16 = 63_999;
 
 /// Powers on the board and sets these registers.
 fn power_on_with(register_values: &[(u16, u8)], fidelity: Fidelity) -> FirmwareBench {
@@ -39,9 +41,9 @@ fn a_timer_that_was_left_running_changes_no_edge() {
     run_in_both_simulations(|fidelity| {
         let cold_edges = record_edges_with(&[], fidelity);
         assert!(cold_edges.len() > 100);
-        for clock in 1..=5 {
-            let running_edges = record_edges_with(&[(TCCR1B, clock)], fidelity);
-            assert_eq!(running_edges, cold_edges, "TCCR1B = {clock}");
+        for clock_select in 1..=5 {
+            let running_edges = record_edges_with(&[(TCCR1B, clock_select)], fidelity);
+            assert_eq!(running_edges, cold_edges, "TCCR1B = {clock_select}");
         }
         // 8-bit fast PWM, in which the timer uses a new value of OCR1A only after the end of its cycle.
         let pwm_edges = record_edges_with(&[(TCCR1A, 1), (TCCR1B, 0x0a)], fidelity);
@@ -56,10 +58,10 @@ fn the_timer_is_stopped_during_its_setup_and_starts_at_zero() {
     run_in_both_simulations(|fidelity| {
         let register_values = [(TCCR1B, 1), (TCNT1 + 1, 0x12), (TCNT1, 0x34)];
         let mut bench = power_on_with(&register_values, fidelity);
-        let is_top_set = |uno: &Uno| peek_word(uno, OCR1A) == 63_999;
+        let is_top_set = |uno: &Uno| peek_word(uno, OCR1A) == TOP;
         assert!(bench.uno.run_until(100_000, 1, is_top_set));
-        let clock = bench.uno.peek(TCCR1B) & 7;
-        assert_eq!(clock, 0, "the timer counts during its setup");
+        let clock_select = bench.uno.peek(TCCR1B) & 7;
+        assert_eq!(clock_select, 0, "the timer counts during its setup");
         assert!(bench.uno.run_until(1_000, 1, |uno| uno.peek(TCCR1B) != 0));
         assert_eq!(peek_word(&bench.uno, TCNT1), 0);
         // The mode is clear on compare match with OCR1A, without a prescaler.
@@ -69,7 +71,7 @@ fn the_timer_is_stopped_during_its_setup_and_starts_at_zero() {
 
 #[test]
 fn main_sleeps_in_idle_mode() {
-    // The simulation has only one sleep mode, so the test reads the register. Idle mode is 000 (data sheet, 10.2); the
+    // The simulation has only one sleep mode, so the test reads the register. Idle mode is 000 (data sheet, 10.3); the
     // last bit enables sleep.
     let bench = FirmwareBench::boot(Fidelity::DataSheet);
     assert_eq!(bench.uno.peek(SMCR), 0b0001);

@@ -79,7 +79,7 @@ fn run_and_digest(name: &str) -> (u64, u64) {
     let frame_count = 600 * FRAMES_PER_SECOND;
     let robot = load_named_robot(name);
     let mut uno = Uno::with_image(FirmwareBench::image_with(&robot), Fidelity::DataSheet);
-    supplies::connect(&mut uno, &robot);
+    supplies::connect_healthy_robot(&mut uno, &robot);
     let pins = servo_pins(&robot);
     // Times are relative to the first pulse, because the time of the first pulse depends on the code.
     let has_risen = uno.run_until(500 * CYCLES_PER_MS, 1_000, |uno| uno.is_high(pins[0]));
@@ -144,7 +144,7 @@ fn the_pulses_of_every_robot_match_its_record() {
     ];
     // The first robot is the robot under test.
     let file_robots = load_robots_from_files().into_iter().skip(1);
-    let files: Vec<String> = file_robots.map(|named| named.name).collect();
+    let files: Vec<String> = file_robots.map(|named_robot| named_robot.name).collect();
     assert_eq!(
         files,
         recorded.map(|(name, _)| format!("{name}.toml")),

@@ -120,8 +120,8 @@ impl<'a> CheckedRobot<'a> {
     }
 
     /// Powers on a robot and waits until it stands.
-    pub fn power_on_and_stand(named: &'a NamedRobot) -> Self {
-        let mut checked_robot = Self::power_on(named);
+    pub fn power_on_and_stand(named_robot: &'a NamedRobot) -> Self {
+        let mut checked_robot = Self::power_on(named_robot);
         checked_robot.run_frames(WAKING_FRAMES + 1);
         checked_robot
     }
@@ -300,15 +300,19 @@ pub fn check_running_gaits(
     mut check: impl FnMut(&NamedRobot, &CheckedGait, &mut CheckedRobot),
 ) {
     let (mut walked_count, mut blocked_count) = (0, 0);
-    for named in robots() {
-        for gait in &named.robot.gaits()[first_gait..] {
-            let mut checked_robot = CheckedRobot::power_on_and_stand(named);
+    for named_robot in robots() {
+        for gait in &named_robot.robot.gaits()[first_gait..] {
+            let mut checked_robot = CheckedRobot::power_on_and_stand(named_robot);
             checked_robot.expect_ok(&gait.command());
             if checked_robot.settle() {
-                check(named, gait, &mut checked_robot);
+                check(named_robot, gait, &mut checked_robot);
                 walked_count += 1;
             } else {
-                println!("{}: the path to {} is blocked", named.name, gait.name());
+                println!(
+                    "{}: the path to {} is blocked",
+                    named_robot.name,
+                    gait.name()
+                );
                 blocked_count += 1;
             }
         }

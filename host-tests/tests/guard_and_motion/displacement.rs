@@ -19,9 +19,13 @@ fn pulses_to_angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
 /// Simulates one cycle of a gait at a speed in percent, and returns the robot's displacement due to the core's pulses;
 /// `None` if the guard stops the robot on its path to the gait's first pose. The cycle begins at the frame whose phase
 /// is nearest to 0.
-fn simulate_cycle(named: &NamedRobot, gait: &CheckedGait, speed_percent: f64) -> Option<Travel> {
-    let robot = &named.robot;
-    let mut checked_robot = CheckedRobot::power_on_and_stand(named);
+fn simulate_cycle(
+    named_robot: &NamedRobot,
+    gait: &CheckedGait,
+    speed_percent: f64,
+) -> Option<Travel> {
+    let robot = &named_robot.robot;
+    let mut checked_robot = CheckedRobot::power_on_and_stand(named_robot);
     checked_robot.expect_ok(&format!("speed {speed_percent}"));
     checked_robot.expect_ok(&gait.command());
     if !checked_robot.settle() {
@@ -78,21 +82,21 @@ fn assert_displacement(name: &str, travel: Travel, tolerance_mm: f64, expected: 
 fn the_pulses_of_every_gait_move_the_robot_like_the_gait_in_floating_point() {
     let mut travel_count = 0;
     // The contact model is slow, so the last five random robots are left out.
-    for named in &robots()[..robots().len() - 5] {
-        for gait in named.robot.gaits() {
+    for named_robot in &robots()[..robots().len() - 5] {
+        for gait in named_robot.robot.gaits() {
             for speed_percent in [100.0, 20.0] {
                 // Random robots are tested only at full speed.
-                if speed_percent < 100.0 && named.name.starts_with("random") {
+                if speed_percent < 100.0 && named_robot.name.starts_with("random") {
                     continue;
                 }
-                let Some(travel) = simulate_cycle(named, gait, speed_percent) else {
+                let Some(travel) = simulate_cycle(named_robot, gait, speed_percent) else {
                     continue;
                 };
                 travel_count += 1;
-                let expected = gait.predict(&named.robot.ground().with_rigid_drive());
-                let name = format!("{}: {} at {speed_percent} %", named.name, gait.name());
+                let expected = gait.predict(&named_robot.robot.ground().with_rigid_drive());
+                let name = format!("{}: {} at {speed_percent} %", named_robot.name, gait.name());
                 // In a robot without symmetry, a tenth of a degree may determine which foot sticks and which slips.
-                let tolerance_mm = 0.01 * named.robot.lizard().links.l10;
+                let tolerance_mm = 0.01 * named_robot.robot.lizard().links.l10;
                 assert_displacement(&name, travel, tolerance_mm, &expected);
             }
         }
@@ -103,7 +107,7 @@ fn the_pulses_of_every_gait_move_the_robot_like_the_gait_in_floating_point() {
 // The tests in crates/robot/ compare the predictions in floating point with independent values.
 #[test]
 fn the_pulses_of_the_papers_gaits_move_the_robot_as_predicted_within_0_3_mm() {
-    let named = NamedRobot {
+    let named_robot = NamedRobot {
         name: "paper.toml".into(),
         robot: paper_robot().clone(),
     };
@@ -112,7 +116,7 @@ fn the_pulses_of_the_papers_gaits_move_the_robot_as_predicted_within_0_3_mm() {
         let expected = gait.predict(&paper_robot().ground().with_rigid_drive());
         predicted_count += usize::from(expected.forward.is_some() && expected.turn.is_some());
         for speed_percent in [100.0, 80.0, 50.0, 20.0] {
-            let travel = simulate_cycle(&named, gait, speed_percent)
+            let travel = simulate_cycle(&named_robot, gait, speed_percent)
                 .expect("the guard does not stop the robot");
             assert_displacement(gait.name(), travel, 0.3, &expected);
         }

@@ -20,9 +20,15 @@ const TABLE_ERROR_DEG: f64 = 0.50;
 
 /// Returns every gait of every robot, in floating point and in fixed point.
 pub fn all_gaits() -> impl Iterator<Item = (&'static NamedRobot, &'static CheckedGait, Gait)> {
-    robots().iter().flat_map(|named| {
-        let gaits = named.robot.gaits().iter();
-        gaits.map(move |gait| (named, gait, named.robot.firmware().gait(gait_id(gait))))
+    robots().iter().flat_map(|named_robot| {
+        let gaits = named_robot.robot.gaits().iter();
+        gaits.map(move |gait| {
+            (
+                named_robot,
+                gait,
+                named_robot.robot.firmware().gait(gait_id(gait)),
+            )
+        })
     })
 }
 
@@ -175,7 +181,7 @@ fn a_path_moves_only_its_own_end_and_averages_to_its_centre() {
     // In the gaits `look` and `wag` of random robots, the path's centre is the end point's position in the neutral
     // pose.
     let mut path_count = 0;
-    let is_random = |named: &&NamedRobot| named.name.contains("random");
+    let is_random = |named_robot: &&NamedRobot| named_robot.name.contains("random");
     for NamedRobot { name, robot } in robots().iter().filter(is_random) {
         for (gait_name, end, other_end) in [
             ("look", End::Head, End::Tail),

@@ -1,5 +1,5 @@
-//! Tests of the transitions between all motions, for every robot. Every frame must be within the limits, and every
-//! command must complete.
+//! Tests of random commands with every robot: every frame is within the limits, and every command completes unless the
+//! guard stops the robot.
 
 use lizard_core::motion::Activity;
 use lizard_host_tests::NamedRobot;
@@ -9,42 +9,47 @@ use crate::checked_robot::{
 };
 use crate::reference::robots_with_rngs;
 
-/// Number of random dialogues with each robot.
+/// Number of random dialogues with each robot in the first test; the second has three times as many.
 const DIALOGUE_COUNT: u64 = 30;
 
 #[test]
-fn no_command_sequence_makes_a_frame_unsafe_too_fast_or_too_sudden() {
-    for (named, mut rng) in robots_with_rngs(1000) {
+fn random_commands_make_no_frame_unsafe_too_fast_or_too_sudden() {
+    for (named_robot, mut rng) in robots_with_rngs(1000) {
         let (mut accepted_count, mut refused_count, mut largest_change) = (0, 0, 0.0f64);
         for _ in 0..DIALOGUE_COUNT {
-            let mut checked_robot = CheckedRobot::power_on(named);
+            let mut checked_robot = CheckedRobot::power_on(named_robot);
             for _ in 0..12 {
-                let answer = checked_robot.say(&random_command(&mut rng, &named.robot));
+                let answer = checked_robot.say(&random_command(&mut rng, &named_robot.robot));
                 match answer.starts_with("ok") {
                     true => accepted_count += 1,
                     false => refused_count += 1,
                 }
+                // Checks every frame.
                 checked_robot.run_frames(rng.u32(..120));
             }
             largest_change = largest_change.max(checked_robot.largest_speed_change);
         }
         println!(
             "{}: {accepted_count} commands accepted, {refused_count} refused; \
-             speed changes by at most {largest_change:.0} of {:.0} deg/s",
-            named.name,
-            max_speed_change(&named.robot)
+             largest speed change {largest_change:.0} deg/s per frame, {:.0} allowed",
+            named_robot.name,
+            max_speed_change(&named_robot.robot)
         );
-        assert!(accepted_count > 100 && refused_count > 0, "{}", named.name);
+        assert!(
+            accepted_count > 100 && refused_count > 0,
+            "{}",
+            named_robot.name
+        );
     }
 }
 
 #[test]
 fn every_command_completes_unless_the_guard_reports_a_hazard() {
-    for (named, mut rng) in robots_with_rngs(2000) {
-        let NamedRobot { name, robot } = named;
+    for (named_robot, mut rng) in robots_with_rngs(2000) {
+        let NamedRobot { name, robot } = named_robot;
         let mut completed_count = 0;
         for _ in 0..3 * DIALOGUE_COUNT {
-            let mut checked_robot = CheckedRobot::power_on(named);
+            let mut checked_robot = CheckedRobot::power_on(named_robot);
             for _ in 0..3 {
                 checked_robot.say(&random_command(&mut rng, robot));
                 checked_robot.run_frames(rng.u32(..60));

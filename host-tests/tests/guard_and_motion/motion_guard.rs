@@ -67,10 +67,10 @@ fn scale_pose(pose: &Pose, fraction_256: i32) -> Pose {
 #[test]
 fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
     let mut held_count = 0;
-    for (named, mut rng) in robots_with_rngs(7000) {
-        let NamedRobot { name, robot } = named;
+    for (named_robot, mut rng) in robots_with_rngs(7000) {
+        let NamedRobot { name, robot } = named_robot;
         for [start_pose, end_pose] in find_pairs_with_unsafe_path(&mut rng, robot) {
-            let mut checked_robot = CheckedRobot::power_on_and_stand(named);
+            let mut checked_robot = CheckedRobot::power_on_and_stand(named_robot);
             let is_at_start = checked_robot.try_pose(&start_pose) && checked_robot.settle();
             if !is_at_start || !checked_robot.try_pose(&end_pose) {
                 continue;

@@ -1,5 +1,5 @@
-//! Reference values: every safety condition of a pose, which lizard-kinematics computes in floating point at the exact
-//! angles of the core's pose, independently of the core.
+//! The reference values of every safety condition of a pose. lizard-kinematics computes them in floating point, at the
+//! exact angles of the core's pose and independently of the core.
 
 use std::fmt;
 
@@ -59,8 +59,8 @@ pub fn exact_width_us(servo: &lizard_robot::servo::Servo, sweep: i32) -> f64 {
 }
 
 /// Returns the exact angles of the core's pose in the chassis frame, deg.
-pub fn chassis_angles_deg(firmware: &CoreRobot, pose: &Pose) -> [f64; 4] {
-    pose.angles(&firmware.neutral_angles()).map(to_degrees)
+pub fn chassis_angles_deg(core_robot: &CoreRobot, pose: &Pose) -> [f64; 4] {
+    pose.angles(&core_robot.neutral_angles()).map(to_degrees)
 }
 
 /// The values of all safety conditions of a pose, computed in floating point, and the guard's tolerances.
@@ -94,23 +94,25 @@ impl Reference {
     /// # Errors
     /// Fails if a five-bar or a side does not close.
     pub fn compute(robot: &Robot, pose: &Pose) -> Result<Self, InfeasiblePose> {
-        let firmware = robot.firmware();
-        let angles = chassis_angles_deg(firmware, pose);
+        let core_robot = robot.firmware();
+        let angles = chassis_angles_deg(core_robot, pose);
         let solution = robot.lizard().solve(&angles.into())?;
-        let k2_values = [solution.head.gap.x, solution.tail.gap.x];
+        let k2_mm = [solution.head.gap.x, solution.tail.gap.x];
         let mut margins = [0.0; 10];
         for (margin, (_, value)) in margins.iter_mut().zip(solution.margins.iter()) {
             *margin = value;
         }
-        for (type2, k2) in margins.iter_mut().zip(k2_values) {
+        for (type2, k2) in margins.iter_mut().zip(k2_mm) {
             *type2 = type2.copysign(k2);
         }
         let length_tolerance_mm = |scale| LENGTH_BAND_STEPS / steps_per_mm(scale);
-        let k2_mm = End::ALL.map(|end| length_tolerance_mm(firmware.link_lengths(end).scale()));
+        let k2_tolerances_mm =
+            End::ALL.map(|end| length_tolerance_mm(core_robot.link_lengths(end).scale()));
         let [
             [head_type2, a1_type1, a2_type1],
             [tail_type2, a4_type1, a3_type1],
-        ] = End::ALL.map(|end| five_bar_tolerances(robot, &solution, end, k2_mm[end as usize]));
+        ] = End::ALL
+            .map(|end| five_bar_tolerances(robot, &solution, end, k2_tolerances_mm[end as usize]));
         let mut violated = [false; 12];
         for violation in robot.limits().violations(&solution) {
             violated[condition_index(violation.check)] = true;
@@ -119,7 +121,7 @@ impl Reference {
             violated,
             margins,
             strokes_mm: [solution.left.s, solution.right.s],
-            k2_mm: k2_values,
+            k2_mm,
             limits: *robot.limits(),
             tolerances: Tolerances {
                 margins: [
@@ -134,8 +136,9 @@ impl Reference {
                     MARGIN_TOLERANCE,
                     MARGIN_TOLERANCE,
                 ],
-                strokes_mm: Side::ALL.map(|side| length_tolerance_mm(firmware.slider(side).scale)),
-                k2_mm,
+                strokes_mm: Side::ALL
+                    .map(|side| length_tolerance_mm(core_robot.slider(side).scale)),
+                k2_mm: k2_tolerances_mm,
             },
         })
     }
@@ -183,9 +186,14 @@ fn condition_index(check: Check) -> usize {
 }
 
 /// Returns the tolerances of a five-bar's margins: type-2, left type-1 and right type-1. Each is the sum of the error
-/// of the guard's arithmetic and the effect of an error of `step_mm` in the distance between the crank tips. Near a
-/// singularity, where the type-2 margin is small, a length error turns the couplers by a large angle.
-fn five_bar_tolerances(robot: &Robot, solution: &Solution, end: End, step_mm: f64) -> [f64; 3] {
+/// of the guard's arithmetic and the effect of an error of `length_error_mm` in the distance between the crank tips.
+/// Near a singularity, where the type-2 margin is small, a length error turns the couplers by a large angle.
+fn five_bar_tolerances(
+    robot: &Robot,
+    solution: &Solution,
+    end: End,
+    length_error_mm: f64,
+) -> [f64; 3] {
     let end = lizard_kinematics::End::ALL[end as usize];
     let five_bar = robot.lizard().end(end);
     let (left_coupler, right_coupler) =
@@ -198,7 +206,7 @@ fn five_bar_tolerances(robot: &Robot, solution: &Solution, end: End, step_mm: f6
         1.0 / left_coupler,
         1.0 / right_coupler,
     ]
-    .map(|turn_per_mm| MARGIN_TOLERANCE + step_mm * turn_per_mm / type2)
+    .map(|turn_per_mm| MARGIN_TOLERANCE + length_error_mm * turn_per_mm / type2)
 }
 
 /// True if a value is beyond a limit by more than the tolerance, or if a loop does not close.
@@ -210,7 +218,7 @@ pub fn is_clearly_unsafe(robot: &Robot, pose: &Pose) -> bool {
 }
 
 /// Returns the index of the five-bar that does not close; `None` if a side does not close.
-pub fn find_unclosed_five_bar(error: &InfeasiblePose) -> Option<usize> {
+pub fn unclosed_five_bar_index(error: &InfeasiblePose) -> Option<usize> {
     match error.mechanism {
         Mechanism::End(end) => Some(end as usize),
         Mechanism::Side(_) => None,
@@ -222,20 +230,20 @@ pub fn find_unclosed_five_bar(error: &InfeasiblePose) -> Option<usize> {
 pub struct ErrorStatistics {
     pub max_abs: f64,
     sum_of_squares: f64,
-    count: f64,
+    error_count: f64,
 }
 
 impl ErrorStatistics {
     pub fn add(&mut self, error: f64) {
         self.max_abs = self.max_abs.max(error.abs());
         self.sum_of_squares += error * error;
-        self.count += 1.0;
+        self.error_count += 1.0;
     }
 }
 
 impl fmt::Display for ErrorStatistics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let rms = (self.sum_of_squares / self.count.max(1.0)).sqrt();
+        let rms = (self.sum_of_squares / self.error_count.max(1.0)).sqrt();
         write!(f, "max {:.5} rms {rms:.5}", self.max_abs)
     }
 }
@@ -243,7 +251,7 @@ impl fmt::Display for ErrorStatistics {
 /// Returns every robot with its own random numbers, which start at a stream for each test.
 pub fn robots_with_rngs(first_stream: u64) -> impl Iterator<Item = (&'static NamedRobot, Rng)> {
     let numbered_robots = (first_stream..).zip(robots());
-    numbered_robots.map(|(stream, named)| (named, rng(stream)))
+    numbered_robots.map(|(stream, named_robot)| (named_robot, rng(stream)))
 }
 
 /// Returns a random pose anywhere in the servos' travel.
@@ -259,7 +267,7 @@ pub fn random_pose_within(rng: &mut Rng, calibration: &[Calibration; 4], fractio
 }
 
 /// True if the guard accepts a pose.
-pub fn is_safe(firmware: &CoreRobot, pose: &Pose) -> bool {
-    let clearance = Clearance::measure(firmware, pose);
-    clearance.first_hazard(firmware).is_none()
+pub fn is_safe(core_robot: &CoreRobot, pose: &Pose) -> bool {
+    let clearance = Clearance::measure(core_robot, pose);
+    clearance.first_hazard(core_robot).is_none()
 }

@@ -30,7 +30,7 @@ fn every_speed_sets_its_percentage_of_a_gaits_full_pace() {
     const FRAME_COUNT: u32 = 1000;
     let mut rng = rng(8000);
     let mut worst_error = 0.0f64;
-    check_running_gaits(1, |named, float_gait, checked_robot| {
+    check_running_gaits(1, |named_robot, float_gait, checked_robot| {
         for percent in [10, 100, rng.u8(11..100)] {
             checked_robot.expect_ok(&format!("speed {percent}"));
             checked_robot.run_frames(10);
@@ -51,7 +51,7 @@ fn every_speed_sets_its_percentage_of_a_gaits_full_pace() {
             assert!(
                 error.abs() <= 0.005,
                 "{} {} at {percent} %: relative error {error}",
-                named.name,
+                named_robot.name,
                 float_gait.name()
             );
         }
@@ -61,10 +61,10 @@ fn every_speed_sets_its_percentage_of_a_gaits_full_pace() {
 
 #[test]
 fn a_gait_that_is_commanded_again_continues() {
-    for named in robots() {
-        for gait in named.robot.gaits() {
-            let mut tested = CheckedRobot::power_on_and_stand(named);
-            let mut reference = CheckedRobot::power_on_and_stand(named);
+    for named_robot in robots() {
+        for gait in named_robot.robot.gaits() {
+            let mut tested = CheckedRobot::power_on_and_stand(named_robot);
+            let mut reference = CheckedRobot::power_on_and_stand(named_robot);
             for frame in 0..150 {
                 if frame % 7 == 0 {
                     tested.expect_ok(&gait.command());
@@ -73,7 +73,7 @@ fn a_gait_that_is_commanded_again_continues() {
                     reference.expect_ok(&gait.command());
                 }
                 let (pulses, expected) = (tested.run_frame(), reference.run_frame());
-                assert_eq!(pulses, expected, "{}: {}", named.name, gait.name());
+                assert_eq!(pulses, expected, "{}: {}", named_robot.name, gait.name());
             }
         }
     }

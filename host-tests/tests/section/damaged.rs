@@ -43,12 +43,17 @@ fn build_partly_written_flash(section: &[u8]) -> Vec<u8> {
 
 #[test]
 fn any_bytes_may_follow_a_valid_section() {
-    for (named, section) in sections() {
-        assert_eq!(find_damage(section), None, "{}", named.name);
+    for (named_robot, section) in sections() {
+        assert_eq!(find_damage(section), None, "{}", named_robot.name);
         for filler in [0, 0x55, 0xff] {
             let mut flash = section.clone();
             flash.resize(REGION_BYTES.into(), filler);
-            assert_eq!(find_damage(&flash), None, "{} before {filler}", named.name);
+            assert_eq!(
+                find_damage(&flash),
+                None,
+                "{} before {filler}",
+                named_robot.name
+            );
         }
     }
 }
@@ -57,9 +62,9 @@ fn any_bytes_may_follow_a_valid_section() {
 fn a_section_with_any_flipped_bit_is_refused() {
     let files = sections()
         .iter()
-        .filter(|(named, _)| named.name.ends_with(".toml"));
+        .filter(|(named_robot, _)| named_robot.name.ends_with(".toml"));
     let mut file_count = 0;
-    for (named, section) in files {
+    for (named_robot, section) in files {
         file_count += 1;
         let mut section = build_partly_written_flash(section);
         let length =
@@ -72,7 +77,7 @@ fn a_section_with_any_flipped_bit_is_refused() {
                 _ => SectionError::Damaged,
             };
             let damage = find_damage(&section);
-            assert_eq!(damage, Some(expected), "{} bit {bit}", named.name);
+            assert_eq!(damage, Some(expected), "{} bit {bit}", named_robot.name);
             section[bit / 8] ^= 1 << (bit % 8);
         }
     }
@@ -81,15 +86,15 @@ fn a_section_with_any_flipped_bit_is_refused() {
 
 #[test]
 fn a_section_cut_at_any_byte_is_refused() {
-    for (named, section) in sections() {
+    for (named_robot, section) in sections() {
         for length in 0..section.len() {
             let cut_section = &section[..length];
             let damage = find_damage(cut_section);
-            assert!(damage.is_some(), "{} cut at {length}", named.name);
+            assert!(damage.is_some(), "{} cut at {length}", named_robot.name);
             // The missing bytes may be the same as erased flash.
             if section[length..].iter().any(|byte| *byte != 0xff) {
                 let damage = find_damage(&build_partly_written_flash(cut_section));
-                assert!(damage.is_some(), "{} erased at {length}", named.name);
+                assert!(damage.is_some(), "{} erased at {length}", named_robot.name);
             }
         }
     }
@@ -195,8 +200,8 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
 fn a_gait_that_would_leave_the_travel_is_held() {
     let rng = &mut rng(154);
     let mut held_count = 0;
-    for (named, _) in sections() {
-        let mut content = named.robot.content().clone();
+    for (named_robot, _) in sections() {
+        let mut content = named_robot.robot.content().clone();
         content.limits = Limits {
             type2: Sine(i16::MIN),
             type1: Sine(i16::MIN),
@@ -234,16 +239,16 @@ fn a_gait_that_would_leave_the_travel_is_held() {
 /// In the section, a neutral angle is outside the servo's travel, so the robot could not stand.
 #[test]
 fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
-    for (named, _) in sections() {
+    for (named_robot, _) in sections() {
         for servo in 0..4 {
             for [min, max] in [[1, 9000], [-9000, -1], [1, -1], [100, 50]] {
-                let mut content = named.robot.content().clone();
+                let mut content = named_robot.robot.content().clone();
                 let calibration = &mut content.calibration[servo];
                 (calibration.travel_min, calibration.travel_max) = (Sweep(min), Sweep(max));
                 let needed_travel = &mut content.needed_travel[servo];
                 (needed_travel.min, needed_travel.max) = (Sweep(min), Sweep(max));
                 let damage = find_damage(&content.section_bytes());
-                let case = format!("{} {servo} {min} {max}", named.name);
+                let case = format!("{} {servo} {min} {max}", named_robot.name);
                 assert_eq!(damage, Some(SectionError::Harmful), "{case}");
             }
         }

@@ -11,7 +11,9 @@ mod read_back;
 /// Returns all robots with their sections, the robots from files first.
 fn sections() -> &'static [(&'static NamedRobot, Vec<u8>)] {
     static SECTIONS: LazyLock<Vec<(&'static NamedRobot, Vec<u8>)>> = LazyLock::new(|| {
-        let sections = robots().iter().map(|named| (named, named.robot.section()));
+        let sections = robots()
+            .iter()
+            .map(|named_robot| (named_robot, named_robot.robot.section()));
         sections.collect()
     });
     &SECTIONS

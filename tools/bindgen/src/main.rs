@@ -1,8 +1,8 @@
 //! Generator of the JavaScript and the TypeScript types for a WebAssembly module of the page:
 //! `bindgen MODULE FOLDER NAME`.
 //!
-//! The command wasm-bindgen does the same, but its version must match that of the crate in the module. Here one lock
-//! file sets both versions.
+//! The command `wasm-bindgen` does the same, but must have the version of the crate in the module. Here one lock file
+//! sets both versions.
 
 use std::env::args;
 use std::error::Error;

@@ -66,7 +66,7 @@ impl World {
         memory.write_delay = 4;
         memory.is_timed = true;
         let mut world = Self {
-            running_robot: RunningRobot::with_memory(robot, memory, Restart::NONE),
+            running_robot: RunningRobot::with_eeprom(robot, memory, Restart::NONE),
             observer: Observer::new(checks::observer_limits(&robot)),
             now: 0,
             is_supply_weak: false,

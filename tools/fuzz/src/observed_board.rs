@@ -43,7 +43,7 @@ impl ObservedBoard {
     pub fn power_on(robot: &'static Robot, memory: Eeprom) -> Self {
         let mut board = Self {
             robot,
-            running_robot: RunningRobot::with_memory(*robot.firmware(), memory, Restart::NONE),
+            running_robot: RunningRobot::with_eeprom(*robot.firmware(), memory, Restart::NONE),
             observer: Observer::new(observer_limits(robot)),
             now: 0,
             output: String::new(),

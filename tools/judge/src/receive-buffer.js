@@ -1,4 +1,4 @@
-// The receiver buffers two bytes, and a third waits in its shift register (data sheet, 19.7.1); further bytes are lost.
+// The receiver buffers two bytes, and a third waits in its shift register (data sheet, 20.7.4); further bytes are lost.
 // avr8js holds one byte. A boot loader that blinks its LED before it reads relies on all three.
 const RXEN = 0x10;
 const RXC = 0x80;

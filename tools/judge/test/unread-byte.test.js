@@ -4,11 +4,17 @@ import test from 'node:test';
 import { keepUnreadByte } from '../src/corrections/unread-byte.js';
 import { formatFaultFixed, makeUno } from './program.js';
 
-// A byte arrives while the receiver is on; then the program writes UCSR0B. It copies the status before the write to r16
-// and the status after the write to r17.
+/** Values of UCSR0B: RXEN0 and TXEN0, and also RXCIE0. */
+const RECEIVER_AND_TRANSMITTER = 0x18;
+const WITH_RECEIVE_INTERRUPT = 0x98;
+/** Word address of the vector of the receive interrupt. */
+const RECEIVE_VECTOR = 0x24;
+
+// A byte arrives while the receiver is on; then the program writes UCSR0B. It copies the status to r16 before this
+// write, and to r17 after it.
 const program = (control) => `
     ldi r18, 0x10
-    sts 0xc1, r18     ; UCSR0B: receiver
+    sts 0xc1, r18     ; UCSR0B: receiver on
     ldi r18, ${control}
   wait:
     lds r16, 0xc0     ; UCSR0A
@@ -21,7 +27,7 @@ const program = (control) => `
     rjmp stop`;
 
 /** Returns RXC0 after `control` is written to UCSR0B. */
-function runForReceiveFlag(corrections, control) {
+function receiveFlagAfterWrite(corrections, control) {
   const board = makeUno(corrections, program(control));
   board.scheduleBytes([{ cycle: 50, byte: 0x41 }]);
   board.run(200);
@@ -31,13 +37,13 @@ function runForReceiveFlag(corrections, control) {
 }
 
 test('an unread byte survives a write to UCSR0B that keeps the receiver on', () => {
-  assert.equal(runForReceiveFlag([], 0x18), 0, formatFaultFixed('unread-byte.js'));
-  assert.equal(runForReceiveFlag([keepUnreadByte], 0x18), 1);
+  assert.equal(receiveFlagAfterWrite([], RECEIVER_AND_TRANSMITTER), 0, formatFaultFixed('unread-byte.js'));
+  assert.equal(receiveFlagAfterWrite([keepUnreadByte], RECEIVER_AND_TRANSMITTER), 1);
 });
 
 test('the interrupt of an unread byte stays pending after a write to UCSR0B', () => {
-  const board = makeUno([keepUnreadByte], program(0x98));
+  const board = makeUno([keepUnreadByte], program(WITH_RECEIVE_INTERRUPT));
   board.scheduleBytes([{ cycle: 50, byte: 0x41 }]);
   while (board.cpu.data[17] === 0) board.run(board.cpu.cycles + 1);
-  assert.equal(board.cpu.nextInterrupt, 0x24);
+  assert.equal(board.cpu.nextInterrupt, RECEIVE_VECTOR);
 });

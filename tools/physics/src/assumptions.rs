@@ -1,5 +1,5 @@
 //! Assumptions that `lizard gaits --assumptions` does not vary, or varies less, and their effect on the gaits in
-//! MuJoCo: the floor, the pads' printed shape, the drive of analog servos, and the mass distribution.
+//! MuJoCo: the floor, the pads' printed shape, the drive of analogue servos, and the mass distribution.
 
 use std::fmt::Write as _;
 
@@ -41,7 +41,7 @@ impl Assumption {
     /// All changed assumptions except those that change only the surface, which `Surface::ALL` lists.
     pub const ALL: [Self; 6] = [
         Self {
-            description: "analog servos that drive in bursts",
+            description: "analogue servos that drive in bursts",
             change_scene: |scene| scene.drives_in_bursts = true,
             ..UNCHANGED
         },
@@ -77,7 +77,7 @@ impl Assumption {
     /// Loads the paper's robot with this change.
     ///
     /// # Panics
-    /// If a text to replace is not in robots/paper.toml.
+    /// If a text to replace is not in robots/paper.toml, or if the changed robot is invalid.
     pub fn load_robot(&self) -> Robot {
         crate::load_changed_paper(self.description, self.replacements)
     }

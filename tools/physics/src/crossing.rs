@@ -31,7 +31,7 @@ pub struct Crossing {
 impl Crossing {
     /// Finds the crossing of a gait from its displacement per cycle. The measurement starts after `unmeasured_cycles`.
     pub fn find(robot: &Robot, cycle_displacement: Displacement, unmeasured_cycles: u32) -> Self {
-        let feet = robot.ground().feet.positions([0.0; 4]);
+        let feet = robot.ground().legs.foot_positions([0.0; 4]);
         let project_feet = |pose: BodyPose, heading_deg: f64| {
             let (sin, cos) = heading_deg.to_radians().sin_cos();
             let floor_feet = feet.map(|foot| pose.to_floor(foot));

@@ -10,11 +10,11 @@ pub fn format_expected_results_table(robot: &Robot) -> String {
     let [min_stiffness_g, max_stiffness_g] = [0.8, 1.2].map(|factor| grams(factor * stiffness));
     let (stiffness_g, load_g) = (grams(stiffness), grams(ground.body.mean_load()));
     let preload_g = grams(robot.own_strut().preload);
-    let drag_g = grams(20.0 / ground.feet.reach);
+    let drag_g = grams(20.0 / ground.legs.reach);
     let friction_g = 100.0 * ground.friction_coefficient;
     let friction_ratio = ground.friction_ratio;
     let fit = robot.parts().fit;
-    let mm_per_deg = ground.feet.reach * 1f64.to_radians();
+    let mm_per_deg = ground.legs.reach * 1f64.to_radians();
     let us_per_degree = robot.servos()[0].us_per_degree.abs();
     let twist_error = ground.stance.twist_error;
     let servo = robot.servo_type();

@@ -9,6 +9,7 @@ use lizard_robot::{CheckedGait, GroundContact, Robot, Stance};
 
 use crate::mujoco::{MujocoError, WalkBatch};
 use crate::results::{Displacement, DisplacementPair};
+use crate::table::Component;
 
 /// The name of the robot's file, without its extension.
 pub const ROBOT: &str = "grain";
@@ -37,7 +38,11 @@ pub type GrainResults = BTreeMap<String, Vec<DisplacementPair>>;
 
 /// Simulates a cycle in the model with level feet. Returns `None` if two feet pull against the other two: the model
 /// then has no result.
-pub fn simulate_model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displacement> {
+pub fn simulate_contact_model(
+    robot: &Robot,
+    gait: &CheckedGait,
+    ratio: f64,
+) -> Option<Displacement> {
     let ground = GroundContact {
         stance: Stance {
             stiffness: robot.ground().stance.stiffness,
@@ -81,7 +86,7 @@ pub fn simulate_all(robot: &Robot) -> Result<GrainResults, MujocoError> {
     let results_by_gait = gaits.iter().map(|gait| {
         let ratios = FRICTION_RATIOS.into_iter().enumerate();
         let results = ratios.map(|(index, ratio)| DisplacementPair {
-            model: simulate_model(robot, gait, ratio),
+            model: simulate_contact_model(robot, gait, ratio),
             mujoco: mujoco_displacements[&make_name(gait.name(), index)],
         });
         (gait.name().to_owned(), results.collect())
@@ -135,19 +140,19 @@ pub fn format_table(robot: &Robot, grain_results: &GrainResults) -> String {
         _ = write!(text, "  {heading:>13}");
     }
     text.push('\n');
-    // Each gait with the index of the displacement component that it is for: 0 is the distance forward, 2 is the turn.
+    // Each gait with the component of the displacement that it is for.
     let rows = GAITS.into_iter().flat_map(|(gait, _)| match gait {
-        "left" => vec![(gait, 2)],
-        "arc-left" => vec![(gait, 0), (gait, 2)],
-        _ => vec![(gait, 0)],
+        "left" => vec![(gait, Component::Turn)],
+        "arc-left" => vec![(gait, Component::Forward), (gait, Component::Turn)],
+        _ => vec![(gait, Component::Forward)],
     });
     for (gait, component) in rows {
         let period = robot.gait(gait).expect("the robot has this gait").period();
-        let unit = if component == 0 { "mm/s" } else { "deg/s" };
+        let unit = format!("{}/s", component.unit());
         _ = write!(text, "{gait:10}{unit:>6}");
         for results in &grain_results[gait] {
             let format_speed = |displacement: Displacement| {
-                format!("{:+.1}", displacement.0[component] / period + 0.0)
+                format!("{:+.1}", component.value(displacement) / period + 0.0)
             };
             let model = results.model.map_or_else(|| "-".to_owned(), format_speed);
             _ = write!(text, "  {model:>6} {:>6}", format_speed(results.mujoco));

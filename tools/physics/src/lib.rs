@@ -5,7 +5,7 @@
 //! `lizard model` writes, without using the contact model.
 //!
 //! `make physics` runs MuJoCo ([`mujoco`]), compares its displacements with the model's and with the stored ones in
-//! `walks.json`, and prints all displacements. The tables in the documentation come from the stored results
+//! this crate's JSON files, and prints all displacements. The tables in the documentation come from the stored results
 //! ([`WalkResults`], [`format_comparison_table`]). Therefore a test without MuJoCo keeps the tables current.
 
 pub mod assumptions;
@@ -26,7 +26,7 @@ pub use case::{Case, FootSetup, LegDrive};
 pub use crossing::Crossing;
 pub use expected::format_expected_results_table;
 pub use results::{Displacement, DisplacementPair, GroupedDisplacements, WalkResults};
-pub use table::{format_comparison_table, format_displacement_table};
+pub use table::{Component, format_comparison_table, format_displacement_table};
 pub use walk::{Walk, list_walks};
 
 use std::path::PathBuf;
@@ -49,7 +49,7 @@ pub fn load_robot(name: &str) -> Robot {
 /// change in error messages.
 ///
 /// # Panics
-/// If a text to replace is not in robots/paper.toml.
+/// If a text to replace is not in robots/paper.toml, or if the changed robot is invalid.
 fn load_changed_paper(description: &str, replacements: &[(&str, &str)]) -> Robot {
     let text = std::fs::read_to_string(crate_dir().join("../../robots/paper.toml"));
     let mut text = text.expect("robots/paper.toml is readable");

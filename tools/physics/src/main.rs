@@ -121,7 +121,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     for (robot_name, robot, walks) in &robot_walks {
         for (name, walk) in walks {
             let results = DisplacementPair {
-                model: walk.simulate_model(robot),
+                model: walk.simulate_contact_model(robot),
                 mujoco: mujoco_displacements[name],
             };
             let mut messages = Vec::from_iter(results.describe_disagreement(walk.case));
@@ -165,7 +165,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     let mut servo_results = ServoResults::new();
     for (name, (variant, gait)) in &servo_walks {
         let results = DisplacementPair {
-            model: Some(variant.simulate_model(gait)),
+            model: Some(variant.simulate_contact_model(gait)),
             mujoco: mujoco_displacements[name],
         };
         let mut messages = Vec::from_iter(variant.describe_disagreement(gait, &results));

@@ -10,9 +10,15 @@ use lizard_robot::Robot;
 use crate::case::Case;
 use crate::mujoco::make_two_cycle_scene;
 use crate::results::{Displacement, DisplacementPair};
+use crate::table::Component;
 
-/// The gaits, each with the index of the compared displacement component: 0 for the distance forward, 2 for the turn.
-pub const GAITS: [(&str, usize); 4] = [("walk", 0), ("trot", 0), ("crawl", 0), ("left", 2)];
+/// The gaits, each with the compared component of the displacement.
+pub const GAITS: [(&str, Component); 4] = [
+    ("walk", Component::Forward),
+    ("trot", Component::Forward),
+    ("crawl", Component::Forward),
+    ("left", Component::Turn),
+];
 /// The allowed deviation of the contact model from MuJoCo, as a fraction of MuJoCo's displacement.
 const MAX_DEVIATION: f64 = 0.10;
 
@@ -93,16 +99,16 @@ impl Variant {
     /// Loads the robot of this variant.
     ///
     /// # Panics
-    /// If a line to replace is not in robots/paper.toml.
+    /// If a line to replace is not in robots/paper.toml, or if the changed robot is invalid.
     pub fn load_robot(&self) -> Robot {
-        let own_mass = crate::load_robot("paper").ground().body.mass;
+        let paper_mass = crate::load_robot("paper").ground().body.mass;
         let joint_and_servo_tables = format!(
             "[joints]\n{}\n[servo]\n{}\ndead_band_us = 0.0\n[servo.A1]",
             self.joint_lines, self.servo_lines
         );
         let ground_table = format!("[ground]\nfriction = {}", self.pad_friction);
         let [old_mass, new_mass] =
-            [own_mass, own_mass + self.extra_mass_g].map(|mass| format!("mass = {mass:.1}"));
+            [paper_mass, paper_mass + self.extra_mass_g].map(|mass| format!("mass = {mass:.1}"));
         let replacements: [(&str, &str); 3] = [
             ("[servo.A1]", &joint_and_servo_tables),
             ("[ground]", &ground_table),
@@ -115,8 +121,8 @@ impl Variant {
     ///
     /// # Panics
     /// If the robot has no such gait.
-    pub fn make_scene(&self, name: &str, assembly: &Assembly, gait: &str) -> Scene {
-        let mut scene = make_two_cycle_scene(name, assembly, gait, Case::ALL[0]);
+    pub fn make_scene(&self, scene_name: &str, assembly: &Assembly, gait: &str) -> Scene {
+        let mut scene = make_two_cycle_scene(scene_name, assembly, gait, Case::ALL[0]);
         if let Some(pin_torque) = self.pin_torque {
             (scene.pin_friction, scene.motors.joint_friction.pin_torque) = (pin_torque, 0.0);
         }
@@ -127,18 +133,19 @@ impl Variant {
     ///
     /// # Panics
     /// If the robot has no such gait.
-    pub fn simulate_model(&self, gait: &str) -> Displacement {
+    pub fn simulate_contact_model(&self, gait: &str) -> Displacement {
         let robot = self.load_robot();
         let gait = robot.gait(gait).expect("the robot has this gait");
         let travel = gait.simulate_driven_cycle(robot.ground(), &robot.motors(), 1.0);
         travel.into()
     }
 
-    /// Returns a message if the contact model deviates too much from MuJoCo in a gait.
+    /// Returns a message if the contact model deviates too much from MuJoCo in a gait; `None` if it does not, if
+    /// the model has no result, or if the gait is not one of [`GAITS`].
     pub fn describe_disagreement(&self, gait: &str, results: &DisplacementPair) -> Option<String> {
         let (_, component) = GAITS.into_iter().find(|(name, _)| *name == gait)?;
         let [model, mujoco] =
-            [results.model?, results.mujoco].map(|displacement| displacement.0[component]);
+            [results.model?, results.mujoco].map(|displacement| component.value(displacement));
         let exception = self.exceptions.iter().find(|(name, _)| *name == gait);
         let max_deviation = exception.map_or(MAX_DEVIATION, |(_, deviation)| *deviation);
         let deviation = model / mujoco - 1.0;
@@ -154,10 +161,7 @@ pub type ServoResults = BTreeMap<String, BTreeMap<String, DisplacementPair>>;
 
 /// Returns the table of all variants in Markdown, with a dash for a missing result.
 pub fn format_servos_table(results: &ServoResults) -> String {
-    let headings = GAITS.map(|(gait, component)| {
-        let unit = if component == 2 { "deg" } else { "mm" };
-        format!(" {gait}, {unit} |")
-    });
+    let headings = GAITS.map(|(gait, component)| format!(" {gait}, {} |", component.unit()));
     let separators = "---|".repeat(GAITS.len());
     let headings = headings.concat();
     let mut table = format!("| model, MuJoCo |{headings}\n|---|{separators}\n");
@@ -166,7 +170,7 @@ pub fn format_servos_table(results: &ServoResults) -> String {
         for (gait, component) in GAITS {
             let find_pair = || {
                 let pair = results.get(variant.name)?.get(gait)?;
-                Some((pair.model?.0[component], pair.mujoco.0[component]))
+                Some((component.value(pair.model?), component.value(pair.mujoco)))
             };
             _ = match find_pair() {
                 Some((model, mujoco)) => write!(table, " {model:.1}, {mujoco:.1} |"),

@@ -121,8 +121,11 @@ impl Surface {
             Self::Slope(deg) => floor.slope = direction * f64::from(deg),
             Self::UnequalFriction => {
                 let choose_friction = |[_, left]: [f64; 2]| if left > 0.0 { 0.4 } else { 0.8 };
-                floor.friction_coefficients =
-                    robot.ground().feet.positions([0.0; 4]).map(choose_friction);
+                floor.friction_coefficients = robot
+                    .ground()
+                    .legs
+                    .foot_positions([0.0; 4])
+                    .map(choose_friction);
             }
             // The foot slides on the steel head of its screw.
             Self::NoPad => floor.friction_coefficients[0] = 0.2,
@@ -177,7 +180,7 @@ fn tenths_to_mm(tenths: u8) -> f64 {
 fn scatter_blocks(robot: &Robot, height_mm: f64) -> Vec<Block> {
     const SQUARE_MM: f64 = 30.0;
     const REACH_SQUARES: i32 = 12;
-    let feet = robot.ground().feet.positions([0.0; 4]);
+    let feet = robot.ground().legs.foot_positions([0.0; 4]);
     let mut seed: u32 = 1;
     let mut random_between = |min: f64, max: f64| {
         // The generator is from Numerical Recipes; only the upper 16 bits are random enough.

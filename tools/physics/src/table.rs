@@ -13,9 +13,11 @@ const NEGLIGIBLE_MM: f64 = 1.0;
 const NEGLIGIBLE_DEG: f64 = 0.5;
 
 /// A component of a displacement: the distance forward, or the turn.
-#[derive(Clone, Copy)]
-pub(crate) enum Component {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Component {
+    /// The distance forward, mm.
     Forward,
+    /// The turn, deg counter-clockwise.
     Turn,
 }
 
@@ -37,14 +39,16 @@ impl Component {
         }
     }
 
-    pub(crate) fn unit(self) -> &'static str {
+    /// The component's unit.
+    pub fn unit(self) -> &'static str {
         match self {
             Self::Forward => "mm",
             Self::Turn => "deg",
         }
     }
 
-    pub(crate) fn value(self, displacement: Displacement) -> f64 {
+    /// The component of a displacement, in its unit.
+    pub fn value(self, displacement: Displacement) -> f64 {
         match self {
             Self::Forward => displacement.0[0],
             Self::Turn => displacement.0[2],

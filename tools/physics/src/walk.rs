@@ -28,7 +28,7 @@ impl Walk {
     ///
     /// # Panics
     /// If the robot has no such gait.
-    pub fn simulate_model(&self, robot: &Robot) -> Option<Displacement> {
+    pub fn simulate_contact_model(&self, robot: &Robot) -> Option<Displacement> {
         let gait = robot.gait(&self.gait).expect("the robot has this gait");
         let simulate = || gait.simulate_cycle(&self.case.ground(robot)).travel;
         self.is_determined.then(|| simulate().into())

@@ -4,17 +4,16 @@
 
 use lizard_physics::grains::{self, FRICTION_RATIOS, GAITS, GrainResults};
 use lizard_physics::text::{check_or_update_block, format_stored, load_stored};
-use lizard_physics::{crate_dir, load_robot};
+use lizard_physics::{Component, crate_dir, load_robot};
 
-/// Returns a gait's speeds at a friction ratio: the model's, if the model has a result, and MuJoCo's. `component` is
-/// the index in the displacement: 0 for mm/s forward, 2 for deg/s of turn.
-fn compute_speeds(stored: &GrainResults, gait: &str, ratio: f64, component: usize) -> Vec<f64> {
+/// Returns a gait's speeds at a friction ratio, mm/s or deg/s: the model's, if the model has a result, and MuJoCo's.
+fn compute_speeds(stored: &GrainResults, gait: &str, ratio: f64, component: Component) -> Vec<f64> {
     let robot = load_robot(grains::ROBOT);
     let period = robot.gait(gait).expect("the robot has this gait").period();
     let index = FRICTION_RATIOS.iter().position(|known| *known == ratio);
     let results = stored[gait][index.expect("the table has the ratio")];
     let displacements = results.model.into_iter().chain([results.mujoco]);
-    let speeds = displacements.map(|displacement| displacement.0[component] / period);
+    let speeds = displacements.map(|displacement| component.value(displacement) / period);
     speeds.collect()
 }
 
@@ -57,7 +56,7 @@ fn the_stored_results_of_the_model_are_up_to_date() {
     for (name, _) in GAITS {
         let gait = robot.gait(name).expect("the robot has this gait");
         for (ratio, results) in FRICTION_RATIOS.into_iter().zip(&stored[name]) {
-            let current = grains::simulate_model(&robot, gait, ratio);
+            let current = grains::simulate_contact_model(&robot, gait, ratio);
             assert_eq!(current.is_some(), results.model.is_some(), "{name} {ratio}");
             let Some((stored_model, current_model)) = results.model.zip(current) else {
                 continue;
@@ -74,13 +73,16 @@ fn on_pads_with_a_grain_the_robot_runs_faster_than_90_mm_per_second_and_turns() 
     let stored = load_stored("grains.json");
     let ratio = load_robot(grains::ROBOT).ground().friction_ratio;
     assert_eq!(ratio, 1.5, "the friction ratio in robots/grain.toml");
-    let speeds = compute_speeds(&stored, "run", 1.5, 0);
+    let speeds = compute_speeds(&stored, "run", 1.5, Component::Forward);
     assert!(are_both_above(&speeds, 90.0), "run: {speeds:?} mm/s");
     for ratio in FRICTION_RATIOS {
-        let speeds = compute_speeds(&stored, "arc-left", ratio, 2);
+        let speeds = compute_speeds(&stored, "arc-left", ratio, Component::Turn);
         assert!(are_both_above(&speeds, 14.0), "arc-left: {speeds:?} deg/s");
     }
-    for (gait, component, min_speed) in [("left", 2, 14.0), ("back", 0, 30.0)] {
+    for (gait, component, min_speed) in [
+        ("left", Component::Turn, 14.0),
+        ("back", Component::Forward, 30.0),
+    ] {
         let speeds = compute_speeds(&stored, gait, 1.5, component);
         let magnitudes: Vec<f64> = speeds.iter().map(|speed| speed.abs()).collect();
         assert!(are_both_above(&magnitudes, min_speed), "{gait}: {speeds:?}");

@@ -6,7 +6,7 @@
 //! of the model. Gaits that depend on inertia were simulated at a slower pace.
 
 use lizard_physics::{Displacement, load_robot};
-use lizard_robot::{Body, Feet, GroundContact};
+use lizard_robot::{Body, GroundContact, LegGeometry};
 
 /// The compared gaits; no gait mirrors or reverses another.
 const GAITS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
@@ -54,11 +54,11 @@ fn rigid_legs_match_the_engine_on_a_slippery_and_on_a_rough_floor() {
 #[test]
 fn legs_mounted_outward_match_the_engine() {
     let ground = ground_with_280_g();
-    let feet = Feet {
+    let legs = LegGeometry {
         mount_angle: 45.0,
-        ..ground.feet
+        ..ground.legs
     };
-    let ground = GroundContact { feet, ..ground };
+    let ground = GroundContact { legs, ..ground };
     assert_agreement(&ground, &MOUNTED_OUTWARD, 0.5, 0.3);
 }
 

@@ -112,7 +112,7 @@ fn gaits_that_do_not_turn_on_the_spot_take_every_foot_across_the_edge() {
     let walk_results = WalkResults::load_stored();
     let mut gaits_on_the_spot = Vec::new();
     for name in surface::ROBOT_NAMES {
-        let feet = load_robot(name).ground().feet.positions([0.0; 4]);
+        let feet = load_robot(name).ground().legs.foot_positions([0.0; 4]);
         for (gait, level_displacement) in surface::list_walking_gaits(&walk_results, name) {
             let crossing = Crossing::find(&load_robot(name), level_displacement, 0);
             if !crossing.is_crossed {
@@ -231,7 +231,8 @@ fn the_stored_results_of_the_model_are_up_to_date() {
         let results = walk_results.get("paper", &walk.gait, walk.case);
         let results = results.expect("the walk is stored");
         assert_eq!(results.model.is_some(), walk.is_determined, "{}", walk.gait);
-        let (Some(stored), Some(computed)) = (results.model, walk.simulate_model(&robot)) else {
+        let (Some(stored), Some(computed)) = (results.model, walk.simulate_contact_model(&robot))
+        else {
             continue;
         };
         let (mm, deg) = stored.compute_difference(computed);

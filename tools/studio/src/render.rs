@@ -21,7 +21,7 @@ const PAPER_GREY: f64 = 205.0;
 const BODY_HALF_SIZE: [f64; 2] = [75.0, 105.0];
 /// Grey of the robot's top.
 const BODY_GREY: f64 = 70.0;
-/// Height of the robot's top above the floor, mm. The card is higher.
+/// Height of the robot's top above the floor, mm. The card, at `Studio::deck_tag_height`, is drawn over it.
 const BODY_HEIGHT_MM: f64 = 55.0;
 /// x coordinate of the edge about which the board is tilted, mm.
 const TILT_EDGE_X_MM: f64 = -200.0;

@@ -22,17 +22,17 @@ const api = {
     robot.load(toml);
     robot.setFloor(floor);
     robot.setServoModel(servos);
-    const search = robot.beginSearch(task);
-    if (isRefused(search)) throw new Error(search.reason);
-    return { ...search, referenceTrial: robot.tryGait(task.bars) as Trial };
+    const extent = robot.beginSearch(task);
+    if (isRefused(extent)) throw new Error(extent.reason);
+    return { ...extent, referenceTrial: robot.tryGait(task.bars) as Trial };
   },
 
   /** Tries one more gait; returns the number of tried gaits and the best score. */
   tryNext: () => robot.tryNextGait(),
 
   /**
-   * Compares the best gait so far with the gait to beat on `robotCount` random robots. Returns null until a gait stays
-   * within the limits.
+   * Compares the best gait so far with the gait to beat on `robotCount` random robots. Returns null until a tried
+   * gait stays within the limits.
    */
   compareBest(robotCount: number): BestGait | null {
     const bestGait = robot.compareBestGait(robotCount);

@@ -6,7 +6,7 @@ const PICTURE_WIDTH = 700;
 const LINE_HEIGHT = 22;
 const TITLE_HEIGHT = 64;
 /** Left edges of the columns, px. */
-const COLUMN_LEFTS = [24, 130, 220, 290, 390, 520, 590];
+const COLUMN_LEFTS = [24, 130, 220, 290, 390, 560, 620];
 /** The keys of the components of a cycle's movement in a report. */
 const COMPONENT_KEYS = ['forward', 'left', 'turn'] as const;
 const COMPONENT_LABELS = ['ahead, mm', 'left, mm', 'turn, deg'];
@@ -18,10 +18,10 @@ const formatSigned = (value: number | null | undefined) => (value == null ? '–
 /** Formats the comparison of a measured mean with its prediction, in standard errors. */
 function formatComparison({ agrees, differs }: Component): string {
   if (agrees === null || differs === null) return '–';
-  return agrees ? 'agrees' : `${Math.abs(differs).toFixed(1)} errors ${differs > 0 ? 'more' : 'less'}`;
+  return agrees ? 'agrees' : `${Math.abs(differs).toFixed(1)} std. errors ${differs > 0 ? 'more' : 'less'}`;
 }
 
-/** Returns the column headings of a gait's table; only some robots at full speed have a column for MuJoCo. */
+/** Returns the column headings of a gait's table; the last is MuJoCo's if the report has its result. */
 export const listColumnHeadings = ({ mujoco }: Report) => ['per cycle', 'measured', 'error', 'predicted', '', 'sd', ...(mujoco ? ['MuJoCo'] : [])];
 
 /** Formats the title of a gait's table. */
@@ -36,13 +36,16 @@ export function formatRows(report: Report): string[][] {
   });
 }
 
-/** Formats the range of a prediction as a sentence; empty if there is no range. */
-export function formatRange({ range }: Report): string {
-  if (!range) return '';
+/** Formats the range of a prediction as a sentence in lines; no lines if there is no range. */
+function listRangeLines({ range }: Report): string[] {
+  if (!range) return [];
   const [name = '', unit = ''] = range.part.split(', ');
   const formatBound = (value: number, assumption: string | null) => `${formatSigned(value)} ${unit} (${assumption ?? 'as in robot.toml'})`;
-  return `Predicted ${name} with one assumption changed: ${formatBound(range.least, range.least_by)} to ${formatBound(range.most, range.most_by)}.`;
+  return [`Predicted ${name} with one assumption changed:`, `${formatBound(range.least, range.least_by)} to`, `${formatBound(range.most, range.most_by)}.`];
 }
+
+/** Formats the range of a prediction as a sentence; empty if there is no range. */
+export const formatRange = (report: Report) => listRangeLines(report).join(' ');
 
 const escapeText = (text: string) => text.replace(/[&<>]/g, (character) => `&#${character.charCodeAt(0)};`);
 const formatTextElement = (x: number, y: number, content: string, attributes = '') => `<text x="${x}" y="${y}" ${attributes}>${escapeText(content)}</text>`;
@@ -50,19 +53,19 @@ const formatTextElement = (x: number, y: number, content: string, attributes = '
 /** Draws the results of a robot's gaits as SVG. */
 export function drawResults(robotName: string, reports: Report[]): string {
   let y = TITLE_HEIGHT;
-  const formatRowElements = (cells: string[], attributes = '') => {
+  const drawRow = (cells: string[], attributes = '') => {
     y += LINE_HEIGHT;
     return cells.map((cell, i) => formatTextElement(COLUMN_LEFTS[i] ?? 0, y, cell, attributes)).join('');
   };
   const body = reports
     .map((report) => {
       y += LINE_HEIGHT / 2;
-      return formatRowElements([formatTitle(report)], 'font-weight="bold"') + formatRowElements(listColumnHeadings(report), 'fill="#5a5f57"') + formatRows(report).map((row) => formatRowElements(row)).join('') + formatRowElements([formatRange(report)], 'fill="#5a5f57" font-size="12"');
+      return drawRow([formatTitle(report)], 'font-weight="bold"') + drawRow(listColumnHeadings(report), 'fill="#5a5f57"') + formatRows(report).map((row) => drawRow(row)).join('') + listRangeLines(report).map((line) => drawRow([line], 'fill="#5a5f57" font-size="12"')).join('');
     })
     .join('');
   return (
     `<svg xmlns="http://www.w3.org/2000/svg" width="${PICTURE_WIDTH}" height="${y + LINE_HEIGHT}" viewBox="0 0 ${PICTURE_WIDTH} ${y + LINE_HEIGHT}" font-family="sans-serif" font-size="15" fill="#20231f">` +
-    `<rect width="100%" height="100%" fill="#fff"/>${formatTextElement(24, 40, `${robotName}, measured by a camera`, 'font-size="20" font-weight="bold"')}${body}</svg>`
+    `<rect width="100%" height="100%" fill="#fff"/>${formatTextElement(24, 40, `${robotName}, measured with a camera`, 'font-size="20" font-weight="bold"')}${body}</svg>`
   );
 }
 

@@ -70,7 +70,7 @@ export class TagTracker {
     return this.tags.find(({ id }) => id === DECK_TAG_ID);
   }
 
-  /** The vector toward the robot's head in the frame, as long as the deck tag; null if that tag is not visible. */
+  /** The vector towards the robot's head in the frame, as long as the deck tag; null if that tag is not visible. */
   get headingVector(): Pixel | null {
     if (!this.deckTag) return null;
     const [a, b, c, d] = this.deckTag.corners;

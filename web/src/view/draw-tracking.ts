@@ -26,6 +26,7 @@ export function drawTracking(canvas: HTMLCanvasElement, tracker: TagTracker): vo
     context.stroke();
   };
   drawLine(tracker.path, a2, 2);
+  // The line ends one side beyond its start, so that the first corner is joined like the others.
   for (const { corners } of tracker.tags) drawLine([...corners, corners[0], corners[1]], accent, 3);
   const [from, heading] = [tracker.path.at(-1), tracker.headingVector];
   if (from && heading) drawLine([from, [from[0] + HEADING_LINE_LENGTH * heading[0], from[1] + HEADING_LINE_LENGTH * heading[1]]], a2, 4);

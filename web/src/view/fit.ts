@@ -25,19 +25,19 @@ interface RangeRequest {
 export class FitView {
   private readonly message = element('fit-message');
   private readonly useButton = element<HTMLButtonElement>('fit-use');
-  private readonly showOverlapButton = element<HTMLButtonElement>('fit-where');
-  /** The last lengths whose parts fit, of a robot from the same file. */
+  private readonly showPairButton = element<HTMLButtonElement>('fit-where');
+  /** The last lengths whose parts fit, or are taken to fit because they were not checked, of a robot from the same file. */
   private fittingLengths: Lengths = new Map();
   private rangeRequest: RangeRequest | null = null;
   private timer = 0;
-  /** Cancels the scheduled or running check of the parts, as the next change does. */
+  /** Cancels the scheduled or running check when the robot changes again. */
   private checkController = new AbortController();
 
   constructor(
     private readonly session: Session,
     private readonly parts: PartsView,
   ) {
-    this.showOverlapButton.addEventListener('click', () => this.parts.set3d(true));
+    this.showPairButton.addEventListener('click', () => this.parts.set3d(true));
     session.robot.follow(({ lengths }) => this.showRobot(lengths));
   }
 
@@ -55,7 +55,7 @@ export class FitView {
     if (changedLengths.length > 0) this.schedule((signal) => this.checkRobot(robotLengths, new Map(changedLengths), signal));
   }
 
-  /** Checks the parts of a robot.toml during a drag; null if its lengths are refused. */
+  /** Checks the parts during a drag. `toml` is the robot.toml with the dragged lengths; null if they are refused. */
   checkDragged(toml: string | null): void {
     this.cancelCheck();
     if (toml === null) return;
@@ -67,17 +67,17 @@ export class FitView {
 
   /**
    * Searches `range` for the smallest and the largest value of the lengths `keys` with which the parts fit. The search
-   * starts once the robot's current parts are known to fit.
+   * starts once the robot's current lengths are among those that fit.
    */
   findRange(keys: string[], range: [number, number], show: RangeRequest['show']): void {
     this.rangeRequest = { keys, range, show };
-    if (!this.isKnownToFit) return;
+    if (!this.hasFittingLengths) return;
     this.cancelCheck();
     this.schedule((signal) => this.searchRange(signal));
   }
 
-  /** True if the parts of the session's robot are known to fit. */
-  private get isKnownToFit(): boolean {
+  /** True if the session's robot has the lengths of `fittingLengths`. */
+  private get hasFittingLengths(): boolean {
     return this.session.robot.description.lengths.every(({ key, value }) => this.fittingLengths.get(key) === value);
   }
 
@@ -101,7 +101,7 @@ export class FitView {
     const result = await proveParts(toml, signal);
     if (signal.aborted) return false;
     if (result instanceof Error) this.setMessage(describeUnfit(result), result.collidingPair);
-    else this.setMessage(`The parts fit${result === null ? '' : `: no two come nearer than ${result.toFixed(2)} mm`}.`, null);
+    else this.setMessage(`The parts fit${result === null ? '' : `: no two come closer to each other than ${result.toFixed(2)} mm`}.`, null);
     return !(result instanceof Error);
   }
 
@@ -111,15 +111,15 @@ export class FitView {
       return this.searchRange(signal);
     }
     if (signal.aborted) return;
-    const refusalText = this.message.textContent ?? '';
-    this.message.textContent = `${refusalText} Searching for the nearest printable lengths…`;
+    const unfitMessage = this.message.textContent ?? '';
+    this.message.textContent = `${unfitMessage} Searching for the nearest printable lengths…`;
     const nearest = await this.findNearest(changedLengths, signal);
     if (signal.aborted) return;
-    this.message.textContent = refusalText;
+    this.message.textContent = unfitMessage;
     const { lengths } = this.session.robot.description;
     const names = lengths.filter(({ key }) => changedLengths.has(key)).map(({ key, label }) => `${label} ${nearest.lengths.get(key)}`);
     this.useButton.textContent = `Use the nearest lengths that fit: ${names.join(', ')}`;
-    this.useButton.onclick = () => void this.session.robot.change(nearest.text);
+    this.useButton.onclick = () => void this.session.robot.change(nearest.toml);
     this.useButton.hidden = false;
   }
 
@@ -143,17 +143,17 @@ export class FitView {
    * Bisects between the last lengths that fit and the target lengths, down to `STEP_MM`; returns the lengths nearest to
    * the target whose parts fit. If `triesTargetFirst`, tries the target lengths first, because they may fit.
    */
-  private async findNearest(targetLengths: Lengths, signal: AbortSignal, triesTargetFirst = false): Promise<{ lengths: Lengths; text: string }> {
-    const { toml } = this.session.robot;
+  private async findNearest(targetLengths: Lengths, signal: AbortSignal, triesTargetFirst = false): Promise<{ lengths: Lengths; toml: string }> {
+    const sessionToml = this.session.robot.toml;
     const makeRobot = (fraction: number) => {
       const lengths: Lengths = new Map([...targetLengths].map(([key, to]) => {
         const from = this.fittingLengths.get(key) ?? to;
         return [key, fraction === 0 ? from : STEP_MM * Math.round((from + (to - from) * fraction) / STEP_MM)];
       }));
-      const { text, refusal } = Robot.tryLengths(toml, [...lengths], false);
-      return { lengths, text, isAccepted: refusal === null };
+      const { text: toml, refusal } = Robot.tryLengths(sessionToml, [...lengths], false);
+      return { lengths, toml, isAccepted: refusal === null };
     };
-    const checkFit = async ({ text, isAccepted }: ReturnType<typeof makeRobot>) => isAccepted && !((await proveParts(text, signal)) instanceof Error);
+    const checkFit = async ({ toml, isAccepted }: ReturnType<typeof makeRobot>) => isAccepted && !((await proveParts(toml, signal)) instanceof Error);
     let best = makeRobot(0);
     if (triesTargetFirst) {
       const targetRobot = makeRobot(1);
@@ -174,7 +174,7 @@ export class FitView {
     element('fit').hidden = text === '';
     this.message.textContent = text;
     this.useButton.hidden = true;
-    this.showOverlapButton.hidden = collidingPair === null;
+    this.showPairButton.hidden = collidingPair === null;
     this.parts.showCollidingPair(collidingPair);
   }
 }
@@ -192,7 +192,7 @@ async function proveParts(toml: string, signal: AbortSignal) {
   });
 }
 
-/** Returns a message with the two parts that come too close, or else with the reason that prevents the parts. */
+/** Returns a message with the two parts that come too close, or else the reason why the parts cannot be made. */
 function describeUnfit({ message, collidingPair }: { message: string; collidingPair: CollidingPair | null }): string {
   if (!collidingPair) return `These lengths cannot be printed: ${message.replace(/\.$/, '')}.`;
   const { first, second, mm } = collidingPair;

@@ -1,4 +1,5 @@
-// The gait editor: a circle represents the cycle, and its bars represent the stances of the legs.
+// The gait editor: a circle represents the cycle. A leg's bar represents its stance, or in a held gait its turn to
+// swing.
 import { browserStorage } from '../browser-storage';
 import { type Bars, type Description, type Four, Robot } from '../robot';
 import type { Session } from '../session';
@@ -10,14 +11,14 @@ import { TrialView } from './trial';
 import type { BoardWriter } from './writer';
 
 const LEGS = ['LF', 'RF', 'RH', 'LH'] as const;
-/** The index of each leg's opposite leg. */
-const OPPOSITE_LEGS = [1, 0, 3, 2] as const;
+/** The index of the leg on the other side, for each leg. */
+const MIRRORED_LEGS = [1, 0, 3, 2] as const;
 /** Radius of each leg's ring, in units of the SVG. */
 const RING_RADII = [104, 82, 60, 38] as const;
 /** Width of a bar, in units of the SVG. */
 const BAR_WIDTH = 16;
-/** Fraction of the cycle that a bar covers in a gait whose legs swing one after the other and otherwise hold still. */
-const HELD_STANCE_FRACTION = 0.25;
+/** Fraction of the circle that a bar covers in a held gait, whose bars show only the order of the swings. */
+const HELD_BAR_FRACTION = 0.25;
 
 /** The keys of a gait's numbers that have an input. In index.html, each input has a range that robot.toml allows. */
 const GAIT_NUMBERS = ['period', 'duty', 'amplitude'] as const;
@@ -92,7 +93,7 @@ export class GaitEditorView {
   private mirror(): void {
     if (!this.gait) return;
     const { start, gain } = this.gait;
-    const swapSides = (values: Four<number>) => OPPOSITE_LEGS.map((leg) => values[leg]) as Four<number>;
+    const swapSides = (values: Four<number>) => MIRRORED_LEGS.map((leg) => values[leg]) as Four<number>;
     this.changeGait({ start: swapSides(start), gain: swapSides(gain) });
   }
 
@@ -143,16 +144,16 @@ export class GaitEditorView {
   private showGait(): void {
     const { gait } = this;
     if (!gait) return;
-    const put = (input: HTMLInputElement, value: number) => setNumber(input, roundToMultiple(value, 0.001));
-    for (const key of GAIT_NUMBERS) put(element(`gait-${key}`), gait[key]);
+    const showNumber = (input: HTMLInputElement, value: number) => setNumber(input, roundToMultiple(value, 0.001));
+    for (const key of GAIT_NUMBERS) showNumber(element(`gait-${key}`), gait[key]);
     element<HTMLInputElement>('gait-duty').disabled = gait.held;
     if (document.activeElement !== this.nameInput) this.nameInput.value = gait.name;
     this.kindList.value = gait.held ? 'held' : 'wave';
-    const fraction = gait.held ? HELD_STANCE_FRACTION : gait.duty;
+    const fraction = gait.held ? HELD_BAR_FRACTION : gait.duty;
     LEGS.forEach((_, leg) => {
       const [start, radius] = [gait.start[leg] ?? 0, RING_RADII[leg] ?? 0];
-      put(this.legInputs.start[leg], start);
-      put(this.legInputs.gain[leg], gait.gain[leg] ?? 1);
+      showNumber(this.legInputs.start[leg], start);
+      showNumber(this.legInputs.gain[leg], gait.gain[leg] ?? 1);
       this.bars[leg]?.setAttribute('d', makeSectorPath(radius, start, fraction));
       // A negative gain makes the foot push the robot backward.
       this.bars[leg]?.classList.toggle('against', (gait.gain[leg] ?? 1) < 0);
@@ -169,13 +170,13 @@ function locateOnRing(radius: number, phase: number): [number, number] {
   return [radius * Math.sin(angle), -radius * Math.cos(angle)];
 }
 
-/** Returns the SVG path of a bar, a ring sector that starts at the phase `start` and covers `cycles` cycles. */
-function makeSectorPath(radius: number, start: number, cycles: number): string {
+/** Returns the SVG path of a bar, a ring sector that starts at phase `start` and covers `fraction` of the circle. */
+function makeSectorPath(radius: number, start: number, fraction: number): string {
   const halfWidth = BAR_WIDTH / 2;
   const [inner, outer] = [radius - halfWidth, radius + halfWidth];
-  const largeFlag = cycles > 0.5 ? 1 : 0;
-  const [a, b] = [locateOnRing(outer, start), locateOnRing(outer, start + cycles)];
-  const [c, d] = [locateOnRing(inner, start + cycles), locateOnRing(inner, start)];
+  const largeFlag = fraction > 0.5 ? 1 : 0;
+  const [a, b] = [locateOnRing(outer, start), locateOnRing(outer, start + fraction)];
+  const [c, d] = [locateOnRing(inner, start + fraction), locateOnRing(inner, start)];
   const formatArc = (r: number, sweep: number, [x, y]: [number, number]) => `A ${r} ${r} 0 ${largeFlag} ${sweep} ${x} ${y}`;
   return `M ${a[0]} ${a[1]} ${formatArc(outer, 1, b)} L ${c[0]} ${c[1]} ${formatArc(inner, 0, d)} Z`;
 }

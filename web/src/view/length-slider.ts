@@ -1,5 +1,5 @@
-// The slider of one length. Its range has the values with which the robot walks; a bar below it covers the values with
-// printable parts.
+// The slider of one length. Its range contains the values with which the robot walks; a bar below it marks those whose
+// parts can be printed.
 import type { Edits, Length } from '../robot';
 import { element } from './elements';
 import { makeEditsWithTwin } from './tried-lengths';
@@ -13,21 +13,21 @@ export class LengthSlider {
   hasUserChosen = false;
 
   /**
-   * `tryLengths` is called with the new lengths while the slider is dragged; `isLast` is true at the end of the drag.
-   * `onChoice` is called when the user chooses another length or turns symmetry on or off. `chosenKey` is the key of
-   * the initial length.
+   * `tryLengths` is called with the new lengths while the slider is dragged; `isDragEnd` is true at the end of the
+   * drag. `onChoice` is called when the user first chooses a length, chooses another one, or turns symmetry on or off.
+   * `chosenKey` is the key of the initial length.
    */
   constructor(
-    tryLengths: (edits: Edits, isLast: boolean) => void,
+    tryLengths: (edits: Edits, isDragEnd: boolean) => void,
     private readonly onChoice: () => void,
     private chosenKey = 'leg.crank',
   ) {
     element('lengths').addEventListener('focusin', ({ target }) => this.choose((target as HTMLInputElement).name));
     this.slider.addEventListener('focus', () => this.choose(this.chosenKey));
     this.symmetryBox.addEventListener('change', () => this.onChoice());
-    const showAndTry = (isLast: boolean) => {
+    const showAndTry = (isDragEnd: boolean) => {
       this.showValue(this.slider.valueAsNumber);
-      tryLengths(makeEditsWithTwin(this.chosenKey, this.slider.valueAsNumber, this.lengths, this.symmetryBox.checked), isLast);
+      tryLengths(makeEditsWithTwin(this.chosenKey, this.slider.valueAsNumber, this.lengths, this.symmetryBox.checked), isDragEnd);
     };
     this.slider.addEventListener('input', () => showAndTry(false));
     this.slider.addEventListener('change', () => showAndTry(true));
@@ -61,7 +61,7 @@ export class LengthSlider {
   private show(): void {
     const { chosenLength } = this;
     element('length-name').textContent = chosenLength?.label ?? '';
-    this.showPrintable(null, '');
+    this.showPrintableRange(null, '');
     if (chosenLength) this.showValue(chosenLength.value);
   }
 
@@ -72,7 +72,7 @@ export class LengthSlider {
   }
 
   /** Shows the range of printable values (null while it is unknown) and a message. */
-  showPrintable(range: [number, number] | null, message: string): void {
+  showPrintableRange(range: [number, number] | null, message: string): void {
     element('length-printed').textContent = message;
     this.printableBar.hidden = range === null;
     const { min, max } = this.slider;

@@ -10,12 +10,12 @@ import { describeRefusal, makeEditsWithTwin, showOffers } from './tried-lengths'
 export function setUpLengths(session: Session, offerValidLengths: (edits: Edits) => void): void {
   const symmetryBox = element<HTMLInputElement>('alike');
   const inputs = new Map<string, HTMLInputElement>();
-  const setMessage = (message: string) => {
+  const replaceOffersWithMessage = (message: string) => {
     showMessage(element('lengths-refusal'), message);
     showOffers(null, session);
   };
   /** Shows lengths of the robot in their inputs, and marks these inputs as invalid or valid. */
-  const putLengths = (lengths: Length[], { isInvalid }: { isInvalid: boolean }) => {
+  const fillInputs = (lengths: Length[], { isInvalid }: { isInvalid: boolean }) => {
     for (const { key, value } of lengths) {
       const input = inputs.get(key);
       if (!input) continue;
@@ -26,14 +26,14 @@ export function setUpLengths(session: Session, offerValidLengths: (edits: Edits)
   const changeLength = async (key: string, value: number) => {
     const { lengths } = session.robot.description;
     // An emptied input returns to the robot's length.
-    if (!Number.isFinite(value)) return putLengths(lengths, { isInvalid: false });
+    if (!Number.isFinite(value)) return fillInputs(lengths, { isInvalid: false });
     const edits = makeEditsWithTwin(key, value, lengths, symmetryBox.checked);
-    const { text, refusal } = Robot.tryLengths(session.robot.toml, edits, false);
-    if (!refusal) return void (await session.robot.change(text));
+    const { text: changedToml, refusal } = Robot.tryLengths(session.robot.toml, edits, false);
+    if (!refusal) return void (await session.robot.change(changedToml));
     const refusedLengths = lengths.filter((length) => edits.some(([editedKey]) => editedKey === length.key));
     // The inputs return to the robot's lengths.
-    putLengths(refusedLengths, { isInvalid: true });
-    setMessage(describeRefusal(`${value} ${refusedLengths[0]?.unit}`, edits, refusal, lengths));
+    fillInputs(refusedLengths, { isInvalid: true });
+    replaceOffersWithMessage(describeRefusal(`${value} ${refusedLengths[0]?.unit}`, edits, refusal, lengths));
     offerValidLengths(edits);
   };
   const buildInputs = (lengths: Length[]) => {
@@ -48,11 +48,11 @@ export function setUpLengths(session: Session, offerValidLengths: (edits: Edits)
   element('lengths-reset').addEventListener('click', () => void session.robot.change(session.robot.original));
   element('lengths-save').addEventListener('click', () => {
     const refusal = downloadRobot(session.robot.toml, session.robot.floor);
-    if (refusal) setMessage(`This robot.toml does not have the settings of Legs, feet and floor: ${refusal.reason}`);
+    if (refusal) replaceOffersWithMessage(`This robot.toml does not have the settings of Legs, feet and floor: ${refusal.reason}`);
   });
   session.robot.follow(({ lengths }) => {
     if (lengths.length !== inputs.size) buildInputs(lengths);
-    putLengths(lengths, { isInvalid: false });
-    setMessage('');
+    fillInputs(lengths, { isInvalid: false });
+    replaceOffersWithMessage('');
   });
 }

@@ -31,7 +31,7 @@ export class PartsView {
   private worker: PartsWorker | null = null;
   private model: Model | null = null;
   /** The robot.toml that is shown or being loaded; empty for none. */
-  private shownToml = '';
+  private requestedToml = '';
   /** The robot.toml of the shown list of files. */
   private listedToml = '';
   /** The number of the shown step of the guide, from 1; null for the whole robot. */
@@ -85,10 +85,13 @@ export class PartsView {
     this.show3d(toml);
   }
 
-  /** Shows a robot, which may differ from the session's, if the stage is in 3D. */
+  /**
+   * Shows a robot, which may differ from the session's, if the stage is in 3D. A robot other than the shown one cancels
+   * the making of files.
+   */
   show3d(toml: string): void {
-    if (!this.is3d || toml === this.shownToml) return;
-    this.shownToml = toml;
+    if (!this.is3d || toml === this.requestedToml) return;
+    this.requestedToml = toml;
     this.cancelMaking?.();
     void this.load(toml);
   }
@@ -98,8 +101,8 @@ export class PartsView {
     try {
       const [{ makeModel }, { RobotView }] = await Promise.all([import('../parts/make-parts'), import('../parts/robot-view')]);
       const { worker, model, solids } = await makeModel(toml);
-      if (toml !== this.shownToml) return worker.terminate();
-      // Until now, the previous robot was shown.
+      if (toml !== this.requestedToml) return worker.terminate();
+      // The previous robot stays on the stage until this point.
       this.worker?.terminate();
       this.worker = worker;
       this.model = model;
@@ -110,9 +113,9 @@ export class PartsView {
       this.showStep(this.step !== null && this.step <= model.steps.length ? this.step : null);
       this.pickBody(null);
     } catch (error) {
-      if (toml !== this.shownToml) return;
-      // A failed download is repeated when the 3D view is opened again.
-      this.shownToml = '';
+      if (toml !== this.requestedToml) return;
+      // A failed attempt is repeated when the 3D view is opened again.
+      this.requestedToml = '';
       setMessage('parts-message', `Cannot make the parts of this robot: ${getMessage(error)}${this.model ? ' The previous robot is still shown.' : ''}`);
     }
   }
@@ -123,7 +126,7 @@ export class PartsView {
       return new RobotViewClass(this.canvas, (body) => this.pickBody(body));
     } catch {
       this.canvas.hidden = true;
-      setMessage('canvas-3d-none', 'This browser has no WebGL, or it is switched off; it cannot show the robot in 3D. You can still make the files.');
+      setMessage('canvas-3d-none', 'This browser has no WebGL, or WebGL is switched off, so the page cannot show the robot in 3D. You can still make the files.');
       return null;
     }
   }
@@ -195,10 +198,10 @@ export class PartsView {
   render(frame: Frame | null): void {
     const { robotView, worker } = this;
     if (!robotView || !worker || !robotView.renderBudget.mayRender() || !this.is3d) return;
-    const neutral = this.session.robot.description.servos.map((servo) => servo.neutral);
+    const neutralAngles = this.session.robot.description.servos.map((servo) => servo.neutral);
     // The robot stands still while a step of the guide or a collision is shown.
     const isMoving = this.step === null && !this.collidingPair && frame?.scene != null;
-    const [angles, lags] = isMoving ? [frame.scene?.angles ?? neutral, frame.lags] : [this.collidingPair?.pose ?? neutral, [0, 0, 0, 0]];
+    const [angles, lags] = isMoving ? [frame.scene?.angles ?? neutralAngles, frame.lags] : [this.collidingPair?.pose ?? neutralAngles, [0, 0, 0, 0]];
     const poseText = [...angles, ...lags].map((angle) => angle.toFixed(2)).join(' ');
     if (poseText !== this.requestedPose) {
       this.requestedPose = poseText;
@@ -254,7 +257,7 @@ export class PartsView {
   }
 
   private describeArchive({ paths, fileCount, minDistanceMm }: PartsArchive, selection: 'all' | 'changed', file: string): string {
-    const distanceText = minDistanceMm === null ? '' : ` No two parts come nearer than ${minDistanceMm.toFixed(2)} mm in any pose that the guard accepts.`;
+    const distanceText = minDistanceMm === null ? '' : ` No two parts come closer to each other than ${minDistanceMm.toFixed(2)} mm in any pose that the guard accepts.`;
     if (selection === 'all') return `${fileCount} files.${distanceText}`;
     return paths.length === 0 ? `None of the ${fileCount} files changed.` : `${paths.length} of ${fileCount} files differ from the files of ${file}.toml:`;
   }

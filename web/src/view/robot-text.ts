@@ -1,4 +1,4 @@
-// The panel with the robot.toml as text: the user can edit, open, drop, undo and share it.
+// The panel with the robot.toml as text: the user can edit and share it, open or drop a file, and undo changes.
 import { parseFragment } from '../address';
 import { makeLink, unpack } from '../share-link';
 import { type Refusal, refuse } from '../robot';
@@ -19,7 +19,10 @@ export class RobotTextView {
   private history: string[] = [];
   /** The index of the shown robot.toml in the history. */
   private position = 0;
-  /** The refusal of the shown text; null if the session has loaded this text. */
+  /**
+   * The refusal of the last text that was tried; null if that text was loaded. The shown text may have been edited
+   * since.
+   */
   refusal: Refusal | null = null;
 
   /** `onChange` is called when the text or its refusal changes. */
@@ -29,11 +32,11 @@ export class RobotTextView {
     private readonly onChange: () => void,
   ) {
     element('robot-write').addEventListener('click', () => void this.loadAndWrite());
-    element('robot-take').addEventListener('click', () => void this.loadAndShow(this.textBox.value));
+    element('robot-take').addEventListener('click', () => void this.loadOrShowError(this.textBox.value));
     this.textBox.addEventListener('keydown', (event) => {
       if (event.key !== 'Enter' || !(event.ctrlKey || event.metaKey)) return;
       event.preventDefault();
-      void this.loadAndShow(this.textBox.value);
+      void this.loadOrShowError(this.textBox.value);
     });
     this.textBox.addEventListener('input', onChange);
     this.undoButton.addEventListener('click', () => void this.undo());
@@ -61,7 +64,7 @@ export class RobotTextView {
       this.history = [...this.history.slice(0, this.position + 1).slice(-MAX_UNDO_STEPS), toml];
       this.position = this.history.length - 1;
     }
-    // The name is empty while a robot chosen from the list is loading: it has no changes to undo.
+    // `file` is empty while a robot from the list is loading; such a robot has no changes to undo.
     if (file === '') {
       this.history.splice(0, this.position);
       this.position = 0;
@@ -80,12 +83,12 @@ export class RobotTextView {
     return this.position > 0 || this.refusal !== null;
   }
 
-  /** Loads the robot in an address, if any; returns false if the robot is invalid. */
+  /** Loads the robot in an address, if any; returns false if the link or the robot in it is invalid. */
   async loadFromAddress(hash = location.hash): Promise<boolean> {
     try {
       const encoded = parseFragment(hash).get('robot');
       const toml = encoded === null ? this.session.robot.toml : await unpack(encoded);
-      return toml === this.session.robot.toml || (await this.loadAndShow(toml));
+      return toml === this.session.robot.toml || (await this.loadOrShowError(toml));
     } catch (error) {
       reveal(this.textBox);
       this.showRefusal(refuse(getMessage(error)));
@@ -98,7 +101,7 @@ export class RobotTextView {
     // The box must not show a binary file; a folder has no text.
     const toml = file.size > 1_000_000 ? '' : await file.text().catch(() => '');
     if (toml === '' || toml.includes('\0')) return this.showRefusal(refuse(`${file.name} is not a robot.toml.`));
-    await this.loadAndShow(toml);
+    await this.loadOrShowError(toml);
   }
 
   /** Loads a text as the robot, or shows it with its error; returns true if the text was accepted. */
@@ -114,7 +117,7 @@ export class RobotTextView {
    * Loads a text as the robot; after a refusal, opens the panel and selects the line with the error. Returns true if
    * the text was accepted.
    */
-  private async loadAndShow(toml: string): Promise<boolean> {
+  private async loadOrShowError(toml: string): Promise<boolean> {
     if (await this.loadText(toml)) return true;
     reveal(this.textBox);
     this.selectErrorLine();
@@ -123,7 +126,7 @@ export class RobotTextView {
 
   /** Loads the text as the robot and writes the robot to the board. */
   private async loadAndWrite(): Promise<void> {
-    if (this.textBox.value !== this.session.robot.toml) await this.loadAndShow(this.textBox.value);
+    if (this.textBox.value !== this.session.robot.toml) await this.loadOrShowError(this.textBox.value);
     if (this.textBox.value !== this.session.robot.toml) return;
     await this.writer.writeRobot('robot');
   }
@@ -150,7 +153,7 @@ export class RobotTextView {
   private async copyLink(): Promise<void> {
     try {
       await navigator.clipboard.writeText(await makeLink(this.session.robot.toml));
-      this.setMessage('The link is copied: it opens this robot, without the comments of its text.');
+      this.setMessage('Link copied. It opens this robot, without the comments in the text.');
     } catch (error) {
       this.setMessage(`Cannot copy the link: ${getMessage(error)}`);
     }
@@ -166,7 +169,7 @@ export class RobotTextView {
     const { toml } = this.session.robot;
     try {
       const [{ makeQrCode }, link] = await Promise.all([import('./qr-code'), makeLink(toml)]);
-      // The code would belong to the previous robot.
+      // If the robot has changed meanwhile, the code would belong to the previous one.
       if (this.session.robot.toml !== toml) return;
       qrCodeBox.replaceChildren(makeQrCode(link));
       const isLocal = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);

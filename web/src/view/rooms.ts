@@ -14,7 +14,7 @@ const PAGE_NAME = document.title;
 const toRoomId = (room: string) => `room-${room}`;
 const findRooms = () => [...document.querySelectorAll<HTMLElement>('.room')];
 
-/** Opens the room that an address names, or the first room. */
+/** Opens the room that an address's fragment names, or the first room. */
 export function openRoom(hash: string): void {
   const requestedId = toRoomId(parseFragment(hash).get('room') ?? FIRST_ROOM);
   const room = findRooms().find(({ id }) => id === requestedId) ?? findRooms()[0];
@@ -28,7 +28,7 @@ export function openRoom(hash: string): void {
   document.title = `${room.querySelector('h2')?.textContent}, ${PAGE_NAME}`;
   scrollTo(0, 0);
   document.dispatchEvent(new Event(ROOM_OPENED));
-  // The room's panels show what has changed while the room was closed.
+  // Tells the unfolded panels to draw what changed while the room was closed.
   for (const panel of room.querySelectorAll('details[open]')) panel.dispatchEvent(new Event('toggle'));
 }
 
@@ -40,13 +40,13 @@ export const isShown = (panel: HTMLDetailsElement) => panel.open && panel.closes
  * and servos are the same as in the last call.
  */
 export function followShownRobot(panel: HTMLDetailsElement, session: Session, show: (description: Description) => void): void {
-  let shownRobot = '';
+  let shownKey = '';
   const update = () => {
     if (!isShown(panel) || session.robot.toml === '') return;
     const { toml, description, floor, servos } = session.robot;
-    const robot = JSON.stringify([toml, floor, servos]);
-    if (robot === shownRobot) return;
-    shownRobot = robot;
+    const key = JSON.stringify([toml, floor, servos]);
+    if (key === shownKey) return;
+    shownKey = key;
     show(description);
   };
   panel.addEventListener('toggle', update);

@@ -26,7 +26,7 @@ export class SketchView {
   private readonly jointGroup = this.picture.appendChild(makeSvg('g', {}));
   /** Tries other lengths in a worker. */
   private readonly lengthsQueue = createRobotQueue((robot, request: LengthsRequest) => robot.tryLengths(request), (response: LengthsResponse) => this.handleResponse(response));
-  private readonly slider = new LengthSlider((edits, isLast) => this.tryLengths(edits, isLast), () => this.requestDrawing());
+  private readonly slider = new LengthSlider((edits, isDragEnd) => this.tryLengths(edits, isDragEnd), () => this.requestDrawing());
   /** The dragged joint, in its state at the start of the drag; null if none is dragged. */
   private draggedJoint: Joint | null = null;
   /** True between the end of a drag and the response for its last position. */
@@ -54,10 +54,10 @@ export class SketchView {
     this.lengthsQueue.submit({ toml: this.session.robot.toml, edits: [], isLast: false, keys: this.slider.keys });
   }
 
-  /** Tries the lengths of a drag; `isLast` is true at its end. */
-  private tryLengths(edits: Edits, isLast: boolean): void {
-    this.isDragEnding ||= isLast;
-    this.lengthsQueue.submit({ toml: this.session.robot.toml, edits, isLast, keys: [] });
+  /** Tries the lengths of a drag; `isDragEnd` is true at its end. */
+  private tryLengths(edits: Edits, isDragEnd: boolean): void {
+    this.isDragEnding ||= isDragEnd;
+    this.lengthsQueue.submit({ toml: this.session.robot.toml, edits, isLast: isDragEnd, keys: [] });
   }
 
   /** Searches for valid alternatives to refused lengths and offers them. */
@@ -97,7 +97,7 @@ export class SketchView {
 
   private applyRange(range: [number, number]): void {
     this.slider.setRange(range);
-    if (this.slider.hasUserChosen) this.fit.findRange(this.slider.keys, range, (printable, message) => this.slider.showPrintable(printable, message));
+    if (this.slider.hasUserChosen) this.fit.findRange(this.slider.keys, range, (printable, message) => this.slider.showPrintableRange(printable, message));
   }
 
   /** Draws the robot; if `fitsView`, fits the view to it. A drag keeps the view and the elements of the joints. */
@@ -153,9 +153,9 @@ export class SketchView {
     return circle;
   }
 
-  private dragJoint(joint: Joint, event: PointerEvent, isLast = false): void {
+  private dragJoint(joint: Joint, event: PointerEvent, isDragEnd = false): void {
     const position = toPicture(this.picture, event);
-    if (position) this.tryLengths(joint.makeEdits([position.x, -position.y], element<HTMLInputElement>('alike').checked), isLast);
+    if (position) this.tryLengths(joint.makeEdits([position.x, -position.y], element<HTMLInputElement>('alike').checked), isDragEnd);
   }
 
   /** Selects the number input for the length of a clicked bar. */

@@ -34,7 +34,7 @@ pub struct MeasureRequest {
     pub walks: Vec<RequestedWalk>,
 }
 
-/// A walk in the video that is to be measured.
+/// A walk to measure in the video.
 #[derive(Debug, Clone, PartialEq, Deserialize, Tsify)]
 pub struct RequestedWalk {
     /// The gait's name.
@@ -49,7 +49,7 @@ pub struct Results {
     /// The gaits as `lizard measure --json` prints them; walks of the same gait are combined.
     #[tsify(type = "Report[]")]
     pub gaits: serde_json::Value,
-    /// For each walk that cannot be measured, a message with its gait and the reason.
+    /// For each requested walk that cannot be measured, a message with its gait and the reason.
     pub problems: Vec<String>,
 }
 
@@ -94,8 +94,8 @@ impl Camera {
             let gait = robot.gait(&walk.gait).filter(|gait| gait.has_movement());
             gait.ok_or_else(|| format!("no gait `{}` moves this robot", walk.gait))
         };
-        let named_gaits = request.walks.iter().map(find_gait);
-        let named_gaits = named_gaits.collect::<Result<Vec<_>, _>>()?;
+        let lookups = request.walks.iter().map(find_gait);
+        let named_gaits = lookups.collect::<Result<Vec<_>, _>>()?;
         let deck_height = request.deck_height;
         let setup = Setup {
             print_scale: request.ruler_length / sheet::RULER_LENGTH,

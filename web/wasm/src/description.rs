@@ -276,7 +276,7 @@ const LINK_LABELS_AND_TWINS: [(&str, usize); 20] = [
 
 /// Returns the lengths of a robot that the user may change, with their current values.
 fn list_lengths(robot: &Robot) -> Vec<LengthEntry> {
-    let (leg, feet) = (robot.lizard().leg, robot.ground().feet);
+    let (leg, geometry) = (robot.lizard().leg, robot.ground().legs);
     let make_entry = |key: &str, label, twin: &str, value| LengthEntry {
         key: key.to_string(),
         label,
@@ -291,8 +291,8 @@ fn list_lengths(robot: &Robot) -> Vec<LengthEntry> {
         make_entry(&key, label, &twin, value)
     });
     let [forward_key, side_key] = HIP_KEYS;
-    let [front_side, hind_side] = feet.hip_side;
-    let (forward, mount) = (feet.hip_forward, feet.mount_angle);
+    let [front_side, hind_side] = geometry.hip_side;
+    let (forward, mount) = (geometry.hip_forward, geometry.mount_angle);
     let legs = [
         make_entry("leg.ground", "leg ground link", "leg.coupler", leg.ground),
         make_entry("leg.crank", "leg crank", "leg.follower", leg.crank),

@@ -18,7 +18,7 @@ pub fn print_ascii(out: &mut impl Output, bytes: impl Iterator<Item = u8>) {
 
 /// Prints the four chassis angles of a pose in degrees, with commas between them.
 pub fn print_angles(out: &mut impl Output, pose: &Pose, robot: &Robot) {
-    for servo in Servo::all() {
+    for servo in Servo::iter() {
         if servo != Servo::A1 {
             out.write_byte(b',');
         }

@@ -61,7 +61,8 @@ fn first_quadrant_sine(angle_in_quadrant: u16) -> i16 {
     let entry = QUARTER_WAVE_SINES.at(index).load();
     // At 0x4000, `at` returns the last entry.
     let next_entry = QUARTER_WAVE_SINES.at(index + 1).load();
-    // A step is at most 402, which does not fit into a byte, so its two bytes are multiplied separately.
+    // A step is at most 402, so its product with the fraction can exceed 16 bits; the step's two bytes are therefore
+    // multiplied separately.
     let step = (next_entry - entry) as u16;
     let fraction = (angle_in_quadrant << 1) & 0xff;
     let rise = (step >> 8) * fraction + (((step & 0xff) * fraction + 0x80) >> 8);

@@ -57,7 +57,7 @@ impl Settings {
     pub fn for_robot(robot: &Robot) -> Self {
         let mut settings = Self::NONE;
         settings.set_header(robot);
-        for servo in Servo::all() {
+        for servo in Servo::iter() {
             settings.set_adjustment(
                 servo,
                 Adjustment::from_calibration(&robot.servo_calibration(servo)),
@@ -195,7 +195,7 @@ impl Settings {
     /// True if the travel of every servo covers the range that the gaits need.
     #[inline(never)]
     pub fn cover_gaits(&self, robot: &Robot) -> bool {
-        Servo::all().all(|servo| {
+        Servo::iter().all(|servo| {
             let calibration = self.calibration(servo, robot);
             robot.needed_travel(servo).is_within(&calibration)
         })

@@ -8,9 +8,9 @@ pub enum Servo {
     A1,
     /// Front right, theta4; its leg is RF (right front).
     A2,
-    /// Rear right, theta8; its leg is RH (right hind).
+    /// Hind right, theta8; its leg is RH (right hind).
     A3,
-    /// Rear left, theta5; its leg is LH (left hind).
+    /// Hind left, theta5; its leg is LH (left hind).
     A4,
 }
 
@@ -37,7 +37,7 @@ impl Servo {
     pub const ALL: [Self; 4] = [Self::A1, Self::A2, Self::A3, Self::A4];
 
     /// Iterates over all four servos; unlike [`Servo::ALL`], this requires no table in RAM.
-    pub fn all() -> impl Iterator<Item = Self> {
+    pub fn iter() -> impl Iterator<Item = Self> {
         (0..4).map(Self::at)
     }
 
@@ -73,7 +73,7 @@ impl Servo {
 }
 
 impl End {
-    /// The servos of the left and the right crank, in the frame of this end.
+    /// The servos of the left and the right crank.
     pub const fn servos(self) -> [Servo; 2] {
         match self {
             Self::Head => [Servo::A1, Servo::A2],

@@ -27,18 +27,18 @@ pub struct RunningRobot {
 impl RunningRobot {
     /// Powers on a robot with good supplies and a blank EEPROM.
     pub fn power_on(robot: Robot<'static>) -> Self {
-        Self::with_memory(robot, Eeprom::blank(), Restart::NONE)
+        Self::with_eeprom(robot, Eeprom::blank(), Restart::NONE)
     }
 
-    /// Starts a robot with this EEPROM after a restart.
-    pub fn with_memory(robot: Robot<'static>, memory: Eeprom, restart: Restart) -> Self {
+    /// Starts a robot with good supplies and this EEPROM; `restart` says what it recovers from.
+    pub fn with_eeprom(robot: Robot<'static>, eeprom: Eeprom, restart: Restart) -> Self {
         let supplies = robot.supplies();
         // A rail voltage well above the thresholds of the rail.
         let rail_mv = u32::from(supplies.rail.slow_mv) + 1_000;
         let reading = compute_reading(&supplies, 5_000, rail_mv.max(6_000));
         let board = VirtualBoard {
             adc: Adc::new(reading, supplies.rail_reference_mv != 0),
-            ..VirtualBoard::new(memory).after_restart(restart)
+            ..VirtualBoard::new(eeprom).after_restart(restart)
         };
         Self::with_flash(robot.section(), board)
     }
@@ -60,7 +60,8 @@ impl RunningRobot {
         self.main.console().has_output(self.main.control())
     }
 
-    /// Runs steps of the main loop until it only waits for time to pass.
+    /// Runs steps of the main loop until it only waits for time to pass. Does nothing once the watchdog has ended the
+    /// pulses, until the reset.
     ///
     /// # Panics
     /// Panics if the main loop never becomes idle.
@@ -92,9 +93,9 @@ impl RunningRobot {
     }
 
     /// Runs frames and returns their output.
-    pub fn run_frames(&mut self, frames: u32) -> Vec<String> {
+    pub fn run_frames(&mut self, frame_count: u32) -> Vec<String> {
         let mut printed_lines = Vec::new();
-        for _ in 0..frames {
+        for _ in 0..frame_count {
             self.run_frame();
             printed_lines.extend(self.read_lines());
         }
@@ -102,9 +103,9 @@ impl RunningRobot {
     }
 
     /// Runs frames while the output is not read.
-    pub fn run_without_reader(&mut self, frames: u32) {
+    pub fn run_without_reader(&mut self, frame_count: u32) {
         self.board.transmitter.is_held = true;
-        for _ in 0..frames {
+        for _ in 0..frame_count {
             self.run_frame();
         }
         self.board.transmitter.is_held = false;
@@ -154,8 +155,8 @@ impl RunningRobot {
         let (earlier_lines, later_lines) = printed_lines.split_at(answer_index);
         let format_line = |line: &String| std::format!("{line}\r\n");
         self.board.transmitter.text = later_lines.iter().map(format_line).collect();
-        let are_notes = printed_lines.iter().all(|line| line.starts_with("# "));
-        assert!(are_notes, "{earlier_lines:?} {later_lines:?}");
+        let are_all_notes = printed_lines.iter().all(|line| line.starts_with("# "));
+        assert!(are_all_notes, "{earlier_lines:?} {later_lines:?}");
         answer
     }
 

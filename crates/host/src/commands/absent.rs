@@ -62,7 +62,7 @@ pub(super) fn list_absent(commands: &[CommandEntry], has_feature: impl Fn(&str) 
 /// The arguments of a command that is missing from this build; they are never read.
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
 #[derive(clap::Args)]
-pub struct AbsentCommand {
+pub struct AbsentCommandArgs {
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
     _arguments: Vec<OsString>,
 }

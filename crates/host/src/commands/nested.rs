@@ -14,7 +14,7 @@ use crate::simulate;
 use crate::{Failure, commands::completions};
 
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
-use super::absent::{AbsentCommand, absent_command_failure, is_in_build};
+use super::absent::{AbsentCommandArgs, absent_command_failure, is_in_build};
 
 // The types in this file have no doc comments because clap would show them instead of the arguments' comments.
 
@@ -67,7 +67,7 @@ pub enum ConsoleSubcommand {
     Replay(drive::console::replay::Args),
     /// Draw a recorded session (missing: this program was built without the simulator)
     #[cfg(not(feature = "simulator"))]
-    Replay(AbsentCommand),
+    Replay(AbsentCommandArgs),
 }
 
 /// Runs `lizard console` or its subcommand.
@@ -154,7 +154,7 @@ pub enum DrawSubcommand {
     Charts(crate::paper::charts::Args),
     /// Draw all charts (missing: this program was built without the commands that compute)
     #[cfg(not(feature = "paper"))]
-    Charts(AbsentCommand),
+    Charts(AbsentCommandArgs),
 }
 
 /// Runs `lizard draw` or its subcommand.

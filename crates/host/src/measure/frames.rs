@@ -9,8 +9,9 @@ use crate::Failure;
 /// File extensions of frames.
 const FRAME_EXTENSIONS: [&str; 3] = ["png", "jpg", "jpeg"];
 
-/// Lists the frames in a folder, each with its time, s, in the order of time. `frame_rate` replaces the times in the
-/// names; their order is that of the times in the names if every name has one, otherwise that of the numbers.
+/// Lists the frames in a folder, each with its time, s, in the order of time. If every name contains a time, the frames
+/// are sorted by these times, otherwise by the numbers in the names. With `frame_rate`, each frame's time follows from
+/// its place in this order; without it, the time is that in the name.
 ///
 /// # Errors
 /// Fails if the folder cannot be read or has no frames, or if neither `frame_rate` nor the names give the times.

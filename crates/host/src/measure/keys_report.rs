@@ -229,7 +229,7 @@ fn format_goodness(identified: &Identification) -> String {
     let gait = &identified.movements[movement_index].measured.gait;
     let comparison = if difference > 0.0 { "more" } else { "less" };
     let deviation = format!(
-        "`{gait}`, {name}: {:.1} errors {comparison} than the model",
+        "`{gait}`, {name}: {:.1} standard errors {comparison} than the model",
         difference.abs()
     );
     if !is_explained {

@@ -161,10 +161,13 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
             let (x, y) = plot.to_page_point(interval_left + 0.5, plot.y_range.0);
             (x, y + 20.0 + 18.0 * lines)
         };
+        group = group.add(text_middle(COMPONENT_LABELS[i], point_below(0.0), 15.0));
         let verdict = component.format_verdict();
-        group = group
-            .add(text_middle(COMPONENT_LABELS[i], point_below(0.0), 15.0))
-            .add(text(&verdict, point_below(1.0), 13.0, GREY, Anchor::Middle));
+        // "more" or "less" is on a line of its own, because the three verdicts are beside each other.
+        let (first_line, second_line) = verdict.rsplit_once(' ').unwrap_or((&verdict, ""));
+        for (lines, part) in [(1.0, first_line), (2.0, second_line)] {
+            group = group.add(text(part, point_below(lines), 13.0, GREY, Anchor::Middle));
+        }
     }
     let [line_start, line_end] = [plot.x_range.0, plot.x_range.1].map(|x| (x, 0.0));
     group = group.add(plot.line(line_start, line_end, "black", 1.0));

@@ -9,9 +9,9 @@ use serde::ser::{Serialize, Serializer};
 use crate::paper::poses::TimedPose;
 use crate::shared::number::round_to_decimals;
 
-/// A line of `lizard pose --json`; the field names are the JSON keys. Angles are in degrees, lengths in mm, both in the
-/// chassis frame. If the pose has no solution, the solution's fields are null. `seconds` is present only if the stream
-/// has this column.
+/// A line of `lizard pose --json`; the field names are the JSON keys. Angles are in degrees and points in
+/// mm, both in the chassis frame; only a leg's coupler angle is relative to its ground link. If the pose has no
+/// solution, the solution's fields are null. `seconds` is present only if the stream has this column.
 #[derive(Default, serde::Serialize)]
 pub struct PoseLine {
     #[serde(skip_serializing_if = "Option::is_none")]

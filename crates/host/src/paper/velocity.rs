@@ -68,7 +68,7 @@ impl From<ServoMotionArgs> for ServoMotion {
     }
 }
 
-/// Prints the rate and the acceleration of each passive joint.
+/// Prints the rate and the acceleration of each passive joint and of the head's, tail's and sliders' coordinates.
 ///
 /// # Errors
 /// Fails at a type-2 singularity, where the rates are undefined, or if the output cannot be written.
@@ -95,13 +95,16 @@ fn format_text(rows: &[Row]) -> String {
     for row in rows {
         let is_small = |deviation: f64, value: f64| deviation.abs() < 1e-6 * (100.0 + value.abs());
         let verdict = match (row.rate_deviation, row.acceleration_deviation) {
-            (Some(rate), Some(acceleration))
-                if is_small(rate, row.rate) && is_small(acceleration, row.acceleration) =>
+            (Some(rate_deviation), Some(acceleration_deviation))
+                if is_small(rate_deviation, row.rate)
+                    && is_small(acceleration_deviation, row.acceleration) =>
             {
                 "agree to 1e-6".to_string()
             }
-            (Some(rate), Some(acceleration)) => format!("off by {rate:+.0e}, {acceleration:+.0e}"),
-            _ => "no neighbours".to_string(),
+            (Some(rate_deviation), Some(acceleration_deviation)) => {
+                format!("off by {rate_deviation:+.0e}, {acceleration_deviation:+.0e}")
+            }
+            _ => "no neighbouring pose".to_string(),
         };
         text += &format!(
             "{:9} {:10.4} {:3} {:+12.4} {:+20.4}   {verdict}\n",
@@ -115,11 +118,11 @@ fn format_text(rows: &[Row]) -> String {
     text
 }
 
-/// The name, unit, value and derivative of a joint or coordinate.
-type Joint = (&'static str, &'static str, f64, Derivative<f64>);
+/// The name, unit, value and derivative of a joint angle or coordinate.
+type Coordinate = (&'static str, &'static str, f64, Derivative<f64>);
 
 /// Lists all joints and coordinates of a solution, with their derivatives.
-fn list_joints(solution: &Solution, derivatives: &Derivatives) -> [Joint; 12] {
+fn list_joints(solution: &Solution, derivatives: &Derivatives) -> [Coordinate; 12] {
     let (head, tail) = (solution.head_point(), solution.tail_point());
     let (left, right) = (&solution.left, &solution.right);
     let ends = [derivatives.head, derivatives.tail];
@@ -158,7 +161,7 @@ fn compute_rows(lizard: &Lizard, solution: &Solution, servo_motion: &ServoMotion
                 + servo_motion.accelerations[i] * t * t / 2.0
         });
         let neighbour = lizard.solve(&Pose::from(angles)).ok()?;
-        // Only the values are of the neighbouring pose; its derivatives are not needed.
+        // `list_joints` also needs derivatives; those of the start pose will do, because only the values are used.
         Some(list_joints(&neighbour, &derivatives).map(|(_, _, value, _)| value))
     };
     let neighbours = match [-2.0, -1.0, 1.0, 2.0].map(compute_values) {

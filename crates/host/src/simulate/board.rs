@@ -108,7 +108,7 @@ impl SimulatedBoard {
     /// Powers on a board with an image that already contains the robot.
     pub fn with_image(image: Image, fidelity: Fidelity, robot: &Robot) -> Self {
         let mut uno = Uno::with_image(image, fidelity);
-        supplies::connect(&mut uno, robot);
+        supplies::connect_healthy_robot(&mut uno, robot);
         Self::with_uno(uno, servo_pins(robot))
     }
 

@@ -1,4 +1,4 @@
-//! Tests of the `lizard` commands as a user runs them: output, exit codes, and written files and pages.
+//! Tests of the `lizard` commands as a user runs them: output, exit codes, written files, and the examples in docs/.
 
 mod another_robot;
 mod command_line;

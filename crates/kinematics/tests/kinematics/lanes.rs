@@ -30,7 +30,7 @@ proptest! {
         });
         for end in End::ALL {
             let pose = robot.end_pose_unchecked(end, cranks);
-            let is_closed = robot.end(end).closes(&pose);
+            let is_closed = robot.end(end).are_loops_closed(&pose);
             for i in 0..LANE_COUNT {
                 let [left, right] = end.pick(poses[i]).map(|angle| end.sign() * angle);
                 let single_pose = robot.end(end).forward(left, right);
@@ -48,7 +48,7 @@ proptest! {
         }
         for side in Side::ALL {
             let pose = robot.side_pose_unchecked(side, cranks);
-            let is_closed = robot.side(side).closes(&pose);
+            let is_closed = robot.side(side).are_loops_closed(&pose);
             for i in 0..LANE_COUNT {
                 let [front, rear] = side.pick(poses[i]).map(Vector::from_angle);
                 let single_pose = robot.side(side).close(side.rear_arm(rear), side.front_arm(front));

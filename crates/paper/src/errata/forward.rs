@@ -8,7 +8,7 @@ use super::equation::Equation;
 use super::sample::{Sample, angle_error_deg, polar, solve_half_angle};
 use crate::bisection::bisect;
 
-/// The equations in the paper's order.
+/// The equations of section 4.2 about the body, in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
     Equation::new(
         "4.2 head loop",

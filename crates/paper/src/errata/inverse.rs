@@ -7,7 +7,7 @@ use lizard_kinematics::{End, Side, Vector};
 use super::equation::Equation;
 use super::sample::{Sample, polar};
 
-/// The equations in the paper's order.
+/// The equations of section 4.1, in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
     Equation::new(
         "4.1 head, left arm",
@@ -113,10 +113,10 @@ fn tail_point(sample: &Sample) -> Vector {
 
 /// Computes the distance from the middle of a slider to half the sum of two vectors, each given by the paper's indices
 /// of its length and of its angle, mm.
-fn slider_error(sample: &Sample, side: Side, vectors: [(usize, usize); 2]) -> Option<f64> {
+fn slider_error(sample: &Sample, side: Side, index_pairs: [(usize, usize); 2]) -> Option<f64> {
     let (lengths, theta) = (sample.lizard.links.to_array(), sample.theta());
-    let [first, second] = vectors.map(|(length, angle)| polar(lengths[length], theta[angle]));
-    // The middle of the slider relative to the middle between its shafts.
+    let [first, second] = index_pairs.map(|(length, angle)| polar(lengths[length], theta[angle]));
+    // The middle of the slider relative to the middle between its shafts; the rear shaft is the origin.
     let slider = sample.solution.side(side);
     let middle = (slider.rear_tip + slider.front_tip - slider.front_shaft) * 0.5;
     Some((middle - (first + second) * 0.5).length())

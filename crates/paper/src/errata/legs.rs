@@ -5,7 +5,7 @@ use lizard_kinematics::{Leg, Vector};
 use super::equation::Equation;
 use super::sample::{Sample, angle_error_deg, polar, solve_half_angle};
 
-/// The equations in the paper's order.
+/// The equations of section 4.2 about the legs, in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
     Equation::new(
         "4.2 leg loops",

@@ -7,7 +7,7 @@ use lizard_kinematics::End;
 use super::equation::Equation;
 use super::sample::Sample;
 
-/// The equations in the paper's order.
+/// The equations of section 5, in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
     Equation::new(
         "5.1 shape of K",

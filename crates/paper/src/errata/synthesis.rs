@@ -12,7 +12,7 @@ use crate::mobility;
 /// The margin below which a leg counts as close to a change point.
 const MIN_LEG_MARGIN: f64 = 0.3;
 
-/// The equations in the paper's order.
+/// The equations of sections 2 and 3, in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
     Equation::new(
         "2.1 mobility of the body",

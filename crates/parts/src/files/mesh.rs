@@ -46,7 +46,7 @@ impl Mesh {
             match face.surface {
                 Surface::Top(_) => builder.add_flat_face(face, false),
                 Surface::Bottom(_) => builder.add_flat_face(face, true),
-                Surface::Wall(side, end) | Surface::Slope(side, end, ..) => {
+                Surface::Wall { side, end } | Surface::Slope { side, end, .. } => {
                     builder.add_wall(face, side, end);
                 }
             }

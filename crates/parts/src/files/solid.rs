@@ -53,11 +53,24 @@ pub enum Surface {
     Top(usize),
     /// A horizontal plane seen from below, by the index of its height.
     Bottom(usize),
-    /// A wall along a side of an outline; the vector is the side's end point.
-    Wall(Segment, Vector),
-    /// A piece of a cone along an arc of an outline: the arc, its end point, the index of its height, and the cone's
-    /// radius at the next height, mm.
-    Slope(Segment, Vector, usize, f64),
+    /// A wall along a side of an outline.
+    Wall {
+        /// The side.
+        side: Segment,
+        /// The side's end point.
+        end: Vector,
+    },
+    /// A piece of a cone above an arc of an outline.
+    Slope {
+        /// The arc.
+        side: Segment,
+        /// The arc's end point.
+        end: Vector,
+        /// The index of the arc's height.
+        level: usize,
+        /// The cone's radius at the next height, mm.
+        upper_radius: f64,
+    },
 }
 
 /// A piece of an outline at a height. All numbers are indices.
@@ -98,7 +111,7 @@ impl Solid {
             builder.add_flat_faces(level, (lower, &lower_pieces), (upper, &upper_pieces));
             if let Some(layer) = level.checked_sub(1) {
                 let outlines = [&bottoms[layer], &tops[layer]];
-                builder.add_walls(level, outlines, &pieces_below, &lower_pieces);
+                builder.add_walls_and_slopes(level, outlines, &pieces_below, &lower_pieces);
             }
             pieces_below = upper_pieces;
         }
@@ -153,15 +166,15 @@ impl SolidBuilder {
         let sides = collect_sides(outline).into_iter();
         sides
             .map(|(side, to)| {
-                let mut cuts = vec![side.from, to];
+                let mut points_on_side = vec![side.from, to];
                 for other_side in &other_sides {
-                    add_intersections((side, to), *other_side, &mut cuts);
+                    add_intersections((side, to), *other_side, &mut points_on_side);
                 }
                 let points = &mut self.solid.points;
                 let position_and_index =
                     |point| (position_along(side, to, point), find_or_add(points, point));
                 let mut positions: Vec<(f64, usize)> =
-                    cuts.into_iter().map(position_and_index).collect();
+                    points_on_side.into_iter().map(position_and_index).collect();
                 // Rounding must not exchange the side's ends.
                 positions[0].0 = 0.0;
                 positions[1].0 = position_along(side, to, to).max(SAME_POINT_MM);
@@ -266,6 +279,7 @@ impl SolidBuilder {
                 holes.push(piece_loop);
             }
         }
+        // The smallest outline around a hole is its face.
         outer_faces.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
         for hole in holes {
             let point_on_hole = self.middles[hole[0].middle];
@@ -288,6 +302,7 @@ impl SolidBuilder {
         }
     }
 
+    /// Builds the loop of lines and arcs along these pieces.
     fn build_loop(&self, piece_loop: &[Piece]) -> Loop {
         let to_segment = |piece: &Piece| {
             let bulge = self.solid.edges[piece.edge].bulge;
@@ -298,8 +313,8 @@ impl SolidBuilder {
         Loop { sides }
     }
 
-    /// Adds the walls of the layer below a height.
-    fn add_walls(
+    /// Adds the walls and slopes of the layer below a height.
+    fn add_walls_and_slopes(
         &mut self,
         level: usize,
         [bottom, top]: [&Outline; 2],
@@ -322,10 +337,13 @@ impl SolidBuilder {
             let high_edges = high_pieces.map(|piece| (piece.edge, !piece.is_forward));
             let edges = low_edges.chain([(up, true)]).chain(high_edges);
             let surface = match top_side.arc(top_end) {
-                Some((_, radius)) if low_from != high_from => {
-                    Surface::Slope(side, end, level - 1, radius)
-                }
-                _ => Surface::Wall(side, end),
+                Some((_, upper_radius)) if low_from != high_from => Surface::Slope {
+                    side,
+                    end,
+                    level: level - 1,
+                    upper_radius,
+                },
+                _ => Surface::Wall { side, end },
             };
             let loops = vec![edges.chain([(down, false)]).collect()];
             self.solid.faces.push(Face { surface, loops });

@@ -144,7 +144,12 @@ impl StepWriter {
                 let frame = self.add_vertical_frame(Vector::default(), height, z);
                 (self.add(&format!("PLANE('',#{frame})")), true)
             }
-            Surface::Slope(side, end, level, upper_radius) => {
+            Surface::Slope {
+                side,
+                end,
+                level,
+                upper_radius,
+            } => {
                 let (centre, radius) = side.arc(end).expect("a slope's side is an arc");
                 let [low, high] = [level, level + 1].map(|level| solid.heights[level]);
                 // A cone's angle is positive in STEP, so a cone that narrows upward gets a frame that points down.
@@ -155,7 +160,7 @@ impl StepWriter {
                 let cone = format!("CONICAL_SURFACE('',#{frame},{radius},{angle})");
                 (self.add(&cone), side.bulge > 0.0)
             }
-            Surface::Wall(side, end) => match side.arc(end) {
+            Surface::Wall { side, end } => match side.arc(end) {
                 Some((centre, radius)) => {
                     let frame = self.add_vertical_frame(centre, 0.0, 1.0);
                     let radius = format_real(radius);

@@ -2,7 +2,7 @@
 
 use crate::files::mesh::Mesh;
 
-/// Encodes a mesh as a binary STL file.
+/// Encodes a mesh as a binary STL file; its header has the part's `name`.
 pub fn encode_stl(name: &str, mesh: &Mesh) -> Vec<u8> {
     let mut bytes = format!("lizard parts: {name}, mm").into_bytes();
     bytes.resize(80, b' ');
@@ -24,7 +24,7 @@ pub fn encode_stl(name: &str, mesh: &Mesh) -> Vec<u8> {
                 bytes.extend((component as f32 + 0.0).to_le_bytes());
             }
         }
-        // No attribute bytes follow.
+        // The number of attribute bytes: none.
         bytes.extend([0, 0]);
     }
     bytes

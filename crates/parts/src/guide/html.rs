@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-/// Wraps the text between each pair of equal Markdown marks, such as `**`, in an HTML element, and drops the marks.
+/// Wraps the text between each pair of equal Markdown marks, such as `**`, in an HTML element, and drops the marks. The
+/// marks must come in pairs: text after an unpaired one is dropped.
 fn wrap_marked_text(text: &str, mark: &str, tag: &str) -> String {
     let mut parts = text.split(mark);
     let mut result = parts.next().unwrap_or_default().to_owned();
@@ -15,7 +16,7 @@ fn wrap_marked_text(text: &str, mark: &str, tag: &str) -> String {
 /// Converts the guide's Markdown to an HTML page. Supports only headings, pictures, tables, code, bold text and
 /// paragraphs.
 pub fn markdown_to_html(markdown: &str) -> String {
-    let to_html = |text: &str| {
+    let format_inline = |text: &str| {
         let text = text.replace('&', "&amp;").replace('<', "&lt;");
         wrap_marked_text(&wrap_marked_text(&text, "`", "code"), "**", "b")
     };
@@ -31,7 +32,7 @@ pub fn markdown_to_html(markdown: &str) -> String {
             page.push_str(if is_in_code { "</pre>\n" } else { "<pre>" });
             is_in_code = !is_in_code;
         } else if is_in_code {
-            let _ = writeln!(page, "{}", to_html(line));
+            let _ = writeln!(page, "{}", format_inline(line));
         } else if let Some(cells) = line.strip_prefix('|') {
             if cells.starts_with("---") {
                 continue;
@@ -40,7 +41,11 @@ pub fn markdown_to_html(markdown: &str) -> String {
             page.push_str(if is_in_table { "<tr>" } else { "<table>\n<tr>" });
             is_in_table = true;
             for text in cells.trim_end_matches('|').split('|') {
-                let _ = write!(page, "<{cell_tag}>{}</{cell_tag}>", to_html(text.trim()));
+                let _ = write!(
+                    page,
+                    "<{cell_tag}>{}</{cell_tag}>",
+                    format_inline(text.trim())
+                );
             }
             page.push_str("</tr>\n");
         } else {
@@ -49,18 +54,18 @@ pub fn markdown_to_html(markdown: &str) -> String {
                 is_in_table = false;
             }
             if let Some(title) = line.strip_prefix("## ") {
-                let _ = writeln!(page, "<h2>{}</h2>", to_html(title));
+                let _ = writeln!(page, "<h2>{}</h2>", format_inline(title));
             } else if let Some(title) = line.strip_prefix("# ") {
-                let _ = writeln!(page, "<h1>{}</h1>", to_html(title));
+                let _ = writeln!(page, "<h1>{}</h1>", format_inline(title));
             } else if let Some((alt_text, source)) = line
                 .strip_prefix("![")
                 .and_then(|rest| rest.strip_suffix(')'))
                 .and_then(|rest| rest.split_once("]("))
             {
-                let alt_text = to_html(alt_text);
+                let alt_text = format_inline(alt_text);
                 let _ = writeln!(page, "<p><img src=\"{source}\" alt=\"{alt_text}\"></p>");
             } else if !line.is_empty() {
-                let _ = writeln!(page, "<p>{}</p>", to_html(line));
+                let _ = writeln!(page, "<p>{}</p>", format_inline(line));
             }
         }
     }

@@ -99,8 +99,8 @@ pub struct FittingSpec {
     pub grams: f64,
     /// Size of the reserved space: to the right, forward, up, mm.
     pub size: [f64; 3],
-    /// Article to buy, without the largest size; for switch and fuse, the text after the rating. Empty for a piece of
-    /// the second terminal strip and for an option.
+    /// Text of the article to buy; the bill adds the largest size where it matters. For switch and fuse, the text after
+    /// the rating. Empty for a piece of the second terminal strip and for an option.
     pub article: &'static str,
     /// Position on the robot, in words.
     pub place: &'static str,

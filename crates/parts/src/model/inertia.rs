@@ -31,9 +31,9 @@ impl Inertia {
             for i in 0..3 {
                 sum.first_moments[i] += volume * corner_sum[i] / 4.0;
                 for j in 0..3 {
-                    let products = a[i] * a[j] + b[i] * b[j] + c[i] * c[j];
+                    let product_sum = a[i] * a[j] + b[i] * b[j] + c[i] * c[j];
                     sum.second_moments[i][j] +=
-                        volume * (corner_sum[i] * corner_sum[j] + products) / 20.0;
+                        volume * (corner_sum[i] * corner_sum[j] + product_sum) / 20.0;
                 }
             }
         }
@@ -135,7 +135,8 @@ mod tests {
         let inertia = compute_box_inertia([7.0, -3.0], [20.0, 10.0], [2.0, 6.0]);
         assert_all_near([inertia.mass], [800.0], 1e-9);
         assert_all_near(inertia.centre_of_mass(), [7.0, -3.0, 4.0], 1e-9);
-        let expected = [116.0, 416.0, 500.0, 0.0, 0.0, 0.0].map(|square| 800.0 / 12.0 * square);
+        let expected =
+            [116.0, 416.0, 500.0, 0.0, 0.0, 0.0].map(|square_sum| 800.0 / 12.0 * square_sum);
         assert_all_near(inertia.compute_tensor(), expected, 1e-6);
     }
 

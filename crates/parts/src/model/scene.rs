@@ -30,7 +30,7 @@ pub struct Scene {
     pub pads: Pads,
     /// Factor of the masses of all parts that move relative to the chassis; the removed mass is added to the chassis.
     pub limb_mass_factor: f64,
-    /// True if the servos drive in bursts, as analog ones do.
+    /// True if the servos drive in bursts, as analogue ones do.
     pub drives_in_bursts: bool,
     /// Target angles of the servos; `None` if the robot stands still.
     pub trajectory: Option<Trajectory>,

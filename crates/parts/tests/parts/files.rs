@@ -110,7 +110,7 @@ fn the_position_of_each_foot_matches_the_contact_model() {
         let robot = assembly.robot();
         for pose in assembly.grid_poses(7) {
             let sweeps = robot.sweeps(pose.pose.into());
-            let feet = robot.ground().feet.positions(sweeps);
+            let feet = robot.ground().legs.foot_positions(sweeps);
             for (servo, [forward, left]) in feet.into_iter().enumerate() {
                 let foot = Vector::new(-left, forward);
                 let leg = &assembly.layout().legs[servo];

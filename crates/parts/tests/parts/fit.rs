@@ -1,4 +1,5 @@
-//! Tests on a grid of poses: no parts collide unless they are designed to touch, and wrong dimensions are detected.
+//! Tests that no parts collide unless they are designed to touch, that wrong dimensions are detected, and that bodies
+//! are consistent.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +18,7 @@ fn every_robot_has_gaps_between_its_parts() {
 #[test]
 fn a_wrong_dimension_makes_parts_overlap() {
     let large_head_toml = "[parts.screw]\nhead = 14.0\nhead_height = 3.0";
-    for (toml, first, second) in [
+    for (toml, expected_first, expected_second) in [
         ("[parts]\nbar = 24.0", "follower", "follower"),
         (
             "force = 4.0\n[parts]\npivot = [6.25, -4.0]",
@@ -35,7 +36,8 @@ fn a_wrong_dimension_makes_parts_overlap() {
             panic!("{toml}: no parts are close")
         };
         assert!(pair.mm < 0.0, "{toml}: {pair}");
-        let is_expected_pair = pair.first.contains(first) && pair.second.contains(second);
+        let is_expected_pair =
+            pair.first.contains(expected_first) && pair.second.contains(expected_second);
         assert!(is_expected_pair, "{toml}: {pair}");
     }
 }
@@ -90,7 +92,7 @@ fn screws_are_centred_in_the_holes_of_the_parts_that_they_hold() {
 }
 
 #[test]
-fn a_robot_that_does_not_fit_is_refused_with_its_reason() {
+fn a_robot_that_does_not_fit_is_refused_with_the_reason() {
     let bar_message =
         "parts.bar must be at least 7.3 mm for a screw's head and a wall on each side, but is 6 mm";
     let height_message = "parts.height must be at least 21.3 mm";

@@ -78,7 +78,7 @@ fn both_example_batteries_fit_into_every_robots_battery_space() {
 }
 
 #[test]
-fn drawn_screws_and_nuts_have_the_sizes_of_their_standards() {
+fn the_default_screw_and_nut_have_the_sizes_of_their_standards() {
     let screw = lizard_robot::Parts::default().screw;
     // ISO 7380-1 for M3: head 5.70 x 1.65 mm, drawn up to 0.1 mm higher; DIN 985: 5.5 mm across flats, 4.0 mm high.
     assert_eq!([screw.diameter, screw.head], [3.0, 5.7]);
@@ -96,21 +96,22 @@ fn a_product_size_without_a_drawing_is_marked_as_approximate() {
 
 #[test]
 fn a_cable_tie_reaches_around_the_alarm_and_the_deck() {
-    /// Length of a tie of 140 mm that its loop cannot use, according to makers: the head, and a tip without teeth, mm.
+    /// Length of a 140 mm tie that cannot be part of its loop, according to makers, mm: the head, and a tip without
+    /// teeth.
     const UNUSABLE_MM: f64 = 42.0;
     let assembly = build_assembly("paper", "");
     let bill = compute_bill(&assembly);
-    let mut rows = bill.bought.iter().map(|item| &item.name);
-    let row = rows.find(|name| name.starts_with("cable tie"));
-    let row = row.expect("the bill lists cable ties");
-    let number = row.trim_end_matches(" mm long").rsplit(' ').next();
-    let tie_length: f64 = number.expect(row).parse().expect(row);
+    let mut item_names = bill.bought.iter().map(|item| &item.name);
+    let item_name = item_names.find(|name| name.starts_with("cable tie"));
+    let item_name = item_name.expect("the bill lists cable ties");
+    let number = item_name.trim_end_matches(" mm long").rsplit(' ').next();
+    let tie_length: f64 = number.expect(item_name).parse().expect(item_name);
     let deck = &assembly.body("deck").expect("the robot has a deck").prisms[0];
-    let middle_part = &deck.filled_shapes[0];
-    let [width, _] = compute_extents(&middle_part.points);
+    let middle_shape = &deck.filled_shapes[0];
+    let [width, _] = compute_extents(&middle_shape.points);
     let [_, _, alarm_height] = Fitting::Alarm.spec().size;
     let height = alarm_height + deck.z[1] - deck.z[0];
-    let loop_length = 2.0 * (width + 2.0 * middle_part.radius + height);
+    let loop_length = 2.0 * (width + 2.0 * middle_shape.radius + height);
     assert!(loop_length < tie_length - UNUSABLE_MM, "{loop_length} mm");
 }
 
@@ -145,7 +146,7 @@ fn no_fitting_covers_a_slot_for_a_cable_tie() {
 }
 
 #[test]
-fn the_fuse_carries_the_converters_current_and_the_bill_lists_both_ratings() {
+fn the_fuse_carries_the_converters_current_and_the_item_names_state_both_ratings() {
     // The battery's current for 3 A at 5 V, with two cells at 3.2 V and a converter that loses 15 %.
     let max_amperes = 3.0 * 5.0 / (0.85 * 2.0 * 3.2);
     assert!(max_amperes < f64::from(FUSE_RATING_A), "{max_amperes} A");
@@ -153,8 +154,8 @@ fn the_fuse_carries_the_converters_current_and_the_bill_lists_both_ratings() {
         (Fitting::Fuse, FUSE_RATING_A),
         (Fitting::Switch, MIN_SWITCH_RATING_A),
     ] {
-        let row = fitting.format_item_name();
-        assert!(row.contains(&format!(" {rating} A ")), "{row}");
+        let item_name = fitting.format_item_name();
+        assert!(item_name.contains(&format!(" {rating} A ")), "{item_name}");
     }
 }
 

@@ -67,7 +67,7 @@ fn pads_match_the_contact_model_and_the_longest_foot_is_on_the_floor() {
         let text = make_mjcf(&robot, |scene| scene.excess_lengths = [0.0, 0.6, 0.0, -0.3]);
         let document = parse_xml(&text);
         let bodies_by_name = read_bodies(&document);
-        let feet = robot.ground().feet.positions([0.0; 4]);
+        let feet = robot.ground().legs.foot_positions([0.0; 4]);
         for (servo, excess) in [0.0, 0.6, 0.0, -0.3].into_iter().enumerate() {
             let (placement, foot) = bodies_by_name[&format!("foot {}", LEG_NAMES[servo])];
             let mut geoms = foot.children();

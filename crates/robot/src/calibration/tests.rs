@@ -63,7 +63,7 @@ fn an_error_in_a_file_is_reported_with_its_line_and_key() {
         [48.59, 228.59] | [1] | a.toml:10: servo.A1.limit is an array of 1; it must be an array of two numbers
         [48.59, 228.59] | [1, 2.001] | a.toml:10: servo.A1.limit is 2.001; it must have at most two decimals
         dir = "-" | dir = "left" | a.toml:11: servo.A1.dir is "left"; it must be "+" or "-"
-        arc left | walk\nsave | a.toml:5: boot must be the name of a gait, or "rest"
+        arc left | walk\nsave | a.toml:5: boot must be the name of a gait or a routine, or "rest"
         deadman = 1500 | deadman = 1.5 | a.toml:6: deadman must be a whole number of ms
         deadman = 1500 | deadman = -1 | a.toml:6: deadman is -1; it must be between 0 and 60000 ms
         "#

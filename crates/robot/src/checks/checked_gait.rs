@@ -224,7 +224,7 @@ impl CheckedGait {
         let mut walk_cycle = || {
             let start_pose = walker.body_pose();
             for frame in 1..=frame_count {
-                walker.drive(sweeps_at(frame).map(Some), frame_seconds, motors);
+                walker.run_motors(sweeps_at(frame).map(Some), frame_seconds, motors);
             }
             walker.body_pose().travel_from(start_pose)
         };

@@ -66,7 +66,7 @@ impl Effort {
         for step in start_step + 1..=2 * step_count {
             let previous_sweeps = walker.servo_sweeps();
             let target = sweeps_at(step as f64);
-            walker.drive(target.map(Some), step_seconds, &strong_motors);
+            walker.run_motors(target.map(Some), step_seconds, &strong_motors);
             if step <= step_count {
                 continue;
             }

@@ -1,18 +1,18 @@
 //! The parameters of the contact model: `[ground]`, `[body]` and `[feet]` in robot.toml.
 
-use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, GroundContact, Stance};
+use lizard_contact::{Body, DEFAULT_FRICTION, Drive, GroundContact, LegGeometry, Stance};
 
 use crate::config::servo::LEG_NAMES;
 use crate::file::{ReadResult, Table};
 
-/// Reads `[ground]`, `[body]` and `[feet]`. The geometry of the feet, `feet`, and `drive` come from other tables.
-pub(crate) fn read(root: &Table, feet: Feet, drive: Drive) -> ReadResult<GroundContact> {
+/// Reads `[ground]`, `[body]` and `[feet]`. `legs` and `drive` come from other tables.
+pub(crate) fn read(root: &Table, legs: LegGeometry, drive: Drive) -> ReadResult<GroundContact> {
     const RATIO_KEY: &str = "friction_back_over_forward";
     let table = root.table("ground", &[RATIO_KEY, "friction"])?;
     let unit = "(a coefficient)";
     Ok(GroundContact {
-        feet,
-        body: read_body(root, &feet)?,
+        legs,
+        body: read_body(root, &legs)?,
         stance: read_stance(root)?,
         friction_coefficient: table.number_or("friction", DEFAULT_FRICTION, (0.05, 5.0), unit)?,
         friction_ratio: table.number(RATIO_KEY, (0.1, 10.0), "(a ratio)")?,
@@ -22,7 +22,7 @@ pub(crate) fn read(root: &Table, feet: Feet, drive: Drive) -> ReadResult<GroundC
 
 /// Reads `[body]`; every key is optional. Rejects a centre of mass with which a foot would leave the floor in the
 /// neutral pose.
-fn read_body(root: &Table, feet: &Feet) -> ReadResult<Body> {
+fn read_body(root: &Table, legs: &LegGeometry) -> ReadResult<Body> {
     let Body {
         mass,
         centre_of_mass,
@@ -32,7 +32,7 @@ fn read_body(root: &Table, feet: &Feet) -> ReadResult<Body> {
         mass: table.number_or("mass", mass, (10.0, 10_000.0), "g")?,
         centre_of_mass: table.numbers_or("centre", centre_of_mass, (-500.0, 500.0), "mm")?,
     };
-    let loads = Stance::LEVEL.relative_loads(&body, feet.positions([0.0; 4]));
+    let loads = Stance::LEVEL.relative_loads(&body, legs.foot_positions([0.0; 4]));
     match loads.iter().position(|load| *load <= 0.0) {
         Some(leg) => {
             let foot = LEG_NAMES[leg];

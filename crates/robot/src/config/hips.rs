@@ -5,7 +5,7 @@
 //! each direction, any two of pivot, foot and hip determine the third. robot.toml may state the third only if it agrees
 //! with the other two.
 
-use lizard_contact::Feet;
+use lizard_contact::LegGeometry;
 use lizard_kinematics::{End, Lizard, Vector};
 
 use crate::config::legs::chassis_offset;
@@ -47,9 +47,14 @@ impl Hips {
         })
     }
 
-    /// Places the feet; `mount_angle` is the legs' sweep at neutral, deg. Rejects hips that contradict pivot and foot,
-    /// or that are out of range.
-    pub fn place_feet(&self, lizard: &Lizard, parts: &Parts, mount_angle: f64) -> ReadResult<Feet> {
+    /// Computes the geometry of the legs; `mount_angle` is the legs' sweep at neutral, deg. Rejects hips that
+    /// contradict pivot and foot, or that are out of range.
+    pub fn compute_leg_geometry(
+        &self,
+        lizard: &Lizard,
+        parts: &Parts,
+        mount_angle: f64,
+    ) -> ReadResult<LegGeometry> {
         // Left and right are mirror images; head and tail may have different widths.
         let shafts = lizard.shafts();
         let [head_hip, tail_hip] = End::ALL.map(|end| {
@@ -79,7 +84,7 @@ impl Hips {
         };
         let resolve_side =
             |hip: Vector| resolve_distance(self.side, hip.x, SIDE_KEY, HIP_SIDE_RANGE);
-        Ok(Feet {
+        Ok(LegGeometry {
             hip_forward: resolve_distance(
                 self.forward,
                 head_hip.y,
@@ -110,8 +115,8 @@ mod tests {
 
     /// Returns the hips' distances in the paper's robot with these lines, mm: forward, and sideways at head and tail.
     fn read_hips(hip_lines: &str, part_lines: &str) -> (f64, [f64; 2]) {
-        let feet = robot(hip_lines, part_lines).ground().feet;
-        (feet.hip_forward, feet.hip_side)
+        let legs = robot(hip_lines, part_lines).ground().legs;
+        (legs.hip_forward, legs.hip_side)
     }
 
     #[test]
@@ -124,8 +129,8 @@ mod tests {
         let hips = read_hips(hip_lines, "foot = [-3.5, 2.5]");
         assert_eq!(hips, (55.0, [35.0; 2]));
         let wide_robot = valid_robot_with("paper", &[("l0 = 20.0", "l0 = 24.0")]);
-        assert_eq!(wide_robot.ground().feet.hip_side, [37.0, 35.0]);
-        assert_eq!(wide_robot.ground().feet.hips()[3], [-55.0, 35.0]);
+        assert_eq!(wide_robot.ground().legs.hip_side, [37.0, 35.0]);
+        assert_eq!(wide_robot.ground().legs.hips()[3], [-55.0, 35.0]);
     }
 
     #[test]

@@ -11,7 +11,7 @@
 //! A hip is the centre of a foot's circle. In the neutral pose the foot is exactly to the side of its hip if the mount
 //! angle is zero; otherwise the leg is swept by this angle.
 
-use lizard_contact::{FRONT_SIGN, Feet, LEFT_SIGN, Point};
+use lizard_contact::{FRONT_SIGN, LEFT_SIGN, LegGeometry, Point};
 use lizard_kinematics::{Lizard, Vector};
 
 use crate::config::parts::Parts;
@@ -64,11 +64,11 @@ impl LegPlan {
         neutral: f64,
         lizard: &Lizard,
         parts: &Parts,
-        feet: &Feet,
+        geometry: &LegGeometry,
     ) -> Self {
         let to_vector = |[forward, left]: Point| Vector::new(-left, forward);
-        let hip = to_vector(feet.hips()[servo]);
-        let hip_to_foot = to_vector(feet.positions([0.0; 4])[servo]) - hip;
+        let hip = to_vector(geometry.hips()[servo]);
+        let hip_to_foot = to_vector(geometry.foot_positions([0.0; 4])[servo]) - hip;
         let shaft = lizard.shafts()[servo];
         let crank_pivot = shaft + chassis_offset(servo, parts.pivot);
         let crank_offset = hip_to_foot.angle() - neutral;
@@ -171,7 +171,7 @@ mod tests {
     fn feet_have_the_same_positions_as_in_the_contact_model() {
         for (name, robot) in all_robots() {
             for sweep in [-25.0, 0.0, 17.0] {
-                let feet = robot.ground().feet.positions([sweep; 4]);
+                let feet = robot.ground().legs.foot_positions([sweep; 4]);
                 for (servo, leg) in robot.legs().iter().enumerate() {
                     let angle = robot.servos()[servo].neutral + FORWARD_TURN_SIGN[servo] * sweep;
                     let [forward, left] = feet[servo];

@@ -92,10 +92,10 @@ impl RobotConfig {
         let (limits, speed_limits) = limits::read(root)?;
         let parts = Parts::read(root)?;
         let lizard = Lizard { links, leg };
-        let feet = hips.place_feet(&lizard, &parts, mount_angle)?;
+        let leg_geometry = hips.compute_leg_geometry(&lizard, &parts, mount_angle)?;
         let neutral_angles = servos.map(|servo| servo.neutral);
         let legs = std::array::from_fn(|servo| {
-            LegPlan::new(servo, neutral_angles[servo], &lizard, &parts, &feet)
+            LegPlan::new(servo, neutral_angles[servo], &lizard, &parts, &leg_geometry)
         });
         let drive = drive::read(&root.unchecked_table("leg")?, &legs, neutral_angles, &parts)?;
         let config = Self {
@@ -106,7 +106,7 @@ impl RobotConfig {
             joint_friction: motor::read_joints(root, &lizard, &servos)?,
             limits,
             speed_limits,
-            ground: ground::read(root, feet, drive)?,
+            ground: ground::read(root, leg_geometry, drive)?,
             legs,
             lizard,
             parts,

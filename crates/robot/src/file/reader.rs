@@ -340,7 +340,8 @@ impl<'a> Table<'a> {
         self.record_use(name, key_use);
     }
 
-    /// Reads a key's value with `convert`, which returns `None` for a value of the wrong type. A missing key is an error.
+    /// Reads a key's value with `convert`, which returns `None` for a value of the wrong type. A missing key is an
+    /// error.
     fn read_value<T>(
         &self,
         name: &str,

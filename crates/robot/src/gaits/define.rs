@@ -95,7 +95,7 @@ pub(super) fn check_name(name: &str, noun: &str) -> Result<(), String> {
     let reject = |reason: String| Err(format!("is not a {noun} name: {reason}"));
     if !name.chars().all(is_allowed) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
         let reason =
-            "it must consist of lower-case letters, digits and dashes, and begin with a letter";
+            "it must consist of lower-case letters, digits and hyphens, and begin with a letter";
         return reject(reason.to_string());
     }
     if name.len() > MAX_NAME_BYTES {
@@ -105,7 +105,7 @@ pub(super) fn check_name(name: &str, noun: &str) -> Result<(), String> {
         ));
     }
     if name.ends_with('-') || name.contains("--") {
-        return reject("a dash must stand between two words".to_string());
+        return reject("a hyphen must stand between two words".to_string());
     }
     let word = name.split('-').next().unwrap_or(name);
     if Word::find(word.as_bytes()).is_some_and(Word::is_reserved) {

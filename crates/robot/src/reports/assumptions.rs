@@ -15,13 +15,13 @@ const MIN_CHANGE_PERCENT: f64 = 10.0;
 const MIN_DISTANCE_MM: f64 = 1.0;
 /// Smallest noticeable turn per cycle, deg.
 const MIN_TURN_DEG: f64 = 0.5;
-/// Largest difference (mm or deg) between the displacements of a gait and of its mirror image or reverse.
-const MIRROR_TOLERANCE: f64 = 0.02;
+/// Largest difference (mm or deg) between displacements that count as equal.
+const DISPLACEMENT_TOLERANCE: f64 = 0.02;
 
 /// The note about assumptions that no input of the model represents.
 const UNMODELLED_NOTE: &str = "\
-The model cannot vary the floor's edges and slopes, a missing pad, servos that drive in bursts, a centre of mass farther \
-off, or the limbs' mass.\n\
+The model does not cover edges and slopes of the floor, a missing pad, servos that drive in bursts, a centre of mass \
+more than 15 mm from the middle, or other masses of the limbs.\n\
 docs/limits.md lists the effect of these assumptions in MuJoCo, for the paper's robot.";
 
 /// The inputs of the model that an assumption can vary.
@@ -54,8 +54,8 @@ impl ModelInputs {
         gait.simulate_with_angle_scale(&self.ground, &motors, pace, self.angle_scale)
     }
 
-    /// Finds the gaits that move the robot noticeably and predictably, each with its displacement. Of gaits that are
-    /// mirror images or reverses of each other, only the first is included.
+    /// Finds the gaits that move the robot noticeably and predictably, each with its displacement. Of gaits whose
+    /// displacements differ only in sign, such as mirror images or reverses of each other, only the first is included.
     fn find_distinct_gaits<'a>(&self, robot: &'a Robot) -> Vec<(&'a CheckedGait, Travel)> {
         let mut gaits: Vec<(&CheckedGait, Travel)> = Vec::new();
         let rigid_ground = robot.ground().with_rigid_drive();
@@ -64,14 +64,14 @@ impl ModelInputs {
                 continue;
             }
             let displacement = self.simulate_cycle(robot, gait, 1.0);
-            let is_mirror_or_reverse = |(_, listed): &(_, Travel)| {
-                let is_close = |a: f64, b: f64| (a.abs() - b.abs()).abs() < MIRROR_TOLERANCE;
+            let differs_only_in_sign = |(_, listed): &(_, Travel)| {
+                let is_close = |a: f64, b: f64| (a.abs() - b.abs()).abs() < DISPLACEMENT_TOLERANCE;
                 is_close(displacement.forward, listed.forward)
                     && is_close(displacement.turn, listed.turn)
             };
             let moves_noticeably = displacement.forward.abs() > MIN_DISTANCE_MM
                 || displacement.turn.abs() > MIN_TURN_DEG;
-            if moves_noticeably && !gaits.iter().any(is_mirror_or_reverse) {
+            if moves_noticeably && !gaits.iter().any(differs_only_in_sign) {
                 gaits.push((gait, displacement));
             }
         }
@@ -83,7 +83,7 @@ impl ModelInputs {
 struct Assumption {
     description: &'static str,
     unit: &'static str,
-    range: [f64; 2],
+    paper_range: [f64; 2],
     variation: Variation,
 }
 
@@ -91,12 +91,12 @@ impl Assumption {
     /// Returns the plausible range for a robot with this value. If the value is outside the range for the paper's
     /// robot, this range is scaled or, if it does not lie above 0, shifted until the value is in its middle.
     fn range_for(&self, value: f64) -> [f64; 2] {
-        let [min, max] = self.range;
+        let [min, max] = self.paper_range;
         if (min..=max).contains(&value) {
-            return self.range;
+            return self.paper_range;
         }
         let middle = f64::midpoint(min, max);
-        self.range.map(|bound| {
+        self.paper_range.map(|bound| {
             let moved_bound = match min > 0.0 {
                 true => bound * value / middle,
                 false => bound + value - middle,
@@ -141,60 +141,59 @@ impl Variation {
     }
 }
 
-/// Creates the table of assumptions. A row has the description, the unit, the range, and the way in which the
-/// assumption changes the inputs: `number` for [`Variation::Value`], `case` for [`Variation::Switch`], and `after` for
-/// [`Variation::ValueAfterChange`].
+/// Creates the table of assumptions. A row has the description, the unit, the range for the paper's robot, and the
+/// [`Variation`].
 macro_rules! assumptions {
     ($($description:literal, $unit:literal, $from:literal to $to:literal, $kind:ident($($of:tt)+);)+) => {
         [$(Assumption {
             description: $description,
             unit: $unit,
-            range: [$from, $to],
+            paper_range: [$from, $to],
             variation: assumptions!(@$kind $($of)+),
         }),+]
     };
-    (@number $($field:tt)+) => { Variation::Value(|inputs| &mut inputs.$($field)+) };
-    (@case $change:expr) => { Variation::Switch($change) };
-    (@after $change:expr, $($field:tt)+) => {
+    (@value $($field:tt)+) => { Variation::Value(|inputs| &mut inputs.$($field)+) };
+    (@switch $change:expr) => { Variation::Switch($change) };
+    (@value_after $change:expr, $($field:tt)+) => {
         Variation::ValueAfterChange($change, |inputs| &mut inputs.$($field)+)
     };
 }
 
 /// The assumptions about servos, joints, body, floor, legs and feet, and at the end about several of these together.
 const ASSUMPTIONS: [Assumption; 21] = assumptions! {
-    "servo stall torque", "kg cm", 1.2 to 2.2, number(servo.stall_torque_kg_cm);
-    "servo time per 60 deg", "s", 0.1 to 0.15, number(servo.s_per_60_deg);
-    "servo supply voltage", "V", 4.0 to 5.2, number(servo.supply_volts);
-    "rotor time constant", "ms", 2.0 to 40.0, number(servo.rotor_time_constant_ms);
-    "error at full torque", "deg", 1.0 to 6.0, number(servo.full_torque_deg);
-    "servo dead band", "us", 2.0 to 20.0, number(servo.dead_band_us);
+    "servo stall torque", "kg cm", 1.2 to 2.2, value(servo.stall_torque_kg_cm);
+    "servo time per 60 deg", "s", 0.1 to 0.15, value(servo.s_per_60_deg);
+    "servo supply voltage", "V", 4.0 to 5.2, value(servo.supply_volts);
+    "rotor time constant", "ms", 2.0 to 40.0, value(servo.rotor_time_constant_ms);
+    "error at full torque", "deg", 1.0 to 6.0, value(servo.full_torque_deg);
+    "servo dead band", "us", 2.0 to 20.0, value(servo.dead_band_us);
     // The range that trial 3 of docs/measure.md accepts: 11 or 9 us per deg instead of 10.
-    "servo angle over commanded angle", "", 0.91 to 1.11, number(angle_scale);
-    "digital servos", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
+    "servo angle over commanded angle", "", 0.91 to 1.11, value(angle_scale);
+    "digital servos", "(0 no, 1 yes)", 0.0 to 1.0, switch(|inputs| {
         inputs.servo = ServoType {
             supply_volts: inputs.servo.supply_volts,
             ..ServoType::DIGITAL
         };
     });
-    "rotor 2 ms, full torque at 1 deg", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
+    "rotor 2 ms, full torque at 1 deg", "(0 no, 1 yes)", 0.0 to 1.0, switch(|inputs| {
         inputs.servo.rotor_time_constant_ms = 2.0;
         inputs.servo.full_torque_deg = 1.0;
     });
-    "pin friction", "N mm", 0.0 to 20.0, number(joint_friction.pin_torque);
-    "slider friction", "N", 0.0 to 1.0, number(joint_friction.slider_force);
-    "mass", "g", 350.0 to 500.0, number(ground.body.mass);
-    "centre of mass ahead", "mm", -15.0 to 15.0, number(ground.body.centre_of_mass[0]);
-    "pad friction", "", 0.4 to 1.2, number(ground.friction_coefficient);
-    "backward over forward friction", "", 0.67 to 1.5, number(ground.friction_ratio);
-    "hips ahead of the middle", "mm", 50.0 to 60.0, number(ground.feet.hip_forward);
-    "mounting of the legs", "deg", -10.0 to 41.4, number(ground.feet.mount_angle);
-    "leg play", "deg", 0.0 to 2.0, number(ground.drive.play);
-    "front left foot too long", "mm", -1.0 to 1.0, number(ground.stance.twist);
-    "foot stiffness, front left foot 0.5 mm too long", "N/mm", 0.3 to 3.3, after(
+    "pin friction", "N mm", 0.0 to 20.0, value(joint_friction.pin_torque);
+    "slider friction", "N", 0.0 to 1.0, value(joint_friction.slider_force);
+    "mass", "g", 350.0 to 500.0, value(ground.body.mass);
+    "centre of mass ahead", "mm", -15.0 to 15.0, value(ground.body.centre_of_mass[0]);
+    "pad friction", "", 0.4 to 1.2, value(ground.friction_coefficient);
+    "backward over forward friction", "", 0.67 to 1.5, value(ground.friction_ratio);
+    "hips ahead of the middle", "mm", 50.0 to 60.0, value(ground.legs.hip_forward);
+    "mounting of the legs", "deg", -10.0 to 41.4, value(ground.legs.mount_angle);
+    "leg play", "deg", 0.0 to 2.0, value(ground.drive.play);
+    "front left foot too long", "mm", -1.0 to 1.0, value(ground.stance.twist);
+    "foot stiffness, front left foot 0.5 mm too long", "N/mm", 0.3 to 3.3, value_after(
         |inputs| inputs.ground.stance.twist = 0.5,
         ground.stance.stiffness
     );
-    "clone servos, stiff joints, friction 1, 50 g heavier", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
+    "SG-90 copies, stiff joints, friction 1, 50 g heavier", "(0 no, 1 yes)", 0.0 to 1.0, switch(|inputs| {
         inputs.servo.stall_torque_kg_cm = 1.2;
         inputs.servo.s_per_60_deg = 0.15;
         inputs.joint_friction.pin_torque = 17.0;
@@ -210,9 +209,10 @@ fn find_assumption(description: &str) -> Option<&'static Assumption> {
     assumptions.find(|assumption| assumption.description == description)
 }
 
-/// The plausible range of the assumption with this description; `None` if there is no such assumption.
+/// The plausible range, for the paper's robot, of the assumption with this description; `None` if there is no such
+/// assumption.
 pub fn plausible_range(description: &str) -> Option<[f64; 2]> {
-    find_assumption(description).map(|assumption| assumption.range)
+    find_assumption(description).map(|assumption| assumption.paper_range)
 }
 
 /// The effect of an assumption on each gait.
@@ -275,7 +275,7 @@ impl Assumptions {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extreme {
     /// The displacement: mm forward, or deg of turn.
-    pub movement: f64,
+    pub displacement: f64,
     /// The description of the assumption; `None` if all assumptions have the values of robot.toml.
     pub assumption: Option<&'static str>,
 }
@@ -283,7 +283,7 @@ pub struct Extreme {
 /// The smallest and the largest displacement of a gait if one assumption at a time is set to the lowest or the highest
 /// value of its plausible range.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MovementRange {
+pub struct DisplacementRange {
     /// True if the gait turns on the spot, so that the displacement is its turn; false if the displacement is its
     /// forward distance.
     pub is_turn: bool,
@@ -293,19 +293,19 @@ pub struct MovementRange {
     pub max: Extreme,
 }
 
-impl MovementRange {
+impl DisplacementRange {
     /// Simulates a gait with the robot's servos, at the lowest and the highest value of every range; `pace` is relative
     /// to the gait's nominal pace.
     pub fn compute(robot: &Robot, gait: &CheckedGait, pace: f64) -> Self {
         let nominal = ModelInputs::for_robot(robot);
-        let travel = nominal.simulate_cycle(robot, gait, pace);
-        let component = principal_component(&travel);
+        let displacement = nominal.simulate_cycle(robot, gait, pace);
+        let component = principal_component(&displacement);
         let nominal_extreme = Extreme {
-            movement: component(&travel),
+            displacement: component(&displacement),
             assumption: None,
         };
         let mut range = Self {
-            is_turn: is_turn(&travel),
+            is_turn: is_turn(&displacement),
             min: nominal_extreme,
             max: nominal_extreme,
         };
@@ -313,13 +313,13 @@ impl MovementRange {
             for value in assumption.range_for(assumption.variation.nominal_value(nominal)) {
                 let inputs = assumption.variation.apply(nominal, value);
                 let extreme = Extreme {
-                    movement: component(&inputs.simulate_cycle(robot, gait, pace)),
+                    displacement: component(&inputs.simulate_cycle(robot, gait, pace)),
                     assumption: Some(assumption.description),
                 };
-                if extreme.movement < range.min.movement {
+                if extreme.displacement < range.min.displacement {
                     range.min = extreme;
                 }
-                if extreme.movement > range.max.movement {
+                if extreme.displacement > range.max.displacement {
                     range.max = extreme;
                 }
             }

@@ -12,7 +12,7 @@ mod sensitivity;
 mod servo_table;
 pub mod violations;
 
-pub use assumptions::{Assumptions, Extreme, MovementRange, plausible_range};
+pub use assumptions::{Assumptions, DisplacementRange, Extreme, plausible_range};
 pub use drive_effect::DriveEffect;
 pub use report::{GaitRow, OPEN_INPUTS_NOTE, Report, UNDETERMINED_NOTE};
 pub use routine_row::RoutineRow;

@@ -40,7 +40,7 @@ fn tips_over(gait: &CheckedGait, ground: &GroundContact) -> bool {
     const PHASE_COUNT: u16 = 256;
     (0..PHASE_COUNT).any(|i| {
         let sweeps = gait.sweeps(f64::from(i) / f64::from(PHASE_COUNT));
-        let feet = ground.feet.positions(sweeps);
+        let feet = ground.legs.foot_positions(sweeps);
         // If the body balances, its feet together carry four mean loads. If it tips over, a foot would have to pull:
         // the load of this foot is given as 0, and the others carry more.
         let loads = Stance::LEVEL.relative_loads(&ground.body, feet);

@@ -82,7 +82,7 @@ fn drive_servos(robot: &Robot, sweeps: &[[f64; 4]]) -> Travel {
     let end_sweeps = sweeps.last().copied().unwrap_or(start_sweeps);
     let mut walker = Walker::new(*robot.ground(), start_sweeps);
     for sweeps in sweeps[1..].iter().chain(&[end_sweeps; SETTLING_FRAMES]) {
-        walker.drive(sweeps.map(Some), 1.0 / FRAMES_PER_SECOND, &motors);
+        walker.run_motors(sweeps.map(Some), 1.0 / FRAMES_PER_SECOND, &motors);
     }
     walker.body_pose().travel()
 }

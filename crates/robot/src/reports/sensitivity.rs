@@ -33,7 +33,7 @@ const PARAMETERS: [Parameter; 5] = [
     Parameter {
         title: "mount, deg",
         values: &[0.0, 20.0, 41.4, 49.0, -41.4],
-        apply: |ground, mount| ground.feet.mount_angle = mount,
+        apply: |ground, mount| ground.legs.mount_angle = mount,
     },
     Parameter {
         title: "too long, mm",

@@ -5,7 +5,8 @@ use lizard_kinematics::{Solution, wrap};
 use crate::config::servo::SERVO_NAMES;
 use crate::robot::Robot;
 
-/// Returns a message for each limit or servo travel that a solved pose violates; none if the pose is safe.
+/// Returns a message for each limit or servo travel that a solved pose violates; the list is empty if the pose is
+/// safe.
 pub fn describe_pose_violations(robot: &Robot, solution: &Solution) -> Vec<String> {
     let limit_violations = robot.limits().violations(solution);
     let angles = <[f64; 4]>::from(solution.pose);
@@ -16,7 +17,7 @@ pub fn describe_pose_violations(robot: &Robot, solution: &Solution) -> Vec<Strin
         .collect()
 }
 
-/// Returns the message that a servo cannot reach an angle (deg, chassis frame); `None` if it can.
+/// Returns a message if a servo cannot reach an angle (deg, chassis frame); `None` if it can.
 pub fn describe_travel_violation(robot: &Robot, servo_index: usize, angle: f64) -> Option<String> {
     let servo = &robot.servos()[servo_index];
     (!servo.reaches(angle)).then(|| {

@@ -92,7 +92,7 @@ fn format_strut_cells(name: &str, value_of: fn(SimulatedCycle) -> f64) -> String
 fn the_page_on_the_twin_shows_the_effect_of_springs() {
     let ground = paper().ground();
     let pad_friction = ground.mean_friction_force();
-    let reach_mm = ground.feet.reach;
+    let reach_mm = ground.legs.reach;
     let text = format!(
         "The parts weigh {} g. With a friction of {} that gives {pad_friction:.2} N for each pad, and {:.1} N mm at a leg of {reach_mm} mm. The servos are ideal.\n\n\
          | pull in a slotted strut, N | 0.5 | 1 | 2 | 3 | 5 | rigid |\n|---|---|---|---|---|---|---|\n\

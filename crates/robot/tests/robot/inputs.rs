@@ -96,7 +96,7 @@ fn every_free_pin_can_be_an_input_and_used_pins_are_rejected() {
 }
 
 #[test]
-fn an_error_in_an_input_is_reported_with_its_line_and_step() {
+fn a_mistake_in_an_input_or_in_a_step_with_an_input_is_reported_with_its_line() {
     let mistakes = r#"
         [input.knob]\npin = "A1" => 1: input.knob is not a known key; allowed: button, nose
         [input.nose]\npim = "A1" => 2: input.nose.pim is not a known key; did you mean "pin"?
@@ -138,11 +138,6 @@ fn a_round_counts_a_wait_as_one_frame_and_an_endless_gait_as_one_cycle() {
         let robot = paper_with_tables(&(INPUTS.to_owned() + &routine)).expect(steps);
         RoutineRow::simulate(&robot, &robot.routines()[0])
     };
-    let format_report =
-        |tables: &str| Report::compute(&paper_with_tables(tables).expect(tables)).to_string();
-    let tables = format!("{INPUTS}[routine.one]\nsteps = [\"wait button\"]");
-    assert!(format_report(&tables).contains(OPEN_INPUTS_NOTE));
-    assert!(!format_report(INPUTS).contains(OPEN_INPUTS_NOTE));
     let round_with_inputs = simulate_round(
         "\"wait button\", \"walk until nose\", \"left 3 until nose\", \"rest until button\"",
     );
@@ -154,6 +149,15 @@ fn a_round_counts_a_wait_as_one_frame_and_an_endless_gait_as_one_cycle() {
     assert!((0.0..0.1).contains(&extra_seconds), "{extra_seconds} s");
     let turn_of = |round: &RoutineRow| round.movement.turn.expect("the turn is determined");
     assert!((turn_of(&round_with_inputs) - turn_of(&plain_round)).abs() < 0.1);
+}
+
+#[test]
+fn a_report_has_a_note_if_a_step_ends_on_an_input() {
+    let format_report =
+        |tables: &str| Report::compute(&paper_with_tables(tables).expect(tables)).to_string();
+    let tables = format!("{INPUTS}[routine.one]\nsteps = [\"wait button\"]");
+    assert!(format_report(&tables).contains(OPEN_INPUTS_NOTE));
+    assert!(!format_report(INPUTS).contains(OPEN_INPUTS_NOTE));
 }
 
 #[test]
@@ -172,7 +176,7 @@ fn the_patrol_in_the_docs_repeats_from_its_second_step() {
     let core = robot.core();
     let ids = lizard_core::numbers::gaits::GaitId::all(core.gait_count());
     let record = core.gait(ids.last().expect("the robot has a routine"));
-    let [_, steps, _, repeat_from] = record.channels.map(|channel| channel.offset);
-    assert_eq!((steps, repeat_from), (6, 2));
+    let [_, record_count, _, repeat_from] = record.channels.map(|channel| channel.offset);
+    assert_eq!((record_count, repeat_from), (6, 2));
     assert_eq!(core.step(&record, repeat_from).kind, Step::UNTIL);
 }

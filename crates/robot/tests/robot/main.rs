@@ -31,8 +31,8 @@ fn paper() -> &'static Robot {
     &ROBOT
 }
 
-/// Reads a table of texts. Each line has an input and its expected message, separated by ` => `; `\n` in an input stands
-/// for a line break.
+/// Reads a table of texts. Each line has an input and its expected message, separated by ` => `; `\n` in an input
+/// stands for a line break.
 fn read_cases(table: &str) -> impl Iterator<Item = (String, &str)> {
     let rows = table.trim().lines().map(str::trim_start);
     let cases = rows.map(|row| row.split_once(" => ").expect(row));

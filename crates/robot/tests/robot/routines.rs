@@ -157,7 +157,7 @@ fn names_of_gaits_and_invalid_names_are_rejected() {
         walk => has the name of a gait; choose another name
         stop => is not a routine name: "stop" is a console command
         rest-now => is not a routine name: "rest" is a console command
-        Patrol => is not a routine name: it must consist of lower-case letters, digits and dashes, and begin with a letter
+        Patrol => is not a routine name: it must consist of lower-case letters, digits and hyphens, and begin with a letter
     "#;
     for (name, message) in read_cases(names) {
         let actual = paper_with_tables(&format!("[routine.{name}]\nsteps = [\"walk 1\"]"));

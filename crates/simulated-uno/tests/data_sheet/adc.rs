@@ -1,9 +1,9 @@
-//! Tests of the simulated supply and ADC against the data sheet, chapters 11.5 and 24.
+//! Tests of the simulated supply and ADC against the data sheet: chapter 24, and sections 11.5, 11.7 and 29.5.
 
 use super::*;
 
-/// CPU cycles of an ADC clock at prescaler 128, which is 125 kHz.
-const CYCLES_PER_CLOCK: u64 = 128;
+/// CPU cycles per cycle of the ADC clock at prescaler 128, which is 125 kHz.
+const CYCLES_PER_ADC_CLOCK: u64 = 128;
 
 /// Compiles a program that can use these macros: `start()` starts a conversion, `wait()` waits for its end, `show()`
 /// writes the result to GPIOR0 as two marks, low byte first, and `convert()` does all three.
@@ -28,7 +28,7 @@ fn uno_with_statements(body: &str, pin_mv: &[u16]) -> Uno {
     uno
 }
 
-/// Runs these statements once in the main program, for a number of milliseconds. Returns the UNO.
+/// Runs the UNO of [`uno_with_statements`] for a number of milliseconds, and returns it.
 fn run_statements(body: &str, pin_mv: &[u16], ms: u64) -> Uno {
     let mut uno = uno_with_statements(body, pin_mv);
     uno.run_ms(ms);
@@ -80,7 +80,7 @@ fn setting_a_bandgap_outside_the_data_sheet_range_panics() {
 }
 
 #[test]
-#[should_panic(expected = "D9 is not an analog pin")]
+#[should_panic(expected = "D9 is not an analogue pin")]
 fn setting_the_voltage_of_a_digital_pin_panics() {
     new_uno(compile(BANDGAP_PROGRAM)).set_analog_mv(Pin::d(9), 1);
 }
@@ -152,7 +152,7 @@ fn register_values_match_the_data_sheet() {
         (
             // "if ADCL has been read, and a conversion completes before ADCH is read, neither
             // register is updated and the result from the conversion is lost" (24.2).
-            "the result is locked from ADCL to ADCH",
+            "the result is locked from the read of ADCL to the read of ADCH",
             "ADMUX = 0x40; start(); wait();
             GPIOR0 = ADCL;
             ADMUX = 0x41; start(); wait();
@@ -190,7 +190,7 @@ fn the_first_conversion_takes_25_clocks_and_later_conversions_take_13() {
     );
     let lengths = intervals(&mark_cycles(&uno));
     for (length, clocks) in lengths.into_iter().step_by(2).zip([25, 13, 13, 25]) {
-        let range = clocks * CYCLES_PER_CLOCK - 4..(clocks + 1) * CYCLES_PER_CLOCK + 12;
+        let range = clocks * CYCLES_PER_ADC_CLOCK - 4..(clocks + 1) * CYCLES_PER_ADC_CLOCK + 12;
         let is_expected = range.contains(&length);
         assert!(is_expected, "{length} cycles, expected {clocks} clocks");
     }
@@ -199,9 +199,9 @@ fn the_first_conversion_takes_25_clocks_and_later_conversions_take_13() {
 #[test]
 fn the_prescaler_divides_as_in_table_24_5() {
     // ADPS 000 and 001: 2, 010: 4, ... 111: 128.
-    for (select, divisor) in [2, 2, 4, 8, 16, 32, 64, 128].into_iter().enumerate() {
+    for (adps, divisor) in [2, 2, 4, 8, 16, 32, 64, 128].into_iter().enumerate() {
         let body = format!(
-            "ADMUX = 0x40; ADCSRA = 0xa0 | {select}; ADCSRA |= 0x40;
+            "ADMUX = 0x40; ADCSRA = 0xa0 | {adps}; ADCSRA |= 0x40;
             for (;;) {{ while (!(ADCSRA & 0x10)) {{}} GPIOR0 = 1; ADCSRA |= 0x10; }}"
         );
         let cycles = mark_cycles(&run_statements(&body, &[], 2));
@@ -220,14 +220,14 @@ fn the_prescaler_divides_as_in_table_24_5() {
 #[test]
 fn the_two_lowest_prescaler_settings_divide_by_two() {
     // Table 24-5: 13 clocks are 26 cycles.
-    for select in [0, 1] {
+    for adps in [0, 1] {
         let body = format!(
-            "ADMUX = 0x40; ADCSRA = 0xc0 | {select}; wait();
-            ADCSRA = 0xc0 | {select}; __builtin_avr_delay_cycles(18); GPIOR0 = ADCSRA & 0x40;
-            ADCSRA = 0xc0 | {select}; __builtin_avr_delay_cycles(40); GPIOR0 = ADCSRA & 0x40;"
+            "ADMUX = 0x40; ADCSRA = 0xc0 | {adps}; wait();
+            ADCSRA = 0xc0 | {adps}; __builtin_avr_delay_cycles(18); GPIOR0 = ADCSRA & 0x40;
+            ADCSRA = 0xc0 | {adps}; __builtin_avr_delay_cycles(40); GPIOR0 = ADCSRA & 0x40;"
         );
         let uno = run_statements(&body, &[], 1);
-        assert_eq!(mark_values(&uno), [0x40, 0], "ADPS {select}");
+        assert_eq!(mark_values(&uno), [0x40, 0], "ADPS {adps}");
     }
 }
 
@@ -246,19 +246,19 @@ fn a_voltage_is_sampled_at_the_clock_in_table_24_1() {
     // "Sample & Hold (Cycles from Start of Conversion)": 1.5 clocks, in the first conversion 13.5. A conversion
     // starts at the next clock edge, at most one clock after ADSC is set.
     let later_conversion = "start(); wait(); GPIOR0 = 0; start(); wait(); show();";
-    for (body, last_sampled_clock, first_ignored_clock) in
+    for (body, sampled_change_clock, missed_change_clock) in
         [(later_conversion, 1, 3), ("GPIOR0 = 0; convert();", 13, 15)]
     {
         let result_after = |change_clock: u64| {
             let mut uno = uno_with_statements(&format!("ADMUX = 0x40; {body}"), &[]);
             uno.run_until(CYCLES_PER_MS, 1, |uno| !uno.marks().is_empty());
             uno.take_marks();
-            uno.run_cycles(change_clock * CYCLES_PER_CLOCK);
+            uno.run_cycles(change_clock * CYCLES_PER_ADC_CLOCK);
             uno.set_analog_mv(Pin::a(0), 2500);
             uno.run_ms(1);
             conversion_results(&uno)[0]
         };
-        let results = [last_sampled_clock, first_ignored_clock].map(result_after);
+        let results = [sampled_change_clock, missed_change_clock].map(result_after);
         assert_eq!(results, [512, 0], "{body}");
     }
 }
@@ -281,7 +281,7 @@ fn conversions_end_a_whole_number_of_adc_clocks_apart() {
     let cycles = mark_cycles(&uno);
     assert_eq!(cycles.len(), 20);
     for cycle in &cycles {
-        let error = (cycle - cycles[0] + 10) % CYCLES_PER_CLOCK;
+        let error = (cycle - cycles[0] + 10) % CYCLES_PER_ADC_CLOCK;
         assert!(error <= 20, "{cycles:?}");
     }
 }
@@ -340,13 +340,13 @@ fn the_bandgap_needs_70_us_after_the_adc_is_switched_on() {
 }
 
 #[test]
-fn a_reset_switches_the_adc_off() {
+fn a_reset_clears_the_registers_of_the_adc() {
     let mut uno = uno_with_statements(
         "GPIOR0 = ADCSRA; GPIOR0 = ADMUX; GPIOR0 = ADCL; GPIOR0 = ADCH;
         ADMUX = 0x40; start(); wait(); GPIOR0 = ADCL; start();",
         &[2500],
     );
-    uno.run_cycles(30 * CYCLES_PER_CLOCK);
+    uno.run_cycles(30 * CYCLES_PER_ADC_CLOCK);
     uno.reset();
     uno.take_marks();
     uno.run_ms(1);

@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// Program at 115 200 baud that answers each line with the same line in capitals. It ignores `x` and halts at `!`.
+/// Program at 115 200 baud that first sends the line `hi`, then answers each line with the same line in capitals. It
+/// halts at `!`.
 const CAPITALS_PROGRAM: &str = r"
     #include <avr/io.h>
     #include <avr/sleep.h>
@@ -14,7 +15,6 @@ const CAPITALS_PROGRAM: &str = r"
             while (!(UCSR0A & 1 << RXC0)) {}
             char byte = UDR0;
             if (byte == '!') sleep_mode();
-            if (byte == 'x') continue;
             if (byte == '\n') put('\r');
             put(byte >= 'a' && byte <= 'z' ? byte - 32 : byte);
         }

@@ -46,7 +46,7 @@ fn run(board: BoardDouble) -> UploadRun {
     run_with_image(board, &test_image())
 }
 
-/// Uploads [`test_image`] to a board that has another program of 500 bytes, after `change` to this board.
+/// Uploads [`test_image`] to a board that has another program of 500 bytes, and to which `change` was applied first.
 fn run_over_old_program(change: impl FnOnce(&mut BoardDouble)) -> UploadRun {
     let mut board = BoardDouble::with_program(&[9; 500]);
     change(&mut board);
@@ -231,7 +231,7 @@ fn identify_returns_the_kind_of_boot_loader_and_starts_the_program() {
     board_with_other_chip.signature = [0x1e, 0x95, 0x14];
     let (kind, has_started) = identify_board(board_with_other_chip);
     let message = kind.expect_err("the chip is not an ATmega328P");
-    assert!(message.starts_with("the chip is an ATmega328, not an ATmega328P"));
+    assert!(message.starts_with("the chip is an ATmega328 without P"));
     assert!(has_started);
     let mut unplugged_board = BoardDouble::blank();
     unplugged_board.unplugged_after_pages = Some(0);
@@ -251,8 +251,8 @@ fn a_board_with_another_chip_is_rejected_with_the_name_of_the_chip() {
     };
     assert_eq!(
         error_for_signature([0x1e, 0x95, 0x14]),
-        "the chip is an ATmega328, not an ATmega328P (signature 1E 95 14); the firmware is for an \
-         ATmega328P (signature 1E 95 0F). Nothing was written"
+        "the chip is an ATmega328 without P (signature 1E 95 14); the firmware is for an ATmega328P \
+         (signature 1E 95 0F). Nothing was written"
     );
     let message = error_for_signature([1, 2, 3]);
     assert!(message.starts_with("the chip is of an unknown type (signature 01 02 03)"));

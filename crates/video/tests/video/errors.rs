@@ -8,7 +8,8 @@ use lizard_studio::walk::{Variation, Walk, paper_gait, true_displacement};
 use lizard_video::{Frame, Gait, MeasuredGait, Setup, Video, VideoError};
 
 use crate::studio::{
-    FRAME_RATE, FULL_SCALE, add_frame, record_frames, record_robot, record_walk, studio,
+    FRAME_RATE, FULL_SCALE, add_frame, record_frames, record_robot, record_walk, scaled_gait,
+    studio,
 };
 
 /// Returns a walk that is centred on the origin.
@@ -245,9 +246,9 @@ fn movements_that_do_not_match_the_gait_are_rejected() {
 
 #[test]
 fn cycles_of_twice_or_four_times_the_duration_are_reported_as_another_pace() {
-    let gait = paper_gait("walk");
-    for multiple in [2, 4] {
-        let mut slow = gait.clone();
+    for (name, multiple, scale) in [("walk", 2, 1.0), ("walk", 4, 1.0), ("trot", 2, 0.7)] {
+        let gait = paper_gait(name);
+        let mut slow = scaled_gait(&gait, scale);
         slow.period *= f64::from(multiple);
         let measured = record_cycles(&studio(), &slow, 3, 5.0).measure(FULL_SCALE, &gait);
         assert_eq!(measured, Err(VideoError::WrongPace { ratio: multiple }));

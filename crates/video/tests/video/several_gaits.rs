@@ -3,12 +3,11 @@
 use std::assert_matches;
 
 use fastrand::Rng;
-use lizard_contact::BodyPose;
 use lizard_studio::walk::{Variation, WalkSeries, paper_gait};
 use lizard_video::{AnalysedVideo, Gait, GaitMatch, MeasuredGait, VideoError, min_rest_duration};
 
 use crate::accuracy::means_and_truths;
-use crate::studio::{FRAME_RATE, FULL_SCALE, record_robot, studio};
+use crate::studio::{FRAME_RATE, FULL_SCALE, record_robot, scaled_gait, studio};
 
 /// A small variation of the cycles, as in a real robot.
 const VARIATION: Variation = Variation {
@@ -76,17 +75,7 @@ fn each_gait_of_a_video_is_found_between_rests_and_measured() {
 #[test]
 fn a_robot_that_moves_half_as_far_as_predicted_matches_its_gait() {
     let gaits = ["walk", "left", "back", "trot"].map(paper_gait);
-    let weak_gaits = gaits.clone().map(|mut gait| {
-        for BodyPose {
-            forward,
-            left,
-            heading,
-        } in &mut gait.path
-        {
-            (*forward, *left, *heading) = (*forward / 2.0, *left / 2.0, *heading / 2.0);
-        }
-        gait
-    });
+    let weak_gaits = gaits.each_ref().map(|gait| scaled_gait(gait, 0.5));
     let (analysed_video, _) = record_walks(&[0, 1, 2, 3].map(|i| (&weak_gaits[i], 4)), 1.6);
     let walks = analysed_video.find_walks(min_rest_duration(&gaits));
     let gait_matches: Vec<GaitMatch> = walks
@@ -113,13 +102,19 @@ fn two_gaits_with_the_same_path_are_both_reported() {
 #[test]
 fn a_walk_in_slow_motion_or_of_an_unknown_gait_matches_no_gait() {
     let gaits = ["walk", "left", "back", "trot"].map(paper_gait);
-    let mut slow = gaits[0].clone();
-    slow.period *= 2.0;
-    let (half_speed, _) = record_walks(&[(&slow, 3)], 1.0);
-    let walks = half_speed.find_walks(2.0 * min_rest_duration(&gaits));
-    let gait_match = half_speed.match_gait(&gaits, walks[0]);
-    let wrong_pace = VideoError::WrongPace { ratio: 2 };
-    assert_eq!(gait_match, GaitMatch::NoMatch(wrong_pace));
+    for (i, scale) in [(0, 1.0), (0, 0.7), (1, 1.0)] {
+        let mut slow = scaled_gait(&gaits[i], scale);
+        slow.period *= 2.0;
+        let (half_speed, _) = record_walks(&[(&slow, 3)], 1.0);
+        let walks = half_speed.find_walks(2.0 * min_rest_duration(&gaits));
+        let gait_match = half_speed.match_gait(&gaits, walks[0]);
+        let wrong_pace = VideoError::WrongPace { ratio: 2 };
+        assert_eq!(
+            gait_match,
+            GaitMatch::NoMatch(wrong_pace),
+            "gait {i}, scale {scale}"
+        );
+    }
     let unknown = paper_gait("right");
     let (analysed_video, _) = record_walks(&[(&unknown, 4)], 1.0);
     let walks = analysed_video.find_walks(min_rest_duration(&gaits));

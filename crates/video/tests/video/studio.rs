@@ -1,9 +1,10 @@
 //! Records videos in a simulated studio.
 
 use fastrand::Rng;
+use lizard_contact::BodyPose;
 use lizard_studio::render::{Pose, Studio, random_normal};
 use lizard_studio::walk::Walk;
-use lizard_video::{AnalysedVideo, Frame, Setup, Video};
+use lizard_video::{AnalysedVideo, Frame, Gait, Setup, Video};
 
 /// The setup for a sheet that is printed at full scale (1:1).
 pub const FULL_SCALE: Setup = Setup {
@@ -91,4 +92,17 @@ pub fn record_hand_held(
         let background = shaken_studio.render_background(rng);
         background.render_frame(seconds, |time| walk.pose_at(time), rng)
     })
+}
+
+/// Returns a gait that moves `scale` times as far.
+pub fn scaled_gait(gait: &Gait, scale: f64) -> Gait {
+    let scale_pose = |pose: &BodyPose| BodyPose {
+        forward: scale * pose.forward,
+        left: scale * pose.left,
+        heading: scale * pose.heading,
+    };
+    Gait {
+        period: gait.period,
+        path: gait.path.iter().map(scale_pose).collect(),
+    }
 }

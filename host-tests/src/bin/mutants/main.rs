@@ -71,10 +71,11 @@ fn try_generated_mutants(filters: &[String], count: usize, seed: u64) -> Result<
         }
     }
     let generated_count = mutants.len();
-    if generated_count.min(count) == 0 {
+    let sample_count = generated_count.min(count);
+    if sample_count == 0 {
         return Err("SAMPLE and ONLY select no mutant".into());
     }
-    println!("seed {seed}: {count} of {generated_count} generated mutants");
+    println!("seed {seed}: {sample_count} of {generated_count} generated mutants");
     compile_firmware_tests()?;
     let file = "crates/core/src/lib.rs";
     let unchanged = Mutant::without_change_in_core(file, read_text(&root().join(file))?);

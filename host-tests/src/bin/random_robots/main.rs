@@ -40,7 +40,10 @@ fn run(arguments: &[String]) -> Result<(), String> {
         return Err("COUNT must be at least 1, but is 0".into());
     }
     let robots: Vec<(String, Robot)> = (0..count)
-        .map(|n| random_robot(&mut Rng::with_seed(seed.wrapping_mul(1_000_003) + 1000 + n)))
+        .map(|n| {
+            let robot_seed = seed.wrapping_mul(1_000_003).wrapping_add(1000 + n);
+            random_robot(&mut Rng::with_seed(robot_seed))
+        })
         .collect();
     // A few random robots are unlikely to have all rare features.
     if count >= 10 {

@@ -43,7 +43,7 @@ pub(super) fn observer_limits(robot: &Robot) -> Limits {
             (first.min(last), first.max(last))
         }),
         levels_mv: [board.slow_mv, board.stop_mv, board.rest_mv].map(u32::from),
-        // Pulses by `boot` are then permitted only from its report on, which the console prints at once.
+        // With `true`, only the report of `boot`, which the console prints at once, permits its pulses.
         can_boot_to_rest: true,
         ..Limits::default()
     }

@@ -1,4 +1,4 @@
-// The transmitter buffers a second byte while it sends the first (data sheet, 19.6): UDRE0 is set while the buffer is
+// The transmitter buffers a second byte while it sends the first (data sheet, 20.6): UDRE0 is set while the buffer is
 // empty, and bytes are sent back to back. avr8js has no buffer; therefore a gap follows each byte.
 
 export function addTransmitBuffer({ cpu, usart }) {

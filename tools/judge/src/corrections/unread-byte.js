@@ -1,4 +1,4 @@
-// A receiver drops an unread byte only when it is switched off (data sheet, 19.8.5). avr8js also drops the byte when
+// A receiver drops an unread byte only when it is switched off (data sheet, 20.7.6). avr8js also drops the byte when
 // the program writes UCSR0B while the receiver stays on, for example to enable the transmit interrupt.
 const RXC = 0x80;
 const RXEN = 0x10;

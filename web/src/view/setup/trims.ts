@@ -14,7 +14,7 @@ export const trimsStep: Step = {
   highlight: ({ servo }) => ({ servo, turnDeg: null }),
   makeElements({ calibrator, servo, run, stand, markDone, session }) {
     const trim = calibrator?.calibration.servos[servo].trim;
-    const neutral = session.robot.description.servos[servo].neutral.toFixed(1);
+    const neutralText = session.robot.description.servos[servo].neutral.toFixed(1);
     const changeTrim = (change: number) => () =>
       run(async (calibrator) => {
         await calibrator.changeTrim(servo, change);
@@ -22,11 +22,11 @@ export const trimsStep: Step = {
         return `The trim of A${servo + 1} is ${calibrator.calibration.servos[servo].trim.toFixed(2)}°.`;
       });
     return [
-      paragraph(`Make the robot stand, and change the trim until the crank of ${formatServo(servo)} points to ${neutral}°, or mirrors the crank on the other side.`),
+      paragraph(`Make the robot stand, and change the trim until the crank of ${formatServo(servo)} points to ${neutralText}°, or mirrors the crank on the other side.`),
       row(button('Stand', stand, true)),
       row(...TRIM_CHANGES.map((change) => button(`${change > 0 ? '↺' : '↻'} ${Math.abs(change)}°`, changeTrim(change)))),
       paragraph(`Trim: ${trim === undefined ? '–' : `${trim.toFixed(2)}°`}`),
-      note('↺ is counter-clockwise as seen from above. If a trim exceeds 7.2°, refit the horn on the next tooth.'),
+      note('↺ is counter-clockwise as seen from above. If a trim exceeds 7.2°, move the horn by one tooth.'),
     ];
   },
 };

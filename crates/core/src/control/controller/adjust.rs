@@ -34,12 +34,12 @@ impl Controller {
     #[inline(never)]
     pub(super) fn replace_settings(&mut self, settings: &Settings) -> Result<(), Refusal> {
         let mut calibrations = *self.motion.calibration();
-        for servo in Servo::all() {
+        for servo in Servo::iter() {
             let new_calibration = servo.pick_mut(&mut calibrations);
             *new_calibration = settings.calibration(servo, self.motion.robot());
             self.check_gaits(servo, new_calibration)?;
         }
-        for servo in Servo::all() {
+        for servo in Servo::iter() {
             self.check_poses(servo, servo.pick(&calibrations))?;
         }
         self.settings = *settings;
@@ -73,7 +73,7 @@ impl Controller {
 
     /// Calibrates the motion according to the settings.
     pub(super) fn apply_calibration(&mut self) {
-        for servo in Servo::all() {
+        for servo in Servo::iter() {
             let calibration = self.settings.calibration(servo, self.motion.robot());
             self.motion.calibrate(servo, calibration);
         }

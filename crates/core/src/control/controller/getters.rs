@@ -1,4 +1,4 @@
-//! The getters with which the console reads the robot's state.
+//! The getters of the robot's state, for the console and the main loop.
 
 use super::Controller;
 use crate::control::fault::Fault;
@@ -31,7 +31,7 @@ impl Controller {
         self.saved_settings_state
     }
 
-    /// The input whose contact may end the current step of a routine.
+    /// The input whose contact may end the current step of a routine; [`Input::NONE`] if the step waits for none.
     pub const fn awaited_input(&self) -> Input {
         self.contact.input
     }
@@ -60,7 +60,7 @@ impl Controller {
         }
     }
 
-    /// Consecutive resets that a weak supply may have caused.
+    /// Consecutive resets, including the last one, that a weak supply may have caused.
     pub const fn suspected_brown_outs(&self) -> u8 {
         self.suspected_brown_outs
     }

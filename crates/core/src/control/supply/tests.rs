@@ -110,7 +110,9 @@ fn six_low_readings_worsen_the_level_only_as_far_as_the_highest_of_them() {
                 };
                 supply.add_reading(compute_reading(volts, 0.0), &SUPPLIES);
             }
-            let case = std::format!("{outlier_volts} V in frame {outlier_frame}");
+            let case = std::format!(
+                "{outlier_volts} V in frame {outlier_frame}, otherwise {usual_volts} V"
+            );
             assert_eq!(supply.level(), level, "{case}");
         }
     }

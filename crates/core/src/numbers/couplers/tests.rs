@@ -24,7 +24,7 @@ fn compute_exact_shape(left: f64, right: f64, tips_sq: u32) -> Option<[f64; 2]> 
 }
 
 /// Computes the type-2 margin from a rise, according to `2 a b sin = rise s`.
-fn compute_type2(left: f64, right: f64, tips_sq: u32, rise: f64) -> f64 {
+fn compute_type2_margin(left: f64, right: f64, tips_sq: u32, rise: f64) -> f64 {
     2.0 * rise * f64::from(tips_sq) / (left * right)
 }
 
@@ -37,7 +37,7 @@ proptest! {
         second_length in MIN_COUPLER_STEPS..=MAX_COUPLER_STEPS,
         length_variant in 0u8..4,
         is_swapped: bool,
-        fraction in (0.0..1.0f64, 0u8..3),
+        fraction_and_density in (0.0..1.0f64, 0u8..3),
     ) {
         // Equal lengths, nearly equal ones, or any.
         let second_length = match length_variant {
@@ -47,7 +47,7 @@ proptest! {
         };
         let (left, right) = if is_swapped { (second_length, first_length) } else { (first_length, second_length) };
         // Evenly distributed over the range, or dense at one of its ends.
-        let fraction = match fraction {
+        let fraction = match fraction_and_density {
             (fraction, 0) => fraction,
             (fraction, 1) => fraction.powi(4),
             (fraction, _) => 1.0 - fraction.powi(4),
@@ -61,24 +61,24 @@ proptest! {
         // A loop that just fails to close may close when its lengths are rounded.
         let [rise, skew] = compute_exact_shape(left, right, tips_sq).unwrap_or([0.0, f64::NAN]);
         let Some(shape) = shape else {
-            prop_assert!(compute_type2(left, right, tips_sq, rise) < MIN_BOUNDED_MARGIN, "no shape for a rise of {rise}");
+            let margin = compute_type2_margin(left, right, tips_sq, rise);
+            prop_assert!(margin < MIN_BOUNDED_MARGIN, "no shape for a rise of {rise}");
             return Ok(());
         };
-        let errors = [
-            f64::from(shape.rise) / 1024.0 - rise,
-            f64::from(shape.skew) / 1024.0 - skew,
-        ];
-        if compute_type2(left, right, tips_sq, rise) < MIN_BOUNDED_MARGIN {
+        let rise_error = f64::from(shape.rise) / 1024.0 - rise;
+        let skew_error = f64::from(shape.skew) / 1024.0 - skew;
+        if compute_type2_margin(left, right, tips_sq, rise) < MIN_BOUNDED_MARGIN {
             // A rise above the largest entry of a table is cut off, and below the peak the table holds the largest
             // rise. No such value may result in a margin above the threshold.
             let min_rise = f64::from(shape.rise) / 1024.0 - bound.rise;
-            prop_assert!(compute_type2(left, right, tips_sq, min_rise) < MIN_BOUNDED_MARGIN, "rise {errors:?}, {bound:?}");
+            let margin = compute_type2_margin(left, right, tips_sq, min_rise);
+            prop_assert!(margin < MIN_BOUNDED_MARGIN, "rise error {rise_error}, {bound:?}");
             return Ok(());
         }
-        prop_assert!(errors[0].abs() <= bound.rise, "rise {errors:?}, {bound:?}");
+        prop_assert!(rise_error.abs() <= bound.rise, "rise error {rise_error}, {bound:?}");
         // The rounding error of the floating-point reference.
         let tolerance = 1e-9;
-        prop_assert!(skew.is_nan() || errors[1].abs() <= bound.skew + tolerance, "skew {errors:?}, {bound:?}");
+        prop_assert!(skew.is_nan() || skew_error.abs() <= bound.skew + tolerance, "skew error {skew_error}, {bound:?}");
         // Rounding never changes the sign of a skew.
         prop_assert!(shape.skew == 0 || (shape.skew > 0) == (left > right));
     }
@@ -106,7 +106,7 @@ fn table_entries_are_rounded_to_nearest_but_the_falling_rise_is_rounded_down() {
             compute_folded_rise_table(left, right),
             compute_skew_table(left, right),
         ];
-        let exact_rise = |tips_sq: u64| {
+        let exact_rise_q10 = |tips_sq: u64| {
             let [r, n, s] = [reach_sq.into(), folded_sq.into(), tips_sq].map(|sq: u64| sq as f64);
             (1024.0 * ((r - s) * (s - n)).sqrt() / s).min(32_767.0)
         };
@@ -117,21 +117,21 @@ fn table_entries_are_rounded_to_nearest_but_the_falling_rise_is_rounded_down() {
                 tables.map(|table| f64::from(table[index]));
             let tips_sq = argument_at(reach_sq, index);
             if is_within_range(tips_sq) && tips_sq >= compute_peak_sq(left, right).into() {
-                let error = exact_rise(tips_sq) - falling_entry;
+                let error = exact_rise_q10(tips_sq) - falling_entry;
                 assert!((0.0..1.0).contains(&error), "rise {index}");
             }
             let difference = (f64::from(left).powi(2) - f64::from(right).powi(2)) / 4.0;
-            let exact_skew = 1024.0 * difference.abs() / tips_sq as f64;
-            let error = skew_entry - exact_skew.min(32_767.0);
+            let exact_skew_q10 = 1024.0 * difference.abs() / tips_sq as f64;
+            let error = skew_entry - exact_skew_q10.min(32_767.0);
             assert!(error.abs() <= 0.51, "skew {index}");
             let tips_sq = u64::from(reach_sq).saturating_sub(argument_at(reach_sq / 4, index));
             if is_within_range(tips_sq) {
-                let error = stretched_entry - exact_rise(tips_sq);
+                let error = stretched_entry - exact_rise_q10(tips_sq);
                 assert!(error.abs() <= 0.51, "stretched {index}");
             }
             let tips_sq = u64::from(folded_sq) + argument_at(folded_sq, index);
             if is_within_range(tips_sq) {
-                let error = folded_entry - exact_rise(tips_sq);
+                let error = folded_entry - exact_rise_q10(tips_sq);
                 assert!(error.abs() <= 0.51, "folded {index}");
             }
         }
@@ -139,7 +139,7 @@ fn table_entries_are_rounded_to_nearest_but_the_falling_rise_is_rounded_down() {
 }
 
 #[test]
-fn couplers_that_differ_by_a_few_steps_keep_the_rise_accurate() {
+fn the_rise_is_accurate_for_couplers_of_nearly_equal_length() {
     for extra_steps in 0..300 {
         let sample = SampleCouplers::new(12_800, 12_800 + extra_steps);
         for tips_sq in [1 << 20, 1 << 24, 1 << 27] {

@@ -37,8 +37,8 @@ pub struct BoardFinder {
     port: Option<String>,
     /// The subcommand with the arguments before the port, for messages.
     command: &'static str,
-    /// The USB chip's IDs at the port that was chosen first. While that board is unplugged, the port of another chip is
-    /// not its port.
+    /// The IDs of the USB chip whose port was chosen first. While that board is unplugged, the port of a chip with
+    /// other IDs is not its port.
     chip_ids: OnceCell<[u16; 2]>,
     simulated_board: Option<SimulatedBoard>,
 }
@@ -87,7 +87,7 @@ fn start_simulated_board(
     let robot = robot_args.load()?;
     let image = crate::shared::firmware::select_firmware(elf, robot_args, &robot)?.image;
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    crate::simulate::sim::supplies::connect(&mut uno, &robot);
+    crate::simulate::sim::supplies::connect_healthy_robot(&mut uno, &robot);
     let port = Port::new()
         .map_err(|error| Failure::Operation(format!("cannot open a pseudo terminal: {error}")))?;
     let board = port.in_background(uno, |uno| {

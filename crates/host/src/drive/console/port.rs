@@ -174,7 +174,7 @@ fn is_memory_device(_: &str) -> bool {
     false
 }
 
-/// True if the file can be opened and is not a terminal, as every serial port is on Unix.
+/// True if the file can be opened and is not a terminal. On Unix, every serial port is a terminal.
 fn is_not_terminal(name: &str) -> bool {
     use std::io::IsTerminal;
     std::fs::File::open(name).is_ok_and(|file| !file.is_terminal())

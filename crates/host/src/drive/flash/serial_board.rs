@@ -19,7 +19,7 @@ pub struct SerialBoard {
     name: String,
     /// `None` between closing and reopening, and if reopening has failed.
     port: Option<Box<dyn SerialPort>>,
-    /// True from opening the port, which also resets a board, until the first reset.
+    /// True from opening the port, which also resets a board, until the first call of `reset`.
     is_just_opened: bool,
 }
 
@@ -64,11 +64,11 @@ impl SerialBoard {
     fn reopen(&mut self) -> io::Result<()> {
         self.port = None;
         sleep(RESET_TIME);
-        let result = port::open(&self.name).map_err(|error| match error {
+        let reopened = port::open(&self.name).map_err(|error| match error {
             PortError::Missing { .. } => ErrorKind::NotFound.into(),
             error => io::Error::other(error.to_string()),
         });
-        self.port = Some(result?);
+        self.port = Some(reopened?);
         Ok(())
     }
 
@@ -97,7 +97,7 @@ impl SerialBoard {
     }
 }
 
-/// The reads block, so the futures are ready when they are first polled.
+/// Every call blocks, so the futures are ready when they are first polled.
 impl Board for SerialBoard {
     async fn reset(&mut self, baud: u32) -> Result<(), BoardError> {
         self.reset_and_set_baud_rate(baud).map_err(to_board_error)

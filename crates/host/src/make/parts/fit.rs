@@ -179,7 +179,7 @@ fn format_proof(proof: &Proof, prints_all: bool) -> String {
     if let (Ok(()), Some(nearest)) = (proof.check(), proof.separate_pairs.first()) {
         _ = writeln!(
             text,
-            "no two parts come nearer than {:.2} mm at any pose that the guard accepts",
+            "no two parts come closer to each other than {:.2} mm at any pose that the guard accepts",
             nearest.lower_bound
         );
     }

@@ -7,12 +7,16 @@ use crate::shared::number::round_to_decimals;
 use crate::shared::plot::{Axis, EXCLUDED_COLOUR, Plot, draw_legend_entry};
 use crate::shared::shapes::{Anchor, GREY, add_title, rectangle, render_svg, text, text_start};
 
-/// Number of panels in a row.
+/// Number of columns of panels.
 const COLUMN_COUNT: usize = 4;
 /// Width and height of a panel, px.
 const PANEL_SIZE: (f64, f64) = (255.0, 150.0);
 /// Horizontal and vertical distance between neighbouring panels, px.
 const PANEL_PITCH: (f64, f64) = (330.0, 240.0);
+/// Upper left corner of the first panel, px.
+const FIRST_CORNER: (f64, f64) = (80.0, 120.0);
+/// Width and height of the chart without the pitches of its panels, px.
+const MARGINS: (f64, f64) = (90.0, 130.0);
 const LEFT_COLOUR: &str = "#0072b2";
 const RIGHT_COLOUR: &str = "#d55e00";
 const RIGHT_DASHES: &str = "7 4";
@@ -21,8 +25,8 @@ const RIGHT_DASHES: &str = "7 4";
 pub fn draw_slider_travel(robot: &Robot) -> String {
     let row_count = robot.gaits().len().div_ceil(COLUMN_COUNT);
     let size = (
-        90.0 + PANEL_PITCH.0 * COLUMN_COUNT as f64,
-        130.0 + PANEL_PITCH.1 * row_count as f64,
+        MARGINS.0 + PANEL_PITCH.0 * COLUMN_COUNT as f64,
+        MARGINS.1 + PANEL_PITCH.1 * row_count as f64,
     );
     let limits = robot.limits();
     let travel_range = (limits.stroke_min - 5.0, limits.stroke_max + 5.0);
@@ -41,8 +45,8 @@ pub fn draw_slider_travel(robot: &Robot) -> String {
     for (i, gait) in robot.gaits().iter().enumerate() {
         let plot = Plot {
             corner: (
-                80.0 + PANEL_PITCH.0 * (i % COLUMN_COUNT) as f64,
-                120.0 + PANEL_PITCH.1 * (i / COLUMN_COUNT) as f64,
+                FIRST_CORNER.0 + PANEL_PITCH.0 * (i % COLUMN_COUNT) as f64,
+                FIRST_CORNER.1 + PANEL_PITCH.1 * (i / COLUMN_COUNT) as f64,
             ),
             size: PANEL_SIZE,
             x_range: (0.0, 1.0),

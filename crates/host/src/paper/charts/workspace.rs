@@ -50,7 +50,7 @@ pub fn draw_workspace(robot: &Robot) -> String {
         group,
         90.0,
         "Theoretical workspace of the head",
-        "all points that both arms reach; the tail's workspace is the mirror image",
+        "all points that both arms reach",
     );
     let performance = Performance::compute(&five_bar, 32);
     let legend_x = 840.0;

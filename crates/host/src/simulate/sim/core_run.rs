@@ -113,7 +113,9 @@ pub fn play(
                 break;
             }
         }
-        while let Some(change) = changes.next_if(|change| change.ms * CYCLES_PER_MS < tick_cycle) {
+        while let Some(change) =
+            changes.next_if(|change| change.time_ms * CYCLES_PER_MS < tick_cycle)
+        {
             let bit = 1 << change.pin;
             if change.is_closed {
                 run.board.closed_pins |= bit;

@@ -146,7 +146,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
                 Uno::with_image(image, fidelity)
             }
         };
-        supplies::connect(&mut uno, &robot);
+        supplies::connect_healthy_robot(&mut uno, &robot);
         let radio = args.radio.map(|baud| {
             Radio::new(RadioLink {
                 baud: f64::from(baud),

@@ -25,8 +25,8 @@ pub struct Press {
 /// The closing or opening of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ContactChange {
-    /// Milliseconds since power-on.
-    pub ms: u64,
+    /// Time of the change, ms since power-on.
+    pub time_ms: u64,
     /// Arduino number of the contact's pin.
     pub pin: u8,
     /// True if the contact closes, false if it opens.
@@ -44,8 +44,8 @@ impl FromStr for Press {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let invalid_form = || "expected NAME@SECONDS or NAME@START-END".to_owned();
-        let (input, times) = text.split_once('@').ok_or_else(invalid_form)?;
+        let form_error = || "expected NAME@SECONDS or NAME@START-END".to_owned();
+        let (input, times) = text.split_once('@').ok_or_else(form_error)?;
         let parse_ms = |text| super::parse_seconds(text).map(|seconds| (1_000.0 * seconds) as u64);
         let (start_ms, end_ms) = match times.split_once('-') {
             Some((start, end)) => (parse_ms(start)?, parse_ms(end)?),
@@ -78,14 +78,18 @@ pub fn list_contact_changes(
             let message = format!("robot.toml has no [input.{name}] for --press");
             return Err(Failure::Input(message));
         };
-        for (ms, is_closed) in [(press.start_ms, true), (press.end_ms, false)] {
-            changes.push(ContactChange { ms, pin, is_closed });
+        for (time_ms, is_closed) in [(press.start_ms, true), (press.end_ms, false)] {
+            changes.push(ContactChange {
+                time_ms,
+                pin,
+                is_closed,
+            });
         }
     }
-    changes.sort_by_key(|change| (change.ms, change.is_closed));
-    let mut press_counts = BTreeMap::new();
+    changes.sort_by_key(|change| (change.time_ms, change.is_closed));
+    let mut active_press_counts = BTreeMap::new();
     changes.retain(|change| {
-        let count = press_counts.entry(change.pin).or_insert(0);
+        let count = active_press_counts.entry(change.pin).or_insert(0);
         *count += if change.is_closed { 1 } else { -1 };
         *count == i32::from(change.is_closed)
     });
@@ -115,6 +119,7 @@ mod tests {
             assert_eq!(result, Err(reason.to_owned()), "{invalid_text}");
         }
     }
+
     #[test]
     fn overlapping_presses_hold_the_contact_closed_until_the_last_one_ends() {
         let paper = include_str!("../../../../../robots/paper.toml");
@@ -130,17 +135,21 @@ mod tests {
         ];
         let presses = texts.map(|text| text.parse().expect("the press is valid"));
         let changes = list_contact_changes(&presses, &robot).expect("the robot has both inputs");
-        let [button, nose] = [15, 16];
-        let change = |ms, pin, is_closed| ContactChange { ms, pin, is_closed };
+        let [button_pin, nose_pin] = [15, 16];
+        let change = |time_ms, pin, is_closed| ContactChange {
+            time_ms,
+            pin,
+            is_closed,
+        };
         let expected = [
-            change(1_000, nose, true),
-            change(4_000, button, true),
-            change(4_200, button, false),
-            change(4_200, button, true),
-            change(4_400, button, false),
-            change(5_000, nose, false),
-            change(6_000, nose, true),
-            change(8_000, nose, false),
+            change(1_000, nose_pin, true),
+            change(4_000, button_pin, true),
+            change(4_200, button_pin, false),
+            change(4_200, button_pin, true),
+            change(4_400, button_pin, false),
+            change(5_000, nose_pin, false),
+            change(6_000, nose_pin, true),
+            change(8_000, nose_pin, false),
         ];
         assert_eq!(changes, expected);
     }

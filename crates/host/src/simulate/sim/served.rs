@@ -64,12 +64,12 @@ pub(super) fn serve_until_interrupted(
     let mut printed_state = State::Alive;
     let mut changes = contact_changes.iter().peekable();
     loop {
-        while let Some(change) = changes.next_if(|change| change.ms as f64 <= uno.ms()) {
+        while let Some(change) = changes.next_if(|change| change.time_ms as f64 <= uno.ms()) {
             change.apply(&mut uno);
         }
         let wait_ms = changes
             .peek()
-            .map_or(f64::MAX, |change| change.ms as f64 - uno.ms());
+            .map_or(f64::MAX, |change| change.time_ms as f64 - uno.ms());
         let wait = Duration::from_secs_f64(wait_ms.clamp(1.0, 1_000.0) / 1_000.0);
         port.serve(&mut uno, wait)
             .map_err(|error| Failure::Operation(format!("cannot serve the port: {error}")))?;

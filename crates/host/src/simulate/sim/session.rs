@@ -72,7 +72,7 @@ pub fn play(
     script: &Script,
     on_event: impl FnMut(Event) -> io::Result<()>,
 ) -> io::Result<Recording> {
-    supplies::connect(uno, robot);
+    supplies::connect_healthy_robot(uno, robot);
     let start = Instant::now();
     let mut dialogue = Dialogue {
         reader: LineReader::default(),
@@ -89,9 +89,9 @@ pub fn play(
         loop {
             let next_command_ms = steps.peek().map_or(slice_end_ms, |step| step.ms);
             if let Some(change) =
-                changes.next_if(|change| change.ms < slice_end_ms.min(next_command_ms))
+                changes.next_if(|change| change.time_ms < slice_end_ms.min(next_command_ms))
             {
-                uno.run_until_cycle(change.ms * CYCLES_PER_MS);
+                uno.run_until_cycle(change.time_ms * CYCLES_PER_MS);
                 change.apply(uno);
             } else if let Some(step) = steps.next_if(|step| step.ms < slice_end_ms) {
                 uno.run_until_cycle(step.ms * CYCLES_PER_MS);

@@ -4,7 +4,7 @@ use lizard_core::console::word::{Effect, Word};
 
 use super::script::Script;
 
-/// The time span of a command's effect; the serialized field names are the JSON keys.
+/// The time span of a command's effect, serialized with the keys `command`, `from` and `to`.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Span {
     /// The command that begins the span.
@@ -29,7 +29,7 @@ impl Span {
     }
 }
 
-/// True if an answer refuses its command. The answer in a recording may be lost.
+/// True if an answer refuses its command. A lost answer, `None`, counts as no refusal.
 pub fn is_refused(answer: &Option<String>) -> bool {
     matches!(answer, Some(answer) if answer.starts_with("err"))
 }
@@ -42,8 +42,8 @@ fn changes_motion(command: &str) -> bool {
         .is_none_or(|word| !matches!(word.effect(), Effect::None | Effect::CalibrationChange))
 }
 
-/// Lists the initial `stand` and the commands that changed the motion, in order of time. After a refused command, the
-/// previous command stays in effect.
+/// Lists, in order of time, the span of the initial `stand` and the spans of the commands that changed the motion.
+/// After a refused command, the previous command stays in effect.
 pub fn list_command_spans(script: &Script, answers: &[Option<String>]) -> Vec<Span> {
     let mut starts = vec![(0.0, "stand")];
     for (step, answer) in script.steps.iter().zip(answers) {

@@ -15,15 +15,15 @@ const FULL_SCALE_COUNTS: f64 = 1_024.0;
 
 /// Returns the analogue pin that measures the servo rail, and the voltage at this pin with a healthy rail, mV. `None`
 /// if no pin measures the rail.
-pub fn healthy_rail(robot: &Robot) -> Option<(Pin, u16)> {
+pub fn find_healthy_rail_input(robot: &Robot) -> Option<(Pin, u16)> {
     let mv = healthy_rail_pin_mv(&robot.firmware().supplies())?;
     Some((Pin::arduino(robot.firmware().rail_pin()?), mv as u16))
 }
 
-/// Connects the supplies of a healthy robot and its open contacts to the UNO.
-pub fn connect(uno: &mut Uno, robot: &Robot) {
+/// Sets the UNO's reference voltage, and connects the healthy servo rail and the open contacts.
+pub fn connect_healthy_robot(uno: &mut Uno, robot: &Robot) {
     uno.set_bandgap_mv(robot.supplies().reference_volts * 1_000.0);
-    if let Some((pin, mv)) = healthy_rail(robot) {
+    if let Some((pin, mv)) = find_healthy_rail_input(robot) {
         uno.set_analog_mv(pin, mv);
     }
     for (_, pin) in robot.inputs().named_pins() {

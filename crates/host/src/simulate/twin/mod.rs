@@ -26,8 +26,8 @@ use replay::Replay;
 ///
 /// Runs the firmware on the simulated UNO. Its pulses drive simulated servos, which turn the
 /// linkage; springs pull the legs, and the contact model computes the body's displacement.
-/// Without a script, the robot walks a few cycles of every gait in robot.toml. The table
-/// compares each gait's last complete cycle with the prediction of `lizard gaits`.
+/// Without a script, the robot walks three cycles of every gait in robot.toml that moves it.
+/// The table compares each gait's last complete cycle with the prediction of `lizard gaits`.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard twin
@@ -36,10 +36,11 @@ use replay::Replay;
 
 A script is a file with lines `<ms since power-on> <command>`.")]
 pub struct Args {
-    /// A file of commands and their times, as for `lizard sim` [default: every gait]
+    /// A file of commands and their times, as for `lizard sim` [default: every gait
+    /// that moves the robot]
     #[arg(value_name = "SCRIPT")]
     script: Option<PathBuf>,
-    /// Walk one gait of robot.toml, or one round of a routine
+    /// Run only this gait of robot.toml, or one round of this routine
     #[arg(long, value_hint = clap::ValueHint::Other, value_name = "NAME", conflicts_with = "script")]
     gait: Option<String>,
     /// The firmware, an ELF that contains this robot [default: the built-in firmware]
@@ -115,7 +116,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-/// Plays the script on a simulated UNO without printing anything.
+/// Plays the script on a simulated UNO, with a progress bar but without printing the dialogue.
 ///
 /// # Errors
 /// Fails if the firmware stops before the end of the script.
@@ -163,13 +164,13 @@ fn build_round_script(robot: &Robot, routine: &Routine) -> Script {
 /// pose. The robot stands for a second before the first gait and after the last gait.
 pub(crate) fn build_walk_script(robot: &Robot, gaits: &[&str]) -> Script {
     const CYCLES_PER_GAIT: f64 = 3.0;
-    let mut ms = STAND_MS;
+    let mut start_ms = STAND_MS;
     let mut steps = Vec::new();
     for name in gaits {
-        steps.push(Step::new(ms, to_command(name)));
+        steps.push(Step::new(start_ms, to_command(name)));
         let period = robot.gait(name).map_or(1.0, |gait| gait.period());
-        ms += STAND_MS + (1000.0 * CYCLES_PER_GAIT * period).ceil() as u64;
+        start_ms += STAND_MS + (1000.0 * CYCLES_PER_GAIT * period).ceil() as u64;
     }
-    steps.push(Step::new(ms, "stop"));
-    Script::new(steps, ms + STAND_MS)
+    steps.push(Step::new(start_ms, "stop"));
+    Script::new(steps, start_ms + STAND_MS)
 }

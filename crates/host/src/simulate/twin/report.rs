@@ -21,8 +21,8 @@ pub struct CommandReport {
     /// Displacement of the body over the complete command.
     #[serde(rename = "way")]
     pub displacement: Displacement,
-    /// The gait's last complete cycle, and its prediction; null if the command is not a moving gait, without a count,
-    /// that ran for at least two cycles, or if the script changes the speed.
+    /// The gait's last complete cycle, and its prediction. Present only if the command is a moving gait without a
+    /// count, the gait ran for at least two cycles, and the script does not change the speed; otherwise null.
     pub cycle: Option<Cycle>,
     /// Displacement that `lizard gaits` predicts for one round of a routine with this run's servo model; null for a
     /// routine with inputs, for other commands, and if the script changes the speed.

@@ -13,14 +13,14 @@ use drawing::Drawing;
 use robot_files::{paper_toml, read_robot_files};
 
 #[test]
-fn every_element_is_on_the_page_and_large_enough_to_read() {
+fn every_element_is_on_the_page_and_every_text_is_large_enough_to_read() {
     for (name, text) in read_robot_files() {
         let robot = Robot::parse(&text).expect("the robot file is valid");
         for svg in [draw_wiring(&robot), draw_cranks(&robot)] {
             let drawing = Drawing::parse(&svg);
             let page = &drawing.elements[0];
             let [width, height] = ["width", "height"].map(|key| page.parse_number(key));
-            assert!(width <= 700.0, "{name}: wider than GitHub shows a README");
+            assert!(width <= 700.0, "{name}: wider than a README on GitHub");
             for element in &drawing.elements[1..] {
                 let mut points = element.points();
                 if element.tag == "text" {

@@ -68,7 +68,7 @@ impl Span {
         (self.max - self.min) / 2.0 * TAU / f64::from(STEPS_PER_TURN)
     }
 
-    /// Unit vector at the middle of the span.
+    /// Unit vector in the direction of the span's middle.
     pub fn direction(&self) -> Vector {
         let centre_deg = (self.min + self.max) / 2.0 * 360.0 / f64::from(STEPS_PER_TURN);
         Vector::from_angle(centre_deg)
@@ -83,21 +83,21 @@ impl Span {
 
 impl Cell {
     /// True if a condition is proven in the whole cell, divided up to [`MAX_DIVISIONS`] times.
-    pub fn proves(&self, condition: &impl Condition) -> bool {
-        self.proves_within(condition, MAX_DIVISIONS)
+    pub fn has_proof_of(&self, condition: &impl Condition) -> bool {
+        self.has_proof_within(condition, MAX_DIVISIONS)
     }
 
-    /// Proves a condition as [`Cell::proves`] does, with at most this many further divisions.
-    fn proves_within(&self, condition: &impl Condition, divisions: u32) -> bool {
+    /// Like [`Cell::has_proof_of`], with at most this many successive divisions.
+    fn has_proof_within(&self, condition: &impl Condition, max_divisions: u32) -> bool {
         match condition.evaluate(self) {
             Verdict::Proven => true,
             Verdict::Violated => false,
             Verdict::Undetermined => {
                 let [rows, columns] = self.0.map(Span::halves);
-                divisions > 0
+                max_divisions > 0
                     && rows.into_iter().all(|row| {
                         columns.into_iter().all(|column| {
-                            Self([row, column]).proves_within(condition, divisions - 1)
+                            Self([row, column]).has_proof_within(condition, max_divisions - 1)
                         })
                     })
             }

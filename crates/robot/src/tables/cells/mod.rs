@@ -78,7 +78,7 @@ fn certify(condition: &impl Condition, numbers: &Content) -> Map {
             let row_span = row.cell_span(cell, ROW_BITS);
             find_certified_columns(&columns, |cell| {
                 let column_span = column.cell_span(cell, COLUMN_BITS);
-                Cell([row_span, column_span]).proves(condition)
+                Cell([row_span, column_span]).has_proof_of(condition)
             })
         })
         .collect();

@@ -19,7 +19,7 @@ fn parse_angle(index: usize, angle: &str) -> Result<i32, LineError> {
 }
 
 #[test]
-fn angles_of_at_most_one_turn_are_parsed_to_the_hundredth_and_larger_angles_are_refused() {
+fn angles_up_to_a_turn_are_parsed_to_the_hundredth_and_larger_ones_are_refused() {
     let values = (-36_100..36_100).step_by(3);
     for centideg in values.chain([-36_000, -1, 36_000, 36_001]) {
         let sign = if centideg < 0 { "-" } else { "" };
@@ -49,7 +49,7 @@ fn equal_angles_in_different_notations_are_parsed_alike() {
 }
 
 #[test]
-fn an_invalid_angle_is_refused() {
+fn an_invalid_or_missing_angle_is_refused() {
     for word in [
         "", "a", ".5", "-", "+", "--1", "+-1", "1e2", "138.5x", "138.591", "138,59", "1.x", "1.5.",
         "1.-5", ".", "0x10",

@@ -148,7 +148,7 @@ fn held_servo_state(sweeps: [i16; 4]) -> ServoState {
 
 /// Restarts the asymmetric sample robot with a copy of this memory.
 fn restart_asymmetric_robot(memory: &Eeprom, restart: Restart) -> RunningRobot {
-    RunningRobot::with_memory(*Sample::asymmetric(), memory.clone(), restart)
+    RunningRobot::with_eeprom(*Sample::asymmetric(), memory.clone(), restart)
 }
 
 /// Returns the restart after a hang, which is reset number `reset_count` since power-on; `servo_state` is the state

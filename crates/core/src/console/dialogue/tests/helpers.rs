@@ -42,7 +42,7 @@ impl RunningRobot {
     /// Powers on another robot like this one, with a copy of this robot's EEPROM.
     pub(super) fn power_on_copy(&self) -> Self {
         let memory = self.board.memory.clone();
-        Self::with_memory(*self.motion().robot(), memory, Restart::NONE)
+        Self::with_eeprom(*self.motion().robot(), memory, Restart::NONE)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Tests of a resting robot, and of its servos, which wake one after another when the rest ends.
+//! Tests of a resting robot, and of servos that wake one after another, at power-on or when a rest ends.
 
 use super::*;
 
@@ -14,10 +14,10 @@ fn stop_and_rest_change_nothing_while_the_robot_rests() {
 
 #[test]
 fn a_gait_or_a_pose_first_wakes_the_servos_in_the_rest_pose() {
-    for is_pose in [false, true] {
+    for goes_to_pose in [false, true] {
         let mut motion = make_resting_motion();
         let pose_before = *motion.pose();
-        if is_pose {
+        if goes_to_pose {
             motion.go_to_sweeps(SWEEPS);
             assert_eq!(motion.activity(), Activity::Pose);
         } else {
@@ -31,7 +31,7 @@ fn a_gait_or_a_pose_first_wakes_the_servos_in_the_rest_pose() {
         assert_eq!(motion.advance_frame(), motion.pose_pulses());
         assert!(motion.is_in_move());
         motion.run(TRANSITION_FRAMES);
-        if is_pose {
+        if goes_to_pose {
             assert_eq!(motion.pose(), &Pose(SWEEPS.map(Sweep)));
         } else {
             assert!(motion.is_cycling());
@@ -41,16 +41,16 @@ fn a_gait_or_a_pose_first_wakes_the_servos_in_the_rest_pose() {
 
 #[test]
 fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
-    let new_motion = Motion::new(*Sample::asymmetric());
+    let powered_on_motion = Motion::new(*Sample::asymmetric());
     let mut woken_motion = make_resting_motion();
     woken_motion.start("stand");
     // After a rest during waking, all servos wake again.
-    let mut interrupted_motion = new_motion.clone();
+    let mut interrupted_motion = powered_on_motion.clone();
     interrupted_motion.run(12);
     interrupted_motion.rest();
     assert_eq!(interrupted_motion.advance_frame(), Pulses::default());
     interrupted_motion.start("stand");
-    for mut motion in [new_motion, woken_motion, interrupted_motion] {
+    for mut motion in [powered_on_motion, woken_motion, interrupted_motion] {
         let held_pulses = motion.pose_pulses();
         let mut first_frames = [0; 4];
         for frame in 1..=FRAMES_TO_WAKE {

@@ -168,11 +168,13 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         Ok(())
     }
 
-    /// Shows a line that the robot printed without being asked.
+    /// Shows a line that the robot printed without being asked. The message about a reset stays until the next key.
     fn show_message(&mut self, line: &str) {
         if line.starts_with(BANNER_START) {
             self.message = RESET_MESSAGE.to_owned();
-        } else if let Some(note) = line.strip_prefix("# ") {
+        } else if let Some(note) = line.strip_prefix("# ")
+            && self.message != RESET_MESSAGE
+        {
             self.message = format!("Message from the robot: {note}.");
         }
     }

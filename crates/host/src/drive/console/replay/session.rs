@@ -27,8 +27,8 @@ pub(super) struct RecordedSession {
 }
 
 impl RecordedSession {
-    /// Parses a session's file. A partial last line, left by a killed program or a full disk, is ignored. The error says
-    /// which line is not an event or is out of place, or that the file is not a session or has another format.
+    /// Parses a session's file. A partial last line, left by a killed program or a full disk, is ignored. The error
+    /// says which line is not an event or is out of place, or that the file is not a session or has another format.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let not_a_session = format!(
             "this is not a session of `lizard console --record`: \"{FORMAT}\" is missing from its \
@@ -80,8 +80,9 @@ impl RecordedSession {
         self.entries.last().map_or(0, |last| last.ms)
     }
 
-    /// Returns the pulse widths of the reported poses, CPU cycles, one entry per frame since the start of the session;
-    /// zero while the robot rested, and in gaps of more than [`MAX_HELD_FRAMES`] without a pose.
+    /// Returns the pulse widths of the reported poses, CPU cycles, one entry per frame since the start of the session.
+    /// They are zero while the robot rested, before the first pose, after the last pose, and between two poses that are
+    /// more than [`MAX_HELD_FRAMES`] frames apart.
     pub(super) fn build_frame_log(&self, robot: &Robot) -> FrameLog {
         let mut widths: Vec<[u16; 4]> = vec![[0; 4]; (self.end_ms() / FRAME_MS) as usize + 1];
         let mut is_resting = false;
@@ -158,12 +159,17 @@ impl RecordedSession {
                     steps.push(Step::new(entry.ms, command));
                 }
                 Event::Answer(line) => {
-                    // A `stop` may be sent before the answer to the previous line.
-                    let is_for_previous_line = line != "ok stop"
-                        && steps.last().is_some_and(|step| step.command == "stop");
-                    let mut unanswered = answers.iter_mut().rev().skip(is_for_previous_line.into());
-                    if let Some(answer @ None) = unanswered.next() {
-                        *answer = Some(line.clone());
+                    // A `stop` may be sent before the answer to the previous line, and be repeated until its one
+                    // answer.
+                    let previous_index = steps.iter().rposition(|step| step.command != "stop");
+                    match previous_index.map(|index| &mut answers[index]) {
+                        Some(answer @ None) if line != "ok stop" => *answer = Some(line.clone()),
+                        _ => {
+                            let first_stop = previous_index.map_or(0, |index| index + 1);
+                            for answer in &mut answers[first_stop..] {
+                                answer.get_or_insert_with(|| line.clone());
+                            }
+                        }
                     }
                 }
                 _ => {}
@@ -271,6 +277,17 @@ mod tests {
             "{\"ms\":4001,\"sent\":\"STOP\"}".to_owned(),
             "{\"ms\":4002,\"answer\":\"err 6 no\"}".to_owned(),
             "{\"ms\":4003,\"answer\":\"ok stop\"}".to_owned(),
+            // A resting robot refuses `stop`.
+            "{\"ms\":4500,\"sent\":\"rest\"}".to_owned(),
+            "{\"ms\":4501,\"answer\":\"ok rest\"}".to_owned(),
+            "{\"ms\":4600,\"sent\":\"stop\"}".to_owned(),
+            "{\"ms\":4601,\"answer\":\"err 7 resting\"}".to_owned(),
+            // Two presses of Esc before the refusal arrives.
+            "{\"ms\":4700,\"sent\":\"trot\"}".to_owned(),
+            "{\"ms\":4701,\"sent\":\"stop\"}".to_owned(),
+            "{\"ms\":4702,\"sent\":\"stop\"}".to_owned(),
+            "{\"ms\":4703,\"answer\":\"err 6 no\"}".to_owned(),
+            "{\"ms\":4704,\"answer\":\"ok stop\"}".to_owned(),
             "{\"ms\":5000,\"sent\":\"left\"}".to_owned(),
         ]);
         let spans = session.compute_spans();
@@ -283,6 +300,9 @@ mod tests {
             ("walk", 1.0),
             ("stop", 3.0),
             ("stop", 4.001),
+            ("rest", 4.5),
+            ("stop", 4.701),
+            ("stop", 4.702),
             ("left", 5.0),
         ];
         assert_eq!(commands, expected);

@@ -19,7 +19,8 @@ type Point = (f64, f64);
 
 /// The battery's left edge.
 const BATTERY_LEFT_X: f64 = 560.0;
-/// Vertical position of the battery's plus contact, the fuse, the switch and the single way (terminal).
+/// Vertical position of the battery's plus contact, the fuse, the switch, the single way (terminal) and the converter's
+/// contact OUT+.
 const PLUS_Y: f64 = 40.0;
 /// Vertical position of the battery's minus contact.
 const BATTERY_MINUS_Y: f64 = 112.0;
@@ -76,30 +77,30 @@ pub fn route_wires(barrel_jack: Point) -> Vec<Wire> {
     let [converter_left, converter_right] = CONVERTER_EDGES_X;
     let way_plus = (way_left, PLUS_Y + SINGLE_WAY_WIRE_OFFSET);
     // Returns a path whose vertical segment is at `x`.
-    let route_by = |start: Point, x: f64, end: Point| vec![start, (x, start.1), (x, end.1), end];
+    let route_via_x = |start: Point, x: f64, end: Point| vec![start, (x, start.1), (x, end.1), end];
     let red_wire = |name: &str, path: Path| Wire::new(name, path, RED, THICK_WIRE_WIDTH);
-    let red_line = |name: &str, [start_x, end_x]: [f64; 2], y: f64| {
+    let straight_red_wire = |name: &str, [start_x, end_x]: [f64; 2], y: f64| {
         red_wire(name, vec![(start_x, y), (end_x, y)])
     };
     let black_wire = |part: &str, path: Path, width: f64| {
         Wire::new(format!("{part}-ground"), path, BLACK_WIRE, width)
     };
     let ground_wire = |part: &str, start: Point, x: f64| {
-        let path = route_by(start, x, part_ground_hole(part));
+        let path = route_via_x(start, x, part_ground_hole(part));
         black_wire(part, path, THICK_WIRE_WIDTH)
     };
-    let plug_ground_path = route_by(part_ground_hole("round-plug"), minus_x, plug_minus);
-    let mut plug_plus_path = route_by(way_plus, 268.0, (plus_x, 138.0));
+    let plug_ground_path = route_via_x(part_ground_hole("round-plug"), minus_x, plug_minus);
+    let mut plug_plus_path = route_via_x(way_plus, 268.0, (plus_x, 138.0));
     plug_plus_path.extend([(plus_x, plug_plus.1), plug_plus]);
     let [upper_lead, lower_lead] = capacitor_leads();
     let capacitor_ground_path = vec![upper_lead, part_ground_hole("capacitor")];
-    let converter_supply_path = route_by((converter_left, PLUS_Y), 106.0, supply_hole(0));
+    let converter_supply_path = route_via_x((converter_left, PLUS_Y), 106.0, supply_hole(0));
     let converter_input_xs = [way_left, converter_right];
     let mut wires = vec![
-        red_line("battery-fuse", [BATTERY_LEFT_X, fuse_right], PLUS_Y),
-        red_line("fuse-switch", [fuse_left, switch_right], PLUS_Y),
-        red_line("switch-way", [switch_left, way_right], PLUS_Y),
-        red_line("way-converter", converter_input_xs, CONVERTER_IN_PLUS_Y),
+        straight_red_wire("battery-fuse", [BATTERY_LEFT_X, fuse_right], PLUS_Y),
+        straight_red_wire("fuse-switch", [fuse_left, switch_right], PLUS_Y),
+        straight_red_wire("switch-way", [switch_left, way_right], PLUS_Y),
+        straight_red_wire("way-converter", converter_input_xs, CONVERTER_IN_PLUS_Y),
         ground_wire("battery", (BATTERY_LEFT_X, BATTERY_MINUS_Y), 546.0),
         ground_wire("converter-in", (converter_right, CONVERTER_MINUS_Y), 252.0),
         ground_wire("converter-out", (converter_left, CONVERTER_MINUS_Y), 119.0),
@@ -182,7 +183,7 @@ fn draw_battery(group: Group) -> Group {
         let name = format!("battery-balance-{number}");
         group = group.add(draw_terminal(&name, (BATTERY_LEFT_X, y), DARK));
     }
-    // Draws the plug that disconnects both wires.
+    // The plug disconnects both wires, so it is drawn on each.
     for y in [PLUS_Y, BATTERY_MINUS_Y] {
         let plug = rectangle((534.0, y - 7.0), (9.0, 14.0), "#f0c808");
         group = group.add(add_outline(plug, DARK, 1.0));

@@ -1,4 +1,4 @@
-//! The geometry of the feet, and the body that stands on them.
+//! The geometry of the legs, and the body that stands on them.
 
 use crate::friction::Point;
 use crate::legs::{FRONT_SIGN, LEFT_SIGN};
@@ -8,7 +8,7 @@ pub const GRAVITY: f64 = 9.80665;
 
 /// The positions of the hips, and the length and the mounting of the legs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Feet {
+pub struct LegGeometry {
     /// Distance from the chassis centre forward to the front hips and back to the hind hips, mm.
     pub hip_forward: f64,
     /// Distances from the chassis's long axis to the front hips and to the hind hips, mm.
@@ -19,7 +19,7 @@ pub struct Feet {
     pub reach: f64,
 }
 
-impl Feet {
+impl LegGeometry {
     /// Positions of the hips in servo order: (forward, left) from the chassis centre, mm.
     pub fn hips(&self) -> [Point; 4] {
         std::array::from_fn(|i| {
@@ -30,7 +30,7 @@ impl Feet {
     }
 
     /// Positions of the feet at these sweeps (deg, servo order): (forward, left) from the chassis centre, mm.
-    pub fn positions(&self, sweeps: [f64; 4]) -> [Point; 4] {
+    pub fn foot_positions(&self, sweeps: [f64; 4]) -> [Point; 4] {
         let hips = self.hips();
         std::array::from_fn(|i| {
             let (sin, cos) = self.leg_sin_cos(i, sweeps[i]);
@@ -87,9 +87,9 @@ impl Body {
     }
 }
 
-/// The feet of the paper's robot.
+/// The legs of the paper's robot.
 #[cfg(test)]
-pub(crate) const PAPER_FEET: Feet = Feet {
+pub(crate) const PAPER_LEGS: LegGeometry = LegGeometry {
     hip_forward: 55.0,
     hip_side: [35.0; 2],
     mount_angle: 0.0,
@@ -102,36 +102,36 @@ mod tests {
     use crate::assert_near;
 
     #[test]
-    fn each_foot_is_one_crank_length_from_its_hip_along_the_sweep() {
-        let feet = PAPER_FEET;
+    fn each_foot_is_one_crank_length_from_its_hip_in_the_direction_of_its_leg() {
+        let legs = PAPER_LEGS;
         let expected_positions = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
-        assert_eq!(feet.positions([0.0; 4]), expected_positions);
-        let forward_feet = feet.positions([90.0; 4]);
+        assert_eq!(legs.foot_positions([0.0; 4]), expected_positions);
+        let forward_feet = legs.foot_positions([90.0; 4]);
         let expected_positions = [[100.0, 35.0], [100.0, -35.0], [-10.0, -35.0], [-10.0, 35.0]];
         for (foot, expected_point) in forward_feet.into_iter().zip(expected_positions) {
             let error = (foot[0] - expected_point[0]).hypot(foot[1] - expected_point[1]);
             assert!(error < 1e-12, "expected {expected_point:?}, got {foot:?}");
         }
-        let splayed_feet = Feet {
+        let splayed_legs = LegGeometry {
             mount_angle: 90.0,
-            ..feet
+            ..legs
         };
-        let positions = splayed_feet.positions([0.0; 4]);
+        let positions = splayed_legs.foot_positions([0.0; 4]);
         assert_near(positions[0][0], 100.0, 1e-12);
         assert_near(positions[2][0], -100.0, 1e-9);
     }
 
     #[test]
     fn sweep_derivatives_match_difference_quotients_of_the_positions() {
-        let feet = Feet {
+        let legs = LegGeometry {
             mount_angle: 12.0,
-            ..PAPER_FEET
+            ..PAPER_LEGS
         };
         let sweeps = [10.0, -5.0, 20.0, -15.0];
         let step_deg = 1e-5;
         let [positions, stepped_positions] =
-            [0.0, step_deg].map(|step| feet.positions(sweeps.map(|sweep| sweep + step)));
-        for (i, derivative) in feet.sweep_derivatives(sweeps).into_iter().enumerate() {
+            [0.0, step_deg].map(|step| legs.foot_positions(sweeps.map(|sweep| sweep + step)));
+        for (i, derivative) in legs.sweep_derivatives(sweeps).into_iter().enumerate() {
             for axis in 0..2 {
                 let difference_quotient =
                     (stepped_positions[i][axis] - positions[i][axis]) / step_deg.to_radians();
