@@ -79,10 +79,17 @@ async function install(path, entry) {
   try {
     renameSync(newFolder, folder);
   } catch {
-    // The folder exists: it has another version, or another process has just installed this version.
-    if (readInstalledVersion(folder) === version) return rmSync(newFolder, { recursive: true, force: true });
-    rmSync(folder, { recursive: true, force: true });
-    renameSync(newFolder, folder);
+    // Usually the folder exists: it has another version, or another process has just installed this version.
+    if (readInstalledVersion(folder) !== version) {
+      rmSync(folder, { recursive: true, force: true });
+      try {
+        renameSync(newFolder, folder);
+      } catch (error) {
+        if (readInstalledVersion(folder) !== version) throw error;
+      }
+    }
+  } finally {
+    rmSync(newFolder, { recursive: true, force: true });
   }
   console.log(`setup: ${path} ${version}`);
 }

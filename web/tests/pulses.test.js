@@ -121,9 +121,12 @@ for (const [robotName, toml] of [['robot.toml', TOML], ['a robot that was edited
   assert.deepEqual([...periods], [0], 'a frame is exactly 20 ms');
 });
 
-testPage('the pulses are shown, and none while the robot rests', () => openUnfolded('#pulses'), async (page) => {
+testPage('the table shows the widths of the pulses, and "none" while the robot rests', () => openUnfolded('#pulses'), async (page) => {
   const waitForWidths = (pattern) =>
-    page.waitForFunction((pattern) => [...document.querySelectorAll('#widths td:nth-child(3)')].every(({ textContent }) => new RegExp(pattern).test(textContent)), pattern);
+    page.waitForFunction((pattern) => {
+      const cells = [...document.querySelectorAll('#widths td:nth-child(3)')];
+      return cells.length === 4 && cells.every(({ textContent }) => new RegExp(pattern).test(textContent));
+    }, pattern);
   await waitForWidths('^1500\\.00$');
   await sendLine(page, 'rest', 'ok rest');
   await advance(page, 1000);

@@ -353,20 +353,22 @@ class Robot:
             own_deadman = self._own_deadman
             if own_deadman is None:
                 notes = self._send_until_answered("cal")
-                match = re.search(
-                    r"^# deadman (\d+)$", "\n".join(notes), re.MULTILINE
-                )
+                match = re.search(r"^# deadman (\d+)$", "\n".join(notes), re.MULTILINE)
                 if match is None:
                     raise NoAnswer("the answer to `cal` has no `deadman`")
                 own_deadman = int(match[1])
                 if own_deadman == DRIVING_DEADMAN:
                     own_deadman = 0
+                with self._condition:
+                    # A reset restores the saved `deadman`, also after the answer.
+                    if self._reset_count != reset_count:
+                        continue
+                    # Kept even if the next line is not answered: `cal` would then show the driving value.
+                    self._own_deadman = own_deadman
             driving_deadman = min(own_deadman or DRIVING_DEADMAN, DRIVING_DEADMAN)
             self._send_until_answered(f"deadman {driving_deadman}")
             with self._condition:
-                # A reset restores the saved `deadman`, also after the answers.
                 if self._reset_count == reset_count:
-                    self._own_deadman = own_deadman
                     self._driving_deadman = driving_deadman
 
     def _restore_deadman(self) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import lizard
+from lizard.status import NoAnswer
 
 
 def start_uno(link: Path, *options: str) -> subprocess.Popen[bytes]:
@@ -118,6 +119,26 @@ def test_deadman_is_set_again_after_a_reset_just_after_its_answer(robot, monkeyp
     robot._set_deadman()
     # The reset has restored the saved value, 0.
     assert (robot._own_deadman, read_deadman(robot)) == (0, 901)
+
+
+def test_the_robots_own_deadman_survives_a_lost_answer(robot, monkeypatch):
+    robot.send("deadman 5000")
+    send = robot._send_until_answered
+    lost_lines: list[str] = []
+
+    def lose_first_answer(line: str) -> list[str]:
+        answer = send(line)
+        if line == "deadman 901" and not lost_lines:
+            lost_lines.append(line)
+            raise NoAnswer("lost")
+        return answer
+
+    monkeypatch.setattr(robot, "_send_until_answered", lose_first_answer)
+    with pytest.raises(NoAnswer):
+        robot.go("walk")
+    robot.walk()
+    robot.stop()
+    assert read_deadman(robot) == 5000
 
 
 def test_stop_restores_deadman_even_if_the_robot_rests_already(robot):

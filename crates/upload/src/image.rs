@@ -8,7 +8,7 @@ use std::ops::Range;
 use ihex::Record;
 use lizard_core::numbers::section::START_ADDRESS;
 
-/// Number of bytes in a page, which the chip writes as a whole (ATmega328P data sheet, table 27-7: 64 words).
+/// Number of bytes in a page, which the chip writes as a whole (ATmega328P data sheet, Page Size: 64 words).
 pub const PAGE_BYTES: usize = 128;
 /// The address of a UNO's boot loader.
 pub const BOOT_ADDRESS: usize = 0x7e00;

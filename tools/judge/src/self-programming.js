@@ -1,5 +1,5 @@
 // Adds the instruction SPM, which avr8js treats as a NOP: with it a boot loader erases and writes the flash outside its
-// own section, page by page (data sheet, chapter 26). Here both take no time, so a loader that waits continues at once.
+// own section, page by page (data sheet, chapter 27). Here both take no time, so a loader that waits continues at once.
 import { avrInstruction } from 'avr8js';
 
 const SPM = 0x95e8;

@@ -28,7 +28,7 @@ fn the_documentation_and_the_robot_file_have_the_stored_speeds() {
     let begin = "<!-- speeds of robots/grain.toml -->\n```text\n";
     check_or_update_block("docs/gaits.md", begin, "```\n<!-- end -->", &table);
     let comment: String = table.lines().map(|line| format!("# {line}\n")).collect();
-    let begin = "grain this is a tie, and any number for run at r = 1.0 is an artefact.\n#\n";
+    let begin = "grain neither pair prevails: any number for run at r = 1.0 is an artefact.\n#\n";
     check_or_update_block("robots/grain.toml", begin, "#\n# Fit all", &comment);
 }
 

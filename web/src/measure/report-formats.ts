@@ -6,7 +6,7 @@ const PICTURE_WIDTH = 700;
 const LINE_HEIGHT = 22;
 const TITLE_HEIGHT = 64;
 /** Left edges of the columns, px. */
-const COLUMN_LEFTS = [24, 130, 220, 290, 390, 560, 620];
+const COLUMN_LEFTS = [24, 130, 220, 290, 390, 575, 628];
 /** The keys of the components of a cycle's movement in a report. */
 const COMPONENT_KEYS = ['forward', 'left', 'turn'] as const;
 const COMPONENT_LABELS = ['ahead, mm', 'left, mm', 'turn, deg'];

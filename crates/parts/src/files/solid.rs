@@ -279,7 +279,7 @@ impl SolidBuilder {
                 holes.push(piece_loop);
             }
         }
-        // The smallest outline around a hole is its face.
+        // A hole belongs to the smallest outline around it.
         outer_faces.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
         for hole in holes {
             let point_on_hole = self.middles[hole[0].middle];

@@ -70,7 +70,7 @@ fn mass_and_centre_of_mass_match_robot_toml() {
 }
 
 #[test]
-fn the_leg_mass_of_the_parts_is_within_a_quarter_of_the_contact_model() {
+fn the_leg_mass_of_the_parts_differs_by_less_than_a_quarter_from_the_contact_models() {
     for name in ROBOTS {
         let robot = read_robot_with(name, "");
         let text = make_mjcf(&robot, |_| {});

@@ -18,7 +18,7 @@ const MIN_TURN_DEG: f64 = 0.5;
 /// Largest difference (mm or deg) between displacements that count as equal.
 const DISPLACEMENT_TOLERANCE: f64 = 0.02;
 
-/// The note about assumptions that no input of the model represents.
+/// The note about assumptions that the table does not vary.
 const UNMODELLED_NOTE: &str = "\
 The model does not cover edges and slopes of the floor, a missing pad, servos that drive in bursts, a centre of mass \
 more than 15 mm from the middle, or other masses of the limbs.\n\
@@ -54,8 +54,8 @@ impl ModelInputs {
         gait.simulate_with_angle_scale(&self.ground, &motors, pace, self.angle_scale)
     }
 
-    /// Finds the gaits that move the robot noticeably and predictably, each with its displacement. Of gaits whose
-    /// displacements differ only in sign, such as mirror images or reverses of each other, only the first is included.
+    /// Finds the gaits that move the robot noticeably and predictably, each with its displacement. Of gaits whose distances
+    /// forward and turns differ only in sign, such as mirror images or reverses of each other, only the first is included.
     fn find_distinct_gaits<'a>(&self, robot: &'a Robot) -> Vec<(&'a CheckedGait, Travel)> {
         let mut gaits: Vec<(&CheckedGait, Travel)> = Vec::new();
         let rigid_ground = robot.ground().with_rigid_drive();

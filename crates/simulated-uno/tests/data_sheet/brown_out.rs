@@ -1,4 +1,4 @@
-//! Tests of the simulated chip on a falling and rising supply, against the data sheet, sections 11.4 and 11.5.
+//! Tests of the simulated chip on a falling and rising supply, against the data sheet, sections 11.3 and 11.5.
 
 use super::adc::compile;
 use super::*;
