@@ -3,9 +3,8 @@
 //! First, a fit has all keys free. It provides the reported standard errors, because the file's values enter this fit
 //! only through wide priors. Then keys are held at their file values: first all undetermined keys, then one key at a
 //! time, always the key whose value is nearest to the file's in standard errors, until every free key is at least two
-//! standard errors away. A key whose value is impossible is then held, too. After each round, the free keys are
-//! adjusted. Therefore, if two keys have the same effect, only
-//! one of them changes.
+//! standard errors away. A key whose value is then impossible is held, too. Whenever a key is held, the free keys are
+//! adjusted. Therefore, if two keys have the same effect, only one of them changes.
 
 use lizard_robot::{CheckedGait, Robot, Travel};
 use nalgebra::DMatrix;

@@ -32,15 +32,19 @@ const MAX_MISFIT_FRACTION: f64 = 0.5;
 /// of the mean of both movements' squares.
 const MIN_CHANGE_FRACTION: f64 = 0.15;
 /// Range of the scale of a prediction with which a path is compared: on a real floor, a robot may move half as far as
-/// predicted, or twice as far. Each pace is compared with the same scales, so only the variation within a cycle
-/// distinguishes the paces.
+/// predicted, or twice as far. Every pace is compared with the same scales, so within this range a robot that moves less
+/// far than predicted does not look like a robot at a slower pace.
 pub(crate) const SCALE_RANGE: [f64; 2] = [0.5, 2.0];
 /// Multiples of a cycle's duration with which the path is compared.
 pub(crate) const PERIOD_MULTIPLES: [u32; 3] = [2, 4, 8];
 /// Largest squared error with another cycle duration at which that duration is accepted, as a fraction of the squared
-/// error with the expected duration. A multiple of the duration is accepted if its misfit is below this fraction of the
-/// misfit with the expected duration, or of 1 if that misfit is larger.
-const MAX_MISFIT_RATIO: f64 = 0.3;
+/// error with the expected duration. A multiple or half of the duration is accepted if its misfit is below this fraction
+/// of the misfit with the expected duration, where a misfit above 1 counts as 1.
+pub(crate) const MAX_MISFIT_RATIO: f64 = 0.3;
+
+/// Largest misfit of an accepted gait: the misfit of a robot that moves a third as far, or four times as far, as
+/// predicted.
+pub(crate) const MAX_MISFIT: f64 = 0.25;
 
 /// The timing of a walk's cycles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,6 +106,14 @@ impl Movements {
         if slow_misfit < MAX_MISFIT_RATIO * self.misfit_at(gait, start, period).min(1.0) {
             return Err(VideoError::WrongPace { ratio: multiple });
         }
+        // At twice the given pace, two cycles look like one.
+        let half_period = gait.period / 2.0;
+        let fast_misfit = self.compute_misfit_with_periods(gait, half_period, &[half_period]);
+        if fast_misfit < MAX_MISFIT_RATIO * self.compute_misfit(gait).min(1.0) {
+            return Err(VideoError::GaitMismatch {
+                period: gait.period,
+            });
+        }
         let squares = |(time, measured): &(f64, [f64; 3])| {
             let phase = (time - start) / period;
             let predicted = gait.movement_between(phase, phase + self.duration / period);
@@ -148,8 +160,8 @@ impl Movements {
         self.compute_misfit_with_periods(gait, gait.period, &likely_periods(gait))
     }
 
-    /// Computes the misfit of a gait with cycles of several times their usual duration, for the cycle start and the scale
-    /// of the prediction that fit best. Returns the smallest misfit and its multiple of the duration.
+    /// Computes the misfit of a gait with cycles of several times their usual duration, for the cycle start and the
+    /// scale of the prediction that fit best. Returns the smallest misfit and its multiple of the duration.
     pub(crate) fn misfit_at_best_multiple(&self, gait: &Gait) -> (f64, u32) {
         let misfits = PERIOD_MULTIPLES.map(|multiple| {
             let period = f64::from(multiple) * gait.period;

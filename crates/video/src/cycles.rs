@@ -8,7 +8,7 @@
 
 use lizard_contact::{BodyPose, Travel};
 
-use crate::cycle_timing::{CycleTiming, Movements};
+use crate::cycle_timing::{CycleTiming, MAX_MISFIT, MAX_MISFIT_RATIO, Movements, PERIOD_MULTIPLES};
 use crate::estimate::Estimate;
 use crate::gait::{Gait, HALF_WINDOW, MIN_MOVEMENT, movement_in_mm, movement_length};
 use crate::mean;
@@ -47,7 +47,12 @@ pub(crate) struct Cycles {
 /// Fails if the robot does not move, does not move like the gait, changes its movement, or walks for less than two
 /// cycles.
 pub(crate) fn find_cycles(path: &[PathPoint], gait: &Gait) -> Result<Cycles, VideoError> {
-    let (walk, [begin, end], movements) = select_even_walk(path, gait)?;
+    let selection =
+        select_even_walk(path, gait).map_err(|error| match find_slow_pace(path, gait) {
+            Some((misfit, ratio)) if misfit < MAX_MISFIT => VideoError::WrongPace { ratio },
+            _ => error,
+        });
+    let (walk, [begin, end], movements) = selection?;
     let CycleTiming { start, period } = movements.fit_timing(gait)?;
     if let Some(seconds) = movements.find_change(period.value) {
         let seconds = seconds - path[0].seconds;
@@ -116,6 +121,21 @@ pub(crate) fn select_even_walk<'a>(
         return Err(too_short_error(end - begin, gait));
     }
     Ok((walk, [begin, end], movements))
+}
+
+/// Finds the multiple of a gait's cycle duration with which a path shows the gait if its cycles look uneven at the usual
+/// duration. Returns the misfit and the multiple; `None` if no multiple fits much better than the usual duration.
+pub(crate) fn find_slow_pace(path: &[PathPoint], gait: &Gait) -> Option<(f64, u32)> {
+    let fits = PERIOD_MULTIPLES.into_iter().filter_map(|multiple| {
+        let mut slow_gait = gait.clone();
+        slow_gait.period *= f64::from(multiple);
+        let (walk, _, movements) = select_even_walk(path, &slow_gait).ok()?;
+        let misfit = movements.compute_misfit(&slow_gait);
+        // A robot at its usual pace that slips now and then also resembles the slow gait, but not much better.
+        let usual_misfit = Movements::from_path(walk, gait.period).compute_misfit(gait);
+        (misfit < MAX_MISFIT_RATIO * usual_misfit.min(1.0)).then_some((misfit, multiple))
+    });
+    fits.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 fn too_short_error(seconds: f64, gait: &Gait) -> VideoError {

@@ -4,15 +4,12 @@
 //! and the scale that fit best. Since every robot differs from its prediction, a good fit alone is no proof: the second
 //! best gait must fit much worse according to the F-test for two variances.
 
-use crate::cycle_timing::PERIOD_MULTIPLES;
+use crate::cycle_timing::MAX_MISFIT;
 use crate::cycles;
 use crate::gait::Gait;
 use crate::path::PathPoint;
 use crate::video_error::VideoError;
 
-/// Largest misfit of an accepted gait: the misfit of a robot that moves a third as far, or four times as far, as
-/// predicted.
-const MAX_MISFIT: f64 = 0.25;
 /// Smallest ratio of the second best gait's misfit to the best gait's: the 1 % critical value of Fisher's F if both
 /// variances come from four quarters of a cycle on three axes.
 const MIN_MISFIT_RATIO: f64 = 4.16;
@@ -49,16 +46,10 @@ pub(crate) fn match_gait(path: &[PathPoint], gaits: &[Gait]) -> GaitMatch {
             }
             Err(error) => {
                 first_error = first_error.or(Some(error));
-                // At a slow pace, the cycles may look uneven at the usual duration.
-                for multiple in PERIOD_MULTIPLES {
-                    let mut slow_gait = gait.clone();
-                    slow_gait.period *= f64::from(multiple);
-                    if let Ok((_, _, movements)) = cycles::select_even_walk(path, &slow_gait) {
-                        let slow_misfit = movements.compute_misfit(&slow_gait);
-                        if slow_misfit < best_slow_misfit {
-                            (best_slow_misfit, pace_ratio) = (slow_misfit, multiple);
-                        }
-                    }
+                if let Some((slow_misfit, multiple)) = cycles::find_slow_pace(path, gait)
+                    && slow_misfit < best_slow_misfit
+                {
+                    (best_slow_misfit, pace_ratio) = (slow_misfit, multiple);
                 }
             }
         }

@@ -10,7 +10,7 @@ use crate::{
     Status, boot_to_stand, boot_to_walk, expect_answer, first_moving_gait, run_in_both_simulations,
 };
 
-/// The answer to a line of which the robot received a byte with a framing error.
+/// The answer to a garbled line, and to a command that is too short to confirm a guessed rate.
 pub const GARBLED_ANSWER: &str = "err 1 the line was garbled; send it again";
 
 /// The baud rates, each with the number of `status` lines until the first answer after a cold start. One line is lost

@@ -165,7 +165,10 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
         let verdict = component.format_verdict();
         // "more" or "less" is on a line of its own, because the three verdicts are beside each other.
         let (first_line, second_line) = verdict.rsplit_once(' ').unwrap_or((&verdict, ""));
-        for (lines, part) in [(1.0, first_line), (2.0, second_line)] {
+        for (lines, part) in [(1.0, first_line), (2.0, second_line)]
+            .into_iter()
+            .filter(|(_, part)| !part.is_empty())
+        {
             group = group.add(text(part, point_below(lines), 13.0, GREY, Anchor::Middle));
         }
     }

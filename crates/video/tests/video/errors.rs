@@ -246,12 +246,19 @@ fn movements_that_do_not_match_the_gait_are_rejected() {
 
 #[test]
 fn cycles_of_twice_or_four_times_the_duration_are_reported_as_another_pace() {
-    for (name, multiple, scale) in [("walk", 2, 1.0), ("walk", 4, 1.0), ("trot", 2, 0.7)] {
+    for (name, multiple, scale) in [
+        ("walk", 2, 1.0),
+        ("walk", 4, 1.0),
+        ("trot", 2, 0.7),
+        ("left", 2, 1.0),
+        ("crawl", 2, 1.0),
+    ] {
         let gait = paper_gait(name);
         let mut slow = scaled_gait(&gait, scale);
         slow.period *= f64::from(multiple);
         let measured = record_cycles(&studio(), &slow, 3, 5.0).measure(FULL_SCALE, &gait);
-        assert_eq!(measured, Err(VideoError::WrongPace { ratio: multiple }));
+        let wrong_pace = VideoError::WrongPace { ratio: multiple };
+        assert_eq!(measured, Err(wrong_pace), "{name}, scale {scale}");
     }
 }
 

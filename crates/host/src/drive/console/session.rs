@@ -16,7 +16,7 @@ use lizard_robot::Status;
 
 use answer::{can_answer, is_stop_refusal};
 
-mod answer;
+pub(super) mod answer;
 
 /// Interval between two `status` lines while no person drives the robot.
 const STATUS_INTERVAL: Duration = Duration::from_millis(500);

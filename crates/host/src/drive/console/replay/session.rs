@@ -4,6 +4,7 @@ use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US};
 
 use super::super::recorder::{Event, FORMAT, TimedEvent};
+use super::super::session::answer::is_stop_refusal;
 use crate::simulate::sim::frame_log::FrameLog;
 use crate::simulate::sim::script::{Script, Step};
 use crate::simulate::sim::spans::{self, Span};
@@ -159,13 +160,15 @@ impl RecordedSession {
                     steps.push(Step::new(entry.ms, command));
                 }
                 Event::Answer(line) => {
-                    // A `stop` may be sent before the answer to the previous line, and be repeated until its one
-                    // answer.
+                    // A `stop` may be sent before the previous line is answered. Each press of Esc is recorded as a `stop`,
+                    // but all unanswered ones have one recorded answer.
                     let previous_index = steps.iter().rposition(|step| step.command != "stop");
+                    let first_stop = previous_index.map_or(0, |index| index + 1);
+                    let has_open_stop = answers[first_stop..].iter().any(Option::is_none);
+                    let is_for_stop = line == "ok stop" || is_stop_refusal(line) && has_open_stop;
                     match previous_index.map(|index| &mut answers[index]) {
-                        Some(answer @ None) if line != "ok stop" => *answer = Some(line.clone()),
+                        Some(answer @ None) if !is_for_stop => *answer = Some(line.clone()),
                         _ => {
-                            let first_stop = previous_index.map_or(0, |index| index + 1);
                             for answer in &mut answers[first_stop..] {
                                 answer.get_or_insert_with(|| line.clone());
                             }
@@ -277,11 +280,11 @@ mod tests {
             "{\"ms\":4001,\"sent\":\"STOP\"}".to_owned(),
             "{\"ms\":4002,\"answer\":\"err 6 no\"}".to_owned(),
             "{\"ms\":4003,\"answer\":\"ok stop\"}".to_owned(),
-            // A resting robot refuses `stop`.
+            // A resting robot refuses `stop`; a radio has lost the answer to `rest`.
             "{\"ms\":4500,\"sent\":\"rest\"}".to_owned(),
-            "{\"ms\":4501,\"answer\":\"ok rest\"}".to_owned(),
             "{\"ms\":4600,\"sent\":\"stop\"}".to_owned(),
-            "{\"ms\":4601,\"answer\":\"err 7 resting\"}".to_owned(),
+            "{\"ms\":4601,\"answer\":\"err 7 the servos are resting; send stand first\"}"
+                .to_owned(),
             // Two presses of Esc before the refusal arrives.
             "{\"ms\":4700,\"sent\":\"trot\"}".to_owned(),
             "{\"ms\":4701,\"sent\":\"stop\"}".to_owned(),

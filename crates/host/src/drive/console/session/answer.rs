@@ -17,7 +17,7 @@ pub(super) fn can_answer(answer: &str, line: &str) -> bool {
 
 /// True if a line refuses `stop` because there are no pulses to stop: the robot rests, or the flash has no robot.
 /// The whole line must match: a line cut off by a radio may be the beginning of an older answer.
-pub(super) fn is_stop_refusal(line: &str) -> bool {
+pub(in crate::drive::console) fn is_stop_refusal(line: &str) -> bool {
     let is_refusal = |code: u8, reason: Text| {
         let mut refusal = format!("err {code} ");
         reason.print(&mut refusal);

@@ -63,6 +63,16 @@ fn a_complete_calibration_saves_signs_and_trims() {
 }
 
 #[test]
+fn the_notes_after_a_banner_do_not_replace_the_message_about_the_reset() {
+    let mut link = connect_paper_robot();
+    let mut guide = Guide::new(&mut link).expect("the robot answers");
+    guide.robot.console().port().reset();
+    guide.read_messages().expect("the robot answers");
+    let view = guide.view();
+    assert!(view.message.starts_with("The board was reset"), "{view:?}");
+}
+
+#[test]
 fn cancelling_restores_the_calibration_and_saves_nothing() {
     let mut keys = vec![Key::Next, Key::Next, Key::Act, Key::No, Key::Act, Key::Yes];
     keys.extend(CONFIRM_SIGN_KEYS.repeat(3));
