@@ -27,8 +27,8 @@ pub enum Fidelity {
 pub enum State {
     /// Running, asleep until an interrupt or a reset, or held in reset by the supply.
     Alive,
-    /// Asleep with interrupts disabled. With [`Fidelity::DataSheet`], only while neither the watchdog nor a ramp or cut of
-    /// the supply could reset the chip. [`Uno::reset`] and [`Uno::power_cycle`] end this; with
+    /// Asleep with interrupts disabled. With [`Fidelity::DataSheet`], only while neither the watchdog nor a ramp or cut
+    /// of the supply could reset the chip. [`Uno::reset`] and [`Uno::power_cycle`] end this; with
     /// [`Fidelity::DataSheet`], so does [`Uno::set_supply_mv`] with a voltage below the brown-out level.
     Halted,
     /// Stopped by an invalid instruction or address.

@@ -32,14 +32,14 @@ const MAX_MISFIT_FRACTION: f64 = 0.5;
 /// of the mean of both movements' squares.
 const MIN_CHANGE_FRACTION: f64 = 0.15;
 /// Range of the scale of a prediction with which a path is compared: on a real floor, a robot may move half as far as
-/// predicted, or twice as far. Every pace is compared with the same scales, so within this range a robot that moves less
-/// far than predicted does not look like a robot at a slower pace.
+/// predicted, or twice as far. Every pace is compared with the same scales, so within this range a robot that moves
+/// less far than predicted does not look like a robot at a slower pace.
 pub(crate) const SCALE_RANGE: [f64; 2] = [0.5, 2.0];
 /// Multiples of a cycle's duration with which the path is compared.
 pub(crate) const PERIOD_MULTIPLES: [u32; 3] = [2, 4, 8];
 /// Largest squared error with another cycle duration at which that duration is accepted, as a fraction of the squared
-/// error with the expected duration. A multiple or half of the duration is accepted if its misfit is below this fraction
-/// of the misfit with the expected duration, where a misfit above 1 counts as 1.
+/// error with the expected duration. A multiple or half of the duration is accepted if its misfit is below this
+/// fraction of the misfit with the expected duration, where a misfit above 1 counts as 1.
 pub(crate) const MAX_MISFIT_RATIO: f64 = 0.3;
 
 /// Largest misfit of an accepted gait: the misfit of a robot that moves a third as far, or four times as far, as
@@ -155,7 +155,8 @@ impl Movements {
     }
 
     /// Computes the misfit of a gait: the squared difference between measured and predicted movements, as a fraction of
-    /// the measured movements' squares, for the cycle start, the duration and the scale of the prediction that fit best.
+    /// the measured movements' squares, for the cycle start, the duration and the scale of the prediction that fit
+    /// best.
     pub(crate) fn compute_misfit(&self, gait: &Gait) -> f64 {
         self.compute_misfit_with_periods(gait, gait.period, &likely_periods(gait))
     }

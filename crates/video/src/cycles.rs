@@ -123,8 +123,8 @@ pub(crate) fn select_even_walk<'a>(
     Ok((walk, [begin, end], movements))
 }
 
-/// Finds the multiple of a gait's cycle duration with which a path shows the gait if its cycles look uneven at the usual
-/// duration. Returns the misfit and the multiple; `None` if no multiple fits much better than the usual duration.
+/// Finds the multiple of a gait's cycle duration with which a path shows the gait if its cycles look uneven at the
+/// usual duration. Returns the misfit and the multiple; `None` if no multiple fits much better than the usual duration.
 pub(crate) fn find_slow_pace(path: &[PathPoint], gait: &Gait) -> Option<(f64, u32)> {
     let fits = PERIOD_MULTIPLES.into_iter().filter_map(|multiple| {
         let mut slow_gait = gait.clone();

@@ -54,8 +54,9 @@ impl ModelInputs {
         gait.simulate_with_angle_scale(&self.ground, &motors, pace, self.angle_scale)
     }
 
-    /// Finds the gaits that move the robot noticeably and predictably, each with its displacement. Of gaits whose distances
-    /// forward and turns differ only in sign, such as mirror images or reverses of each other, only the first is included.
+    /// Finds the gaits that move the robot noticeably and predictably, each with its displacement. Of gaits whose
+    /// distances forward and turns differ only in sign, such as mirror images or reverses of each other, only the first
+    /// is included.
     fn find_distinct_gaits<'a>(&self, robot: &'a Robot) -> Vec<(&'a CheckedGait, Travel)> {
         let mut gaits: Vec<(&CheckedGait, Travel)> = Vec::new();
         let rigid_ground = robot.ground().with_rigid_drive();

@@ -160,8 +160,8 @@ impl RecordedSession {
                     steps.push(Step::new(entry.ms, command));
                 }
                 Event::Answer(line) => {
-                    // A `stop` may be sent before the previous line is answered. Each press of Esc is recorded as a `stop`,
-                    // but all unanswered ones have one recorded answer.
+                    // A `stop` may be sent before the previous line is answered. Each press of Esc is recorded as a
+                    // `stop`, but all unanswered ones have one recorded answer.
                     let previous_index = steps.iter().rposition(|step| step.command != "stop");
                     let first_stop = previous_index.map_or(0, |index| index + 1);
                     let has_open_stop = answers[first_stop..].iter().any(Option::is_none);
