@@ -192,7 +192,9 @@ impl Main {
             if let Some(outcome) = self.control.advance_operation(board.memory()) {
                 self.console.finish_order(outcome);
             }
-        } else if !has_output && let Some(byte) = board.receive() {
+        } else if !self.console.blocks_input(&self.control)
+            && let Some(byte) = board.receive()
+        {
             let was_resting = self.control.motion().is_resting();
             self.console.receive(byte, &mut self.control);
             // The servo state is stored before the answer is written, because a reset may follow the answer at once.
@@ -205,7 +207,12 @@ impl Main {
         StepResult::Worked
     }
 
+    /// Stores the state of the servos for the run after a reset. A run without a robot leaves the stored state as it is,
+    /// because it knows nothing about the servos: an upload of the robot may have been interrupted.
     fn store_servo_state<B: Board>(&self, board: &mut B) {
+        if self.control.motion().robot().is_none() {
+            return;
+        }
         board.store_servo_state(
             self.control.motion().servo_state(),
             self.control.suspected_brown_outs(),

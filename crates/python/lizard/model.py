@@ -50,7 +50,10 @@ class Solution:
 
 @dataclass(frozen=True)
 class Mobility:
-    """The body's degrees of freedom at poses of shape (..., 4), from the rank of the constraints."""
+    """The body's degrees of freedom at poses of shape (..., 4), from the rank of the constraints.
+
+    Both are -1 where a loop does not close.
+    """
 
     freedoms: NDArray[np.int_]
     """Degrees of freedom while the servos turn, (...): 4 away from singularities."""
@@ -85,7 +88,7 @@ class Gait:
 class Model:
     """A robot whose values and gaits have been checked.
 
-    Arrays of poses have any shape that ends with 4 (servo order); arrays of points have any shape that ends with 2.
+    Arrays of poses have any shape that ends with 4 (servos A1 to A4); arrays of points have any shape that ends with 2.
     """
 
     def __init__(self, robot: _lizard.Robot) -> None:
@@ -141,11 +144,18 @@ class Model:
     def gait(self, name: str) -> Gait:
         """Returns a gait by its name; raises KeyError, which lists all names."""
         period, peak_speed, min_margin, times, angles = self._robot.gait(name)
-        pulses = self._robot.pulses(angles)
+        pulse_widths = self._robot.pulses(angles)
         # The words of a name may be separated by spaces, as on the console.
         name = name.replace(" ", "-")
         return Gait(
-            name, period, times, angles, pulses, peak_speed, min_margin, self._robot
+            name,
+            period,
+            times,
+            angles,
+            pulse_widths,
+            peak_speed,
+            min_margin,
+            self._robot,
         )
 
     def solve(self, angles: ArrayLike) -> Solution:
@@ -215,18 +225,20 @@ class Model:
     def mobility(self, angles: ArrayLike) -> Mobility:
         """Computes the body's degrees of freedom for servo angles (..., 4), deg; -1 where a loop does not close."""
         active, passive = self.jacobians(angles)
-        closes = np.asarray(np.isfinite(passive).all(axis=(-2, -1)))
+        is_closed = np.asarray(np.isfinite(passive).all(axis=(-2, -1)))
         # Lengths are divided by 50 mm, about the length of a link, so that the elements are of the size of sines: then
         # a singular pose given to seven digits still counts as singular.
         scale = np.array([50.0, 50, 50, 50, 50, 1, 50, 1])
-        passive = np.where(closes[..., None, None], passive, 0) / scale
-        active = np.where(closes[..., None, None], active, 0) / 50
+        passive = np.where(is_closed[..., None, None], passive, 0) / scale
+        active = np.where(is_closed[..., None, None], active, 0) / 50
         combined = np.concatenate([active, passive], axis=-1)
         freedoms, locked = (
             count - np.linalg.matrix_rank(matrix, rtol=1e-7)
             for count, matrix in [(12, combined), (8, passive)]
         )
-        return Mobility(np.where(closes, freedoms, -1), np.where(closes, locked, -1))
+        return Mobility(
+            np.where(is_closed, freedoms, -1), np.where(is_closed, locked, -1)
+        )
 
     def section(self) -> bytes:
         """Builds the section of flash that describes the robot, including the maps of cells that are proved safe."""

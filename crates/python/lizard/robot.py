@@ -198,7 +198,7 @@ class Robot:
 
     def speed(self, percent: int) -> None:
         """Sets the speed of gaits, 10 to 100 percent."""
-        self.send(f"speed {percent}")
+        self._send_until_answered(f"speed {percent}")
 
     def pose(self, *angles: float) -> tuple[float, ...]:
         """Returns the servo angles, deg; with four angles, first moves to them and waits until they are reached.
@@ -289,8 +289,12 @@ class Robot:
         """Repeats a line until it is answered, since a radio may lose it."""
         deadline = time.monotonic() + RETRY_TIME
         while True:
+            timeout = ANSWER_TIMEOUT / 2
+            if self._driving_deadman is not None:
+                # The lines that keep the gait alive wait for this line.
+                timeout = min(timeout, self._driving_deadman / 2000)
             try:
-                return self._send(line, ANSWER_TIMEOUT / 2)
+                return self._send(line, timeout)
             except NoAnswer:
                 if time.monotonic() >= deadline:
                     raise

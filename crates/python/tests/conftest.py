@@ -23,12 +23,12 @@ def robot() -> Iterator[lizard.Robot]:
 
 @pytest.fixture(scope="session")
 def run_lizard() -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Returns a function that runs `lizard` with arguments and with a standard input."""
-    path = Path(sys.executable).parent / "lizard"
+    """Returns a function that runs `lizard` with the given arguments and standard input."""
+    program = Path(sys.executable).parent / "lizard"
 
     def run(*arguments: object, stdin: str = "") -> subprocess.CompletedProcess[str]:
         return subprocess.run(
-            [str(argument) for argument in (path, *arguments)],
+            [str(argument) for argument in (program, *arguments)],
             check=False,
             input=stdin,
             capture_output=True,

@@ -141,6 +141,25 @@ def test_the_robots_own_deadman_survives_a_lost_answer(robot, monkeypatch):
     assert read_deadman(robot) == 5000
 
 
+@pytest.mark.parametrize(
+    "call", [lambda robot: robot.status(), lambda robot: robot.speed(50)]
+)
+def test_a_lost_line_does_not_stop_a_walking_robot(robot, monkeypatch, call):
+    robot.walk()
+    write, lost_lines = robot._write, []
+
+    def lose_first_line(line: str) -> None:
+        if threading.current_thread() is threading.main_thread() and not lost_lines:
+            lost_lines.append(line)
+        else:
+            write(line)
+
+    monkeypatch.setattr(robot, "_write", lose_first_line)
+    call(robot)
+    status = robot.status()
+    assert (status.gait, status.fault) == ("walk", "none")
+
+
 def test_stop_restores_deadman_even_if_the_robot_rests_already(robot):
     robot.walk()
     robot.send("rest")

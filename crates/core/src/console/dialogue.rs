@@ -81,7 +81,7 @@ impl Console {
             // If the link breaks within `walk 12`, later noise must not complete the partial line as `walk 1`.
             self.line.mark_partial_line_garbled();
         }
-        if self.has_output(control) {
+        if self.blocks_input(control) {
             self.rate_detector.record_unread_bytes();
         }
         // Counted only now: a report that becomes due in this frame has not delayed the reading of any byte.
@@ -92,10 +92,18 @@ impl Console {
         Some(rate)
     }
 
-    /// True while a line waits to be written. Meanwhile the caller must not pass bytes to the console, because the
-    /// answer may quote the received line.
+    /// True while a line waits to be written.
     pub const fn has_output(&self, control: &Controller) -> bool {
         self.next_pending_line(control).is_some()
+    }
+
+    /// True while a line waits to be written before the next line is received: an answer may quote the received line, and
+    /// a notice precedes the answers to later lines. A report of the pose may wait.
+    pub const fn blocks_input(&self, control: &Controller) -> bool {
+        !matches!(
+            self.next_pending_line(control),
+            None | Some(PendingLine::PoseReport)
+        )
     }
 
     /// Adds a received byte to the line; if the byte ends the line, executes the line.

@@ -312,7 +312,7 @@ pub(super) fn print_banner(out: &mut impl Output, robot: &Robot) {
         return Text::BannerEnd.print(out);
     }
     Text::BannerRobot.print(out);
-    digits::print_ascii(out, robot.robot_name());
+    digits::print_ascii(out, robot.name());
     out.write_byte(b' ');
     let hash = robot.hash();
     for digit in 0..8 {

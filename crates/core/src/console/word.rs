@@ -48,7 +48,7 @@ macro_rules! words {
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
             /// The spelling of the word.
-            pub const fn text(self) -> &'static str {
+            pub const fn spelling(self) -> &'static str {
                 match self { $(Self::$name => $word),* }
             }
 
@@ -129,7 +129,7 @@ impl Word {
         None
     }
 
-    /// True for a word that no gait's name may begin with.
+    /// True if no gait's name may begin with this word.
     pub const fn is_reserved(self) -> bool {
         (self as usize) < RESERVED_COUNT
     }
@@ -182,17 +182,21 @@ mod tests {
     #[test]
     fn the_reserved_words_match_the_first_version() {
         let reserved = Word::ALL.iter().filter(|word| word.is_reserved());
-        let reserved_words: Vec<&str> = reserved.map(|word| word.text()).collect();
+        let reserved_words: Vec<&str> = reserved.map(|word| word.spelling()).collect();
         assert_eq!(reserved_words.join("|"), FIRST_VERSION_WORDS);
     }
 
     #[test]
     fn every_word_is_found_only_by_its_exact_spelling() {
         for word in Word::ALL {
-            let text = word.text();
-            assert_eq!(Word::find(text.as_bytes()), Some(*word), "{text}");
-            let longer_word = std::format!("{text}s");
-            for misspelling in [&text[1..], &text[..text.len() - 1], &longer_word] {
+            let spelling = word.spelling();
+            assert_eq!(Word::find(spelling.as_bytes()), Some(*word), "{spelling}");
+            let longer_word = std::format!("{spelling}s");
+            for misspelling in [
+                &spelling[1..],
+                &spelling[..spelling.len() - 1],
+                &longer_word,
+            ] {
                 assert_eq!(Word::find(misspelling.as_bytes()), None, "{misspelling}");
             }
         }
@@ -204,7 +208,7 @@ mod tests {
     /// Checks that all words except these are printed.
     fn assert_lists_all_but<const FIRST_YIELDING_INDEX: usize>(robot: &Robot, omitted: &[Word]) {
         let words = Word::ALL.iter().filter(|word| !omitted.contains(word));
-        let words: Vec<&str> = words.map(|word| word.text()).collect();
+        let words: Vec<&str> = words.map(|word| word.spelling()).collect();
         let mut list = String::new();
         Word::print_all::<FIRST_YIELDING_INDEX>(&mut list, robot);
         assert_eq!(list, words.join("|"));

@@ -272,7 +272,10 @@ impl Controller {
             Reaction::Freeze => self.stop(),
             Reaction::EndPulses => {
                 self.stop();
-                self.motion.rest();
+                // The pose of a robot that rests already is saved, or not known.
+                if !self.motion.is_resting() {
+                    self.rest();
+                }
             }
         }
         self.motion.set_slow(self.safety.is_slow());

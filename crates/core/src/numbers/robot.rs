@@ -81,7 +81,7 @@ impl<'a> Robot<'a> {
     }
 
     /// The robot's name, byte by byte.
-    pub fn robot_name(&self) -> impl Iterator<Item = u8> + use<'a> {
+    pub fn name(&self) -> impl Iterator<Item = u8> + use<'a> {
         let section = self.section;
         let name_offset = offset_of!(Header, name) as u16;
         (name_offset..name_offset + section::MAX_NAME_BYTES as u16)
@@ -94,7 +94,7 @@ impl<'a> Robot<'a> {
         self.section.read(offset_of!(Header, hash) as u16)
     }
 
-    /// The hash of the servos alone: their pins, pulses and neutral angles.
+    /// The hash of the servos alone: their pins, neutral angles, pulses and travel.
     pub fn servo_hash(&self) -> u32 {
         self.section.read(offset_of!(Header, servo_hash) as u16)
     }
@@ -165,12 +165,12 @@ impl<'a> Robot<'a> {
         self.read_number(offset_of!(Numbers, neutral_angles) + servo.index() * size_of::<Angle>())
     }
 
-    /// The calibration of all servos in robot.toml.
+    /// The calibration that robot.toml gives for each servo.
     pub fn calibration(&self) -> [Calibration; 4] {
         self.read_number(offset_of!(Numbers, calibration))
     }
 
-    /// The calibration of a servo in robot.toml.
+    /// The calibration that robot.toml gives for a servo.
     #[inline(never)]
     pub fn servo_calibration(&self, servo: Servo) -> Calibration {
         self.read_number(
@@ -247,21 +247,21 @@ impl<'a> Robot<'a> {
     /// have a map each, and the pose must be in a cell of all four maps. A pose outside the cells may be safe, too.
     pub fn is_certified(&self, pose: &Pose) -> bool {
         let rows = self.part_elements::<[i8; 2]>(SectionPart::Rows);
-        let mut start = 0;
-        let mut pair_index = 0;
-        while pair_index < 4 {
+        let mut start_row = 0;
+        let mut map_index = 0;
+        while map_index < 4 {
             let MapHeader {
                 first_row,
                 row_count,
-            } = self.read_number(offset_of!(Numbers, maps) + pair_index * size_of::<MapHeader>());
-            let [row, column] = SERVO_PAIRS.at(pair_index).load();
-            let row = pose.0[usize::from(row & 3)];
-            let column = pose.0[usize::from(column & 3)];
-            if !CellMap::from_rows(first_row, start, row_count, rows).contains(row, column) {
+            } = self.read_number(offset_of!(Numbers, maps) + map_index * size_of::<MapHeader>());
+            let [row_servo, column_servo] = SERVO_PAIRS.at(map_index).load();
+            let row = pose.0[usize::from(row_servo & 3)];
+            let column = pose.0[usize::from(column_servo & 3)];
+            if !CellMap::from_rows(first_row, start_row, row_count, rows).contains(row, column) {
                 return false;
             }
-            start += u16::from(row_count);
-            pair_index += 1;
+            start_row += u16::from(row_count);
+            map_index += 1;
         }
         true
     }

@@ -71,8 +71,8 @@ lizard_avr::pod! {
         pub name: [u8; MAX_NAME_BYTES],
         /// The hash that identifies the robot, which is the CRC-32 of all parts except the header and the maps.
         pub hash: u32,
-        /// The hash of the servo pins, pulses and neutral angles. Settings are saved with it, and are valid only for
-        /// servos with the same hash.
+        /// The hash of the servos alone: their pins, neutral angles, pulses and travel. Settings are saved with it, and
+        /// are valid only for servos with the same hash.
         pub servo_hash: u32,
     }
 }

@@ -1,7 +1,7 @@
 //! The supplies in robot.toml: the chip's reference voltage and the thresholds.
 
 lizard_avr::pod! {
-    /// The thresholds of a supply, below which the robot reacts.
+    /// The voltages of a supply below which the robot reacts.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Thresholds {
         /// The voltage below which gaits slow down and the EEPROM is not written, mV.
@@ -21,8 +21,8 @@ lizard_avr::pod! {
         pub reference_mv: u16,
         /// The thresholds of the chip's own supply.
         pub board: Thresholds,
-        /// The reference voltage times the ratio of the voltage divider through which the servo rail is measured, mV;
-        /// 0 if the rail is not measured.
+        /// The reference voltage times the divider's ratio (rail voltage / pin voltage), mV; 0 if the rail is not
+        /// measured.
         pub rail_reference_mv: u16,
         /// The thresholds of the servo rail.
         pub rail: Thresholds,

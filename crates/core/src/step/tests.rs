@@ -96,6 +96,22 @@ fn the_eeprom_is_written_even_while_a_line_waits_for_room() {
 }
 
 #[test]
+fn a_line_is_executed_while_a_pose_report_waits_for_room() {
+    let mut robot = RunningRobot::power_on(*Sample::asymmetric());
+    robot.run_frames(100);
+    for line in [&b"watch 1\r"[..], b"sway\r"] {
+        robot.board.send(line);
+        robot.run_frames(2);
+    }
+    robot.board.transmitter.is_held = true;
+    robot.run_frames(2);
+    assert!(robot.has_output());
+    robot.board.send(b"stop\r");
+    robot.run_frames(1);
+    assert_eq!(robot.motion().activity(), Activity::Stop);
+}
+
+#[test]
 fn several_ticks_at_once_get_one_frame_even_if_their_count_wraps() {
     let mut robot = start_robot(250, "");
     robot.settle();

@@ -287,7 +287,7 @@ fn a_receiver_faster_than_the_sender_never_decodes_a_line_end() {
 #[test]
 fn a_receiver_slower_than_the_sender_misreads_lines_only_as_words_too_short_to_be_accepted() {
     let mut automaton = LineAutomaton::for_accepted_lines();
-    let words = Word::ALL.iter().map(|word| word.text());
+    let words = Word::ALL.iter().map(|word| word.spelling());
     let short_words = words.filter(|word| word.len() < MIN_COMMAND_BYTES);
     let short_words: BTreeSet<usize> = short_words.map(|word| automaton.add_word(word)).collect();
     for (sender, receiver) in rate_pairs(true) {
@@ -302,7 +302,7 @@ fn every_command_is_decoded_at_its_own_rate() {
     let mut automaton = LineAutomaton::for_accepted_lines();
     for rate in BaudRate::ALL {
         let commands = find_decodable_commands(rate, rate);
-        let words = Word::ALL.iter().map(|word| word.text());
+        let words = Word::ALL.iter().map(|word| word.spelling());
         for word in GAIT_NAMES.iter().map(String::as_str).chain(words) {
             let end_state = automaton.add_word(word);
             let argument_state = automaton.transitions[end_state][&b' '];

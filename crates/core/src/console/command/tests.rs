@@ -84,7 +84,7 @@ fn parse_with_three_priorities(line: &str, robot: &Robot) -> [Result<Command, Li
 fn a_yielding_word_is_a_command_unless_a_gait_has_the_same_name() {
     let robot = Sample::paper();
     for (word_index, word) in Word::ALL.iter().enumerate() {
-        let (text, example) = (word.text(), word.example());
+        let (text, example) = (word.spelling(), word.example());
         let command = parse(example.as_bytes(), &robot);
         assert!(command.is_ok(), "{example}");
         let longer_name = format!("{text} on");

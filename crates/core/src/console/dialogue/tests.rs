@@ -75,7 +75,7 @@ fn help_lists_every_gait_and_every_command_each_time() {
     let mut robot = wake_asymmetric_robot();
     let printed_lines = robot.send(b"help\r");
     let gaits_line = format!("# gaits: {}", GAIT_NAMES.join("|"));
-    let words: Vec<&str> = Word::ALL.iter().map(|word| word.text()).collect();
+    let words: Vec<&str> = Word::ALL.iter().map(|word| word.spelling()).collect();
     let words_line = format!("# others: {}", words.join("|"));
     let expected = [
         gaits_line.as_str(),
@@ -122,7 +122,7 @@ fn a_long_list_of_gaits_fills_each_line_of_help_before_the_next() {
     }
 }
 
-/// Runs a robot until the guard holds it, without reading its output.
+/// Runs a robot in the gait `stray` until the guard holds it, without reading its output.
 fn run_until_held() -> RunningRobot {
     let mut robot = wake_and_send(&["stray"]);
     for _ in 0..200 {
@@ -234,8 +234,8 @@ fn servo_travels_are_checked_before_the_margins() {
     robot.expect_refused("pose 400 1 1 1", "3 A1 must be 61.37..215.36");
     robot.expect_refused("pose 132 47 200 226", "3 A3 must be 235.64..18.64");
     let message = robot.send_line("pose 132.37 4 309.64 226.18");
-    let is_unsafe = message.starts_with("err 4 ") || message.starts_with("err 5 ");
-    assert!(is_unsafe, "{message}");
+    let is_guard_refusal = message.starts_with("err 4 ") || message.starts_with("err 5 ");
+    assert!(is_guard_refusal, "{message}");
     assert_eq!(robot.status_value("gait"), "stand");
 }
 

@@ -116,7 +116,7 @@ impl LineAutomaton {
             automaton.accepting_states.extend(count_end_states);
         }
         for word in Word::ALL {
-            let word_end = automaton.add_word(word.text());
+            let word_end = automaton.add_word(word.spelling());
             if *word == Word::Boot {
                 for argument in GAIT_NAMES.iter().map(String::as_str).chain(["rest"]) {
                     let boot_end = automaton.add_word(&format!("boot {argument}"));
@@ -149,7 +149,7 @@ impl LineAutomaton {
     /// any length.
     pub fn for_accepted_lines() -> Self {
         let mut automaton = Self::new();
-        let words = Word::ALL.iter().map(|word| word.text());
+        let words = Word::ALL.iter().map(|word| word.spelling());
         for word in GAIT_NAMES.iter().map(String::as_str).chain(words) {
             let word_end = automaton.add_word(word);
             let separator_state = automaton.add_successor(&[word_end], *b" \t\x0c");

@@ -378,3 +378,28 @@ fn brown_outs_half_a_minute_apart_do_not_count_as_consecutive() {
         assert_ne!(robot.run_frame(), Pulses::default());
     }
 }
+
+#[test]
+fn a_run_without_a_robot_keeps_the_state_of_the_servos() {
+    for rests in [false, true] {
+        let mut robot = wake_and_run("pose 140 50 311 224.5", 150);
+        if rests {
+            robot.send_and_run("rest", 20);
+        }
+        let section = robot.motion().robot().section();
+        let pulses = *robot.motion().sent_pulses();
+        let memory_bytes = *robot.board.memory.bytes();
+        // An interrupted upload of the robot, then a complete one.
+        for flash in [Region::new(&[]), section] {
+            robot.board.reset(Cause::External);
+            robot = RunningRobot::with_flash(flash, robot.board);
+            robot.run_frames(3);
+        }
+        assert_eq!(robot.motion().is_resting(), rests);
+        assert_eq!(*robot.motion().sent_pulses(), pulses);
+        assert_eq!(robot.status_value("pose"), "140.00,50.00,311.00,224.50");
+        if rests {
+            assert_eq!(*robot.board.memory.bytes(), memory_bytes);
+        }
+    }
+}

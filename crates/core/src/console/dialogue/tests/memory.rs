@@ -134,3 +134,18 @@ fn a_save_after_the_start_waits_at_most_half_a_second_for_the_measurement_of_the
     assert_eq!(printed_lines, ["err 8 the supply is too low"]);
     assert!(unmeasured_robot.board.memory.log.is_empty());
 }
+
+#[test]
+fn the_pose_in_which_a_low_supply_ended_the_pulses_is_saved_once_the_supply_is_good() {
+    let walking_robot = wake_and_run("sway", 150);
+    let mut rested_robot = wake_and_run("pose 140 50 311 224.5", 150);
+    rested_robot.send_and_run("rest", 10);
+    for mut robot in [walking_robot, rested_robot.power_on_copy()] {
+        robot.run_at_supply(3_900, 40);
+        assert!(robot.motion().is_resting());
+        let pose = robot.status_value("pose");
+        robot.run_at_supply(5_000, 100);
+        assert_eq!(rest_pose_mark(&robot), 0xa5);
+        assert_eq!(robot.power_on_copy().status_value("pose"), pose);
+    }
+}

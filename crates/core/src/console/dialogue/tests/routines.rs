@@ -52,7 +52,7 @@ fn record_snapshots() -> Vec<RunningRobot> {
 
 /// Checks that a robot, if it rests now, has saved its pose: after a loss of power it wakes in this pose. Returns true
 /// if the robot rests.
-fn assert_rest_pose_is_saved(mut robot: RunningRobot, event: &str) -> bool {
+fn check_rest_pose_if_resting(mut robot: RunningRobot, event: &str) -> bool {
     let pose = *robot.motion().pose();
     let is_resting = robot.motion().is_resting();
     if is_resting {
@@ -120,7 +120,7 @@ fn help_boot_and_cal_treat_a_routine_as_a_gait() {
 
 #[test]
 fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
-    let mut events_that_rest = BTreeSet::new();
+    let mut events_before_rest = BTreeSet::new();
     for snapshot in record_snapshots() {
         for line in ["stop", "rest", "stand", "sway", "back 1", NEUTRAL_COMMAND] {
             let mut robot = snapshot.clone();
@@ -130,8 +130,8 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
             let line_count = usize::from(line == "back 1");
             assert_eq!(printed_lines.len(), line_count, "{line}: {printed_lines:?}");
             assert_ne!(robot.status_value("gait"), "patrol");
-            if assert_rest_pose_is_saved(robot, line) {
-                events_that_rest.insert(line);
+            if check_rest_pose_if_resting(robot, line) {
+                events_before_rest.insert(line);
             }
         }
         let mut repeated_robot = snapshot.clone();
@@ -145,8 +145,8 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
         let (activities, _) = record_activities(&mut low_supply_robot, 300);
         let has_ended = activities == ["Stop"] || activities == ["Rest"];
         assert!(has_ended, "the routine continues by itself: {activities:?}");
-        if assert_rest_pose_is_saved(low_supply_robot, "a low supply") {
-            events_that_rest.insert("a low supply");
+        if check_rest_pose_if_resting(low_supply_robot, "a low supply") {
+            events_before_rest.insert("a low supply");
         }
         let mut failing_supply_robot = snapshot.clone();
         failing_supply_robot.run_at_supply(3_900, 60);
@@ -156,20 +156,23 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
             reset_robot.reset(cause);
             let (activities, printed_lines) = record_activities(&mut reset_robot, 400);
             // A robot that rested rests until `boot` makes it stand.
-            let is_ended = |gait: &String| ["stand", "Stop", "Rest"].contains(&gait.as_str());
-            assert!(activities.iter().all(is_ended), "{cause:?}: {activities:?}");
+            let is_after_end = |gait: &String| ["stand", "Stop", "Rest"].contains(&gait.as_str());
+            assert!(
+                activities.iter().all(is_after_end),
+                "{cause:?}: {activities:?}"
+            );
             assert!(!printed_lines.contains(&"# done".to_string()));
         }
     }
     assert!(
-        events_that_rest
+        events_before_rest
             .into_iter()
             .eq(["a low supply", "rest", "stop"])
     );
 }
 
 #[test]
-fn a_low_supply_does_not_end_a_routine() {
+fn a_supply_that_only_slows_gaits_does_not_end_a_routine() {
     let mut robot = wake_robot(build_patrol_robot(1));
     robot.run_at_supply(4_400, 40);
     assert_eq!(robot.send_and_run("patrol", 2 * LONG_FRAMES), ["# done"]);
@@ -192,7 +195,7 @@ fn silence_ends_a_routine_that_a_command_began_but_not_one_that_boot_began() {
         assert_eq!(robot.send_and_run("deadman 200", 100), [notice]);
         let gait = robot.status_value("gait");
         assert!(["stop", "rest"].contains(&gait.as_str()), "{gait}");
-        has_rested |= assert_rest_pose_is_saved(robot, "silence");
+        has_rested |= check_rest_pose_if_resting(robot, "silence");
     }
     assert!(has_rested);
     let mut robot = wake_robot(build_patrol_robot(0));
@@ -201,7 +204,10 @@ fn silence_ends_a_routine_that_a_command_began_but_not_one_that_boot_began() {
     unattended_robot.run_frames(150);
     let mut idle_robot = unattended_robot.clone();
     let printed_lines = idle_robot.run_frames(5 * LONG_FRAMES);
-    assert!(printed_lines.is_empty(), "the routine continues");
+    assert!(
+        printed_lines.is_empty(),
+        "the first command starts the deadman time, not boot: {printed_lines:?}"
+    );
     // The first valid line starts the `deadman` timeout.
     assert_eq!(idle_robot.send_and_run("speed 90", 100).len(), 1);
     assert_eq!(idle_robot.status_value("fault"), "link");
@@ -240,7 +246,7 @@ fn after_a_rest_in_a_routine_the_servos_wake_one_by_one() {
 }
 
 #[test]
-fn a_routine_that_boot_starts_at_rest_has_invalidated_the_rest_pose_when_the_servos_wake() {
+fn the_saved_rest_pose_is_invalid_once_a_routine_started_by_boot_wakes_the_servos() {
     let steps = [(Step::REST, "stand", 50), (Step::CYCLES, "sway", 1)];
     let mut robot = wake_robot(Sample::asymmetric().with_routine("patrol", 1, &steps));
     robot.expect_all_accepted(&["boot patrol", "save", "rest"]);
@@ -257,5 +263,5 @@ fn a_routine_that_ends_with_a_rest_saves_its_rest_pose() {
     let mut robot = start_patrol(2, &[(Step::CYCLES, "sway", 1), (Step::REST, "stand", 50)]);
     assert_eq!(robot.run_frames(LONG_FRAMES), ["# done"]);
     assert!(robot.motion().is_resting());
-    assert_rest_pose_is_saved(robot, "the last round");
+    check_rest_pose_if_resting(robot, "the last round");
 }

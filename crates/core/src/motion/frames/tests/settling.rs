@@ -6,9 +6,9 @@ use super::*;
 
 /// Recalibrates each servo so that its neutral pulse is 1000 cycles longer.
 fn lengthen_neutral_pulses(motion: &mut Motion) {
-    for (index, mut servo) in motion.calibration.into_iter().enumerate() {
-        servo.neutral_width = PulseWidth(servo.neutral_width.0 + 1000);
-        motion.calibrate(Servo::at(index), servo);
+    for (index, mut calibration) in motion.calibration.into_iter().enumerate() {
+        calibration.neutral_width = PulseWidth(calibration.neutral_width.0 + 1000);
+        motion.calibrate(Servo::at(index), calibration);
     }
 }
 
@@ -17,10 +17,10 @@ fn every_servo_settles_exactly_as_fast_as_its_gain_allows() {
     // The gains of this robot differ from servo to servo.
     let mut motion = Motion::standing();
     let pulses_before = motion.sent_pulses().0;
-    let per_frame = f64::from(motion.robot.slew().per_frame);
-    let max_changes = motion.calibration.map(|servo| {
+    let sweep_per_frame = f64::from(motion.robot.slew().per_frame);
+    let max_changes = motion.calibration.map(|calibration| {
         // CPU cycles per frame at the slew limit, rounded down.
-        (per_frame * f64::from(servo.gain).abs() / 16_384.0).floor() as u16
+        (sweep_per_frame * f64::from(calibration.gain).abs() / 16_384.0).floor() as u16
     });
     let distinct_changes = BTreeSet::from(max_changes);
     assert_eq!(distinct_changes.len(), 4, "{max_changes:?}");
