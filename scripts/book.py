@@ -11,10 +11,10 @@ def on_config(config):
     """Adds the addresses in crates/Cargo.toml to the header and the footer."""
     cargo = Path(config.config_file_path).with_name("crates") / "Cargo.toml"
     package = tomllib.loads(cargo.read_text())["workspace"]["package"]
-    page, source = package["homepage"], package["repository"]
-    config.repo_url = source
-    links = [(page, "The page"), (source and f"{source}/issues", "Report a bug")]
-    config.copyright = " · ".join(f'<a href="{url}">{name}</a>' for url, name in links if url)
+    homepage, repository = package["homepage"], package["repository"]
+    config.repo_url = repository
+    links = [(homepage, "The page"), (repository and f"{repository}/issues", "Report a bug")]
+    config.copyright = " · ".join(f'<a href="{url}">{label}</a>' for url, label in links if url)
     return config
 
 

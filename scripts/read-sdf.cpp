@@ -1,9 +1,10 @@
-// Reads an SDF file with one model with libsdformat, and prints it as JSON for scripts/models-test: the bodies' poses
-// in the model, and the joints with their poses, axes and ranges. Exits with 1 if the file is invalid.
+// Uses libsdformat to read an SDF file with one model, and prints it as JSON for scripts/models-test: each link's mass,
+// meshes and pose in the model, and whether its inertia is valid; each joint's links, type, pose, axis and range. Exits
+// with 1 if the file is invalid.
 #include <iostream>
 #include <sdf/sdf.hh>
 
-static void printMatrix(const ignition::math::Pose3d &pose)
+static void printPose(const ignition::math::Pose3d &pose)
 {
   const ignition::math::Matrix4d matrix(pose);
   std::cout << "[";
@@ -13,7 +14,7 @@ static void printMatrix(const ignition::math::Pose3d &pose)
   std::cout << "]";
 }
 
-static const char *typeName(sdf::JointType type)
+static const char *jointTypeName(sdf::JointType type)
 {
   switch (type)
   {
@@ -43,7 +44,7 @@ int main(int, char **argv)
       for (uint64_t j = 0; j < link.VisualCount(); ++j)
         std::cout << (j ? ", " : "") << "\"" << link.VisualByIndex(j)->Geom()->MeshShape()->Uri() << "\"";
       std::cout << "], \"pose\": ";
-      printMatrix(pose);
+      printPose(pose);
       std::cout << "}";
     }
     std::cout << "}, \"joints\": {";
@@ -52,14 +53,14 @@ int main(int, char **argv)
       const auto &joint = *model.JointByIndex(i);
       for (const auto &error : joint.SemanticPose().Resolve(pose, "__model__")) errors.push_back(error);
       std::cout << (i ? ", " : "") << "\"" << joint.Name() << "\": {\"parent\": \"" << joint.ParentLinkName()
-                << "\", \"child\": \"" << joint.ChildLinkName() << "\", \"type\": \"" << typeName(joint.Type())
+                << "\", \"child\": \"" << joint.ChildLinkName() << "\", \"type\": \"" << jointTypeName(joint.Type())
                 << "\", \"pose\": ";
-      printMatrix(pose);
+      printPose(pose);
       if (const auto *axis = joint.Axis())
       {
         const auto xyz = axis->Xyz();
         std::cout << ", \"axis\": [" << xyz.X() << ", " << xyz.Y() << ", " << xyz.Z() << "]";
-        // If the file has no limits, libsdformat returns 1e16.
+        // Without limits in the file, libsdformat returns -1e16 and 1e16.
         if (axis->Lower() > -1e15 && axis->Upper() < 1e15)
           std::cout << ", \"range\": [" << axis->Lower() << ", " << axis->Upper() << "]";
       }

@@ -15,7 +15,7 @@ use lizard_upload::BOOT_ADDRESS;
 use simulated_uno::{Fidelity, Image, State, Uno};
 
 /// The error message if `firmware/code.hex` is outdated.
-const OUTDATED_MESSAGE: &str = "firmware/code.hex differs from the code built from the source: run `make code-image` and commit that file";
+const OUTDATED_MESSAGE: &str = "firmware/code.hex differs from the code built from the source: run `make code-image`, and commit this file and firmware/tools.txt";
 
 /// Returns the code of an image, from address 0 to the robot's section. Unused bytes are 0xff.
 fn extract_code(image: &Image) -> Vec<u8> {
@@ -25,7 +25,7 @@ fn extract_code(image: &Image) -> Vec<u8> {
 }
 
 /// Returns the image that the program `lizard` contains: the code without a section.
-fn code_image() -> Image {
+fn embedded_code() -> Image {
     Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX")
 }
 
@@ -37,11 +37,11 @@ fn with_section(mut image: Image, section: &[u8]) -> Image {
 }
 
 /// Returns the code that the program `lizard` contains, with the section of the robot under test.
-fn embedded_image() -> Image {
-    with_section(code_image(), &robot().section())
+fn embedded_code_with_robot() -> Image {
+    with_section(embedded_code(), &robot().section())
 }
 
-/// Reads the versions of the installed compiler and linker, one per line.
+/// Reads the versions of the compiler that built the ELF file and of the installed linker, one per line.
 fn read_tool_versions() -> String {
     let script = root().join("scripts/code-image");
     let output = Command::new(script)
@@ -77,7 +77,7 @@ fn record_minute(image: Image) -> Recording {
 
 #[test]
 fn the_program_contains_the_code_built_from_the_source() {
-    let code_images = [code_image(), with_section(FirmwareBench::image(), &[])];
+    let code_images = [embedded_code(), with_section(FirmwareBench::image(), &[])];
     let [embedded_bytes, built_bytes] = code_images.map(|image| extract_code(&image));
     let recorded_versions = read_file("firmware/tools.txt");
     if recorded_versions == read_tool_versions() {
@@ -98,7 +98,7 @@ fn the_program_contains_the_code_built_from_the_source() {
     let result = std::io::stderr().write_all(note.as_bytes());
     result.expect("stderr works");
     let [embedded_recording, built_recording] =
-        [embedded_image(), FirmwareBench::image()].map(record_minute);
+        [embedded_code_with_robot(), FirmwareBench::image()].map(record_minute);
     assert_eq!(
         embedded_recording.banner, built_recording.banner,
         "{OUTDATED_MESSAGE} (the banners differ)"
@@ -120,13 +120,13 @@ fn the_program_contains_the_code_built_from_the_source() {
 
 #[test]
 fn the_code_in_the_program_walks_after_a_robot_is_added() {
-    let recording = record_minute(embedded_image());
+    let recording = record_minute(embedded_code_with_robot());
     let banner = recording.banner.expect("the firmware prints its banner");
     let robot_label = lizard_host::firmware::format_robot_label(robot().firmware());
     let robot_text = format!(" robot {robot_label}");
     assert!(banner.contains(&robot_text), "{banner}");
     assert!(recording.frames.widths.len() > 2700);
-    let byte_count = code_image().flash().len();
+    let byte_count = embedded_code().flash().len();
     let allowed_counts = 20_000..=usize::from(START_ADDRESS);
     assert!(allowed_counts.contains(&byte_count), "{byte_count} bytes");
 }

@@ -2,23 +2,23 @@
 // slider. While a request is pending, only the latest new request is kept; responses arrive in the order of the
 // requests.
 
-export class LatestRequestQueue<Request, Response> {
-  private queuedRequest: Request | null = null;
+export class LatestRequestQueue<Query, Answer> {
+  private queuedRequest: Query | null = null;
   private isBusy = false;
 
   constructor(
-    private readonly getResponse: (request: Request) => Promise<Response>,
-    private readonly onResponse: (response: Response) => void,
+    private readonly getResponse: (request: Query) => Promise<Answer>,
+    private readonly onResponse: (response: Answer) => void,
     private readonly onError: (error: unknown) => void,
   ) {}
 
   /** Sends a request at once or, while another request is pending, queues it in place of the queued request. */
-  submit(request: Request): void {
+  submit(request: Query): void {
     if (this.isBusy) this.queuedRequest = request;
     else void this.send(request);
   }
 
-  private async send(request: Request): Promise<void> {
+  private async send(request: Query): Promise<void> {
     this.isBusy = true;
     this.queuedRequest = null;
     try {

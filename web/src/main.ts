@@ -78,6 +78,7 @@ async function start(): Promise<void> {
     onPulse: (pin, riseCycle, width) => scope.addPulse(pin, riseCycle, width),
     onSent(line) {
       log.showSent(line);
+      setup.handleSent(line);
       measure?.protocol?.handleSent(line);
     },
     onReceived(line) {
@@ -125,13 +126,13 @@ async function start(): Promise<void> {
   const recordView = new RecordView(session, floor);
   setUpCalibration(session);
   const updateAlarm = setUpAlarm(session);
-  setUpRemote();
+  setUpRemote(() => void session.board.drive(WORDS.stop));
   const robotText: RobotTextView = new RobotTextView(session, writer, () => routines.show());
   const routines = new RoutinesView(session, robotText, writer);
-  new GaitEditorView(session, writer, (previousGait, foundGait, output) => {
+  new GaitEditorView(session, writer, (referenceGait, foundGait, output) => {
     // The second robot is drawn only from above.
     parts.set3d(false);
-    return recordView.compare(previousGait, foundGait, output);
+    return recordView.compare(referenceGait, foundGait, output);
   });
   new GestureEditorView(session, writer);
   const flash = new FlashView(session, writer);
@@ -219,14 +220,17 @@ async function start(): Promise<void> {
     showMessage(element('refusal'), last?.loop_error ?? last?.scene?.refusal ?? '');
   }
 
+  /** Loads the chosen file, or reports why it cannot be loaded; returns false if another robot was chosen meanwhile. */
   const loadChosenFile = async () => {
     try {
-      await session.robot.loadFile(choice.chosenFile);
-      problems.setMessage('robot', null);
+      const isLatest = await session.robot.loadFile(choice.chosenFile);
+      if (isLatest) problems.setMessage('robot', null);
+      return isLatest;
     } catch (error) {
       choice.select(session.robot.file);
       if (!session.board.link) element('where').textContent = 'No robot is loaded.';
       problems.setMessage('robot', getMessage(error));
+      return true;
     }
   };
   const ownRobots = new OwnRobots(session, problems, (file) => (choice.select(file), loadChosenFile()), (names) => choice.showOwn(names));
@@ -275,7 +279,8 @@ async function start(): Promise<void> {
     problems.setMessage('robot', message, remedy);
   }
   if (await robotText.loadFromAddress()) address.start();
-  if (isRobotInAddress) ownRobots.putAside(saved);
+  // Also if the saved robot could not be restored, because its file has changed or is gone.
+  if (session.robot.toml !== '') ownRobots.putAside(saved);
   addEventListener('popstate', ({ state }) => {
     const { hash } = location;
     openRoom(hash);

@@ -24,10 +24,10 @@ export async function startRobotWorker(): Promise<CallableWorker<RobotWorkerApi>
 }
 
 /** Creates a queue of requests to a worker with its own robot; the first request starts the worker. */
-export function createRobotQueue<Request, Response>(
-  call: (robot: Remote<RobotWorkerApi>, request: Request) => Promise<Response>,
-  onResponse: (response: Response) => void,
-): LatestRequestQueue<Request, Response> {
+export function createRobotQueue<Query, Answer>(
+  sendRequest: (robot: Remote<RobotWorkerApi>, request: Query) => Promise<Answer>,
+  onResponse: (response: Answer) => void,
+): LatestRequestQueue<Query, Answer> {
   let worker: Promise<CallableWorker<RobotWorkerApi>> | null = null;
-  return new LatestRequestQueue(async (request) => (await (worker ??= startRobotWorker())).call((robot) => call(robot, request)), onResponse, reportWorkerFailure);
+  return new LatestRequestQueue(async (request) => (await (worker ??= startRobotWorker())).call((robot) => sendRequest(robot, request)), onResponse, reportWorkerFailure);
 }

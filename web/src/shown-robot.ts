@@ -49,24 +49,25 @@ export class ShownRobot {
   }
 
   /**
-   * Loads a robot by its file name and restarts the simulated UNO with it; a real board stays connected. If the robot
-   * cannot be loaded, keeps the previous robot and throws an error with a message for the user.
+   * Loads a robot by its file name and restarts the simulated UNO with it; a real board stays connected. Returns false
+   * if a later call has replaced this one. If the robot cannot be loaded, keeps the previous robot and throws an error
+   * with a message for the user.
    */
-  async loadFile(name: string): Promise<void> {
+  async loadFile(name: string): Promise<boolean> {
     const loadNumber = ++this.loadCount;
     this.file = '';
     try {
       const [toml, predictions, firmware] = await Promise.all([files.toml(name), files.predictions(name), this.firmware ?? files.firmware()]);
-      if (loadNumber !== this.loadCount) return;
+      if (loadNumber !== this.loadCount) return false;
       this.firmware = firmware;
       const refusal = this.loadToml(toml, null, [toml, predictions]);
       if (refusal) throw new Error(`${name}.toml: ${refusal.reason}`);
       await this.restart('erased');
       this.file = name;
       this.storeChanges();
+      return loadNumber === this.loadCount;
     } catch (error) {
-      // A later call has replaced this one.
-      if (loadNumber !== this.loadCount) return;
+      if (loadNumber !== this.loadCount) return false;
       // Not the value before this call: an earlier call may already have emptied `file`.
       this.file = this.changes?.file ?? '';
       throw error;

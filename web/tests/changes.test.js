@@ -1,6 +1,7 @@
 // The user's changes are in the downloaded file and survive a reload.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
+import { deflateRawSync } from 'node:zlib';
 
 import { parse } from 'smol-toml';
 
@@ -14,6 +15,14 @@ async function downloadToml(page, buttonName = 'Download robot.toml') {
   const { bytes } = await download(page, page.getByRole('button', { name: buttonName }));
   return bytes.toString();
 }
+
+/** Chooses the first of the user's own robots in the list. */
+const chooseOwnRobot = (page) =>
+  page.evaluate(() => {
+    const list = document.querySelector('#robot');
+    list.querySelector('optgroup[label="your own"] option').selected = true;
+    list.dispatchEvent(new Event('change'));
+  });
 
 async function openWithChanges() {
   const page = await openStanding();
@@ -113,6 +122,41 @@ testPage('a newer robot file replaces the user\'s stored changes, and a message 
   assert.equal(await readToml(page), await readFile(new URL('../dist/files/robot.toml', import.meta.url), 'utf8'));
   const { leg, body } = parse(await downloadToml(page, 'Download the changed robot'));
   assert.deepEqual([leg.crank, body.mass], [40, 412], 'the changes are not lost');
+  await reload(page);
+  await chooseOwnRobot(page);
+  await waitForLength(page, 'leg.crank', 40);
+});
+
+testPage('a changed robot whose file the page no longer has stays in the list of robots', openWithChanges, async (page) => {
+  await page.evaluate(() => {
+    const key = Object.keys(localStorage)[0];
+    localStorage.setItem(key, JSON.stringify({ ...JSON.parse(localStorage.getItem(key)), file: 'gone' }));
+  });
+  await page.waitForFunction(() => location.hash.includes('robot='));
+  await page.goto(address());
+  await page.waitForFunction(() => window.lizard);
+  await chooseOwnRobot(page);
+  await waitForLength(page, 'leg.crank', 40);
+});
+
+testPage('a robot from a link or a file has its own floor, springs and mass', openWithChanges, async (page) => {
+  const largePath = new URL('../dist/files/large.toml', import.meta.url).pathname;
+  const link = `${address()}#robot=${deflateRawSync(await readFile(largePath)).toString('base64url')}`;
+  const setMass = async (text) => {
+    await setSlider(page, 'Mass', text);
+    await page.waitForFunction((mass) => window.lizard.robot.floor.mass === mass, Number(text));
+  };
+  const waitForOwnFloor = () => page.waitForFunction(() => {
+    const { robot } = window.lizard ?? {};
+    return robot?.description.name === 'large' && JSON.stringify(robot.floor) === JSON.stringify(robot.description.floor);
+  });
+  await page.goto('about:blank');
+  await page.goto(link);
+  await waitForOwnFloor();
+  await chooseRobot(page, 'robot');
+  await setMass('400');
+  await page.locator('#robot-open').setInputFiles(largePath);
+  await waitForOwnFloor();
 });
 
 testPage('the pace slider shows the robot\'s pace after a typed line and after a reset', openStanding, async (page) => {

@@ -203,6 +203,18 @@ testPage('a stop or a hidden page before the first walk ends the measurement', (
   await waitForMessage(page, 'message', 'the page was hidden');
 });
 
+testPage('a restart of the robot before a walk ends the measurement, because the robot has forgotten its pace', () => openRoomWithVideo(walkFolder), async (page) => {
+  await page.locator('#measure-driver').selectOption('page');
+  await typeNumber(page, 'pause', 5);
+  await switchCameraOn(page);
+  // At the start of the video the page would first drive the robot back.
+  await page.waitForTimeout(2500);
+  await page.getByRole('button', { name: 'Drive and measure' }).click();
+  await page.waitForFunction(() => document.querySelector('#measure-start').textContent === 'Stop');
+  await page.evaluate(() => window.lizard.board.link.board.reset('power'));
+  await waitForMessage(page, 'message', 'the robot has restarted');
+});
+
 testPage('nothing is recorded if the camera is switched off before the recording begins', () => openRoomWithVideo(walkFolder), async (page) => {
   await switchCameraOn(page);
   // The previous video is still being cleared.
@@ -242,6 +254,19 @@ testPage('after the link is cut, the board is no longer driven, the room reports
   assertNearTrueValues(JSON.parse(await downloadResults(page, 'json')).gaits[0]);
   assert.ok(!/left/.test(await page.evaluate(() => window.receivedText)), 'no further gait was sent to the board');
   assert.equal(await readGait(page), 'stand', 'no gait was sent to the simulated board that replaces it');
+});
+
+testPage('after another robot was chosen, the recorded cycles are compared with the robot that walked', () => openRoomWithVideo(walkFolder), async (page) => {
+  await startDriving(page, ['walk'], 8, 2500);
+  await waitForGait(page, 'walk');
+  await page.waitForTimeout(6000);
+  await page.locator('#robot').selectOption('large');
+  await waitForMessage(page, 'message', 'Ended before all gaits were walked: another robot was chosen');
+  const { gaits: [report] } = JSON.parse(await downloadResults(page, 'json'));
+  assertNearTrueValues(report);
+  const expected = measureWithCommand();
+  for (const quantity of Object.keys(TOLERANCES)) assert.ok(Math.abs(report[quantity].predicted - expected[quantity].predicted) < 1e-9, quantity);
+  assert.match(String(await downloadResults(page, 'svg')), /paper/);
 });
 
 testPage('the downloaded sheet equals the output of lizard measure sheet for both paper sizes', () => openRoomWithVideo(null), async (page) => {

@@ -67,6 +67,15 @@ testPage('the remote drives and stops, and keeps the screen on while it is open'
   assert.ok(await page.locator('header').isVisible());
 });
 
+testPage('the robot stops when the phone leaves full screen, because the browser does not report the Esc key there', openRemote, async (page) => {
+  await page.evaluate(() => window.lizard.board.ask('walk'));
+  await waitForGait(page, 'walk');
+  // A browser without a screen may not enter full screen.
+  await page.evaluate(() => (document.fullscreenElement ? document.exitFullscreen() : document.dispatchEvent(new Event('fullscreenchange'))));
+  await waitForGait(page, 'stop');
+  assert.ok(await page.locator('header').isVisible());
+});
+
 testPage('the phone vibrates when the robot stops by itself', openRemote, async (page) => {
   await page.evaluate(() => window.lizard.board.ask('walk'));
   await page.evaluate(() => window.lizard.robot.setSupply(3));

@@ -341,3 +341,26 @@ testPage('a robot put aside stays stored when another page stores one, or when a
   await page.waitForFunction(() => window.lizard.robot.file === 'unequal');
   assert.deepEqual(await readOwnNames(page), ['paper', 'paper']);
 });
+
+testPage('another robot that is chosen while the file of an own robot is loading stays', openTextEditor, async (page) => {
+  const ownToml = (await readToml(page)).replace('amplitude = 15.0', 'amplitude = 14.0');
+  await applyText(page, ownToml);
+  await waitForRobot(page, ownToml);
+  await chooseRobot(page, 'large');
+  let release;
+  const gate = new Promise((resolve) => (release = resolve));
+  await page.route('**/files/robot.toml', (route) => gate.then(() => route.continue()));
+  await page.evaluate(() => {
+    const list = document.querySelector('#robot');
+    list.querySelector('optgroup option').selected = true;
+    list.dispatchEvent(new Event('change'));
+  });
+  await chooseRobot(page, 'grain');
+  const grainToml = await readToml(page);
+  const loading = page.waitForResponse('**/files/robot.toml');
+  release();
+  await loading;
+  await page.waitForTimeout(1000);
+  assert.equal(await readToml(page), grainToml);
+  assert.equal(await page.evaluate(() => window.lizard.robot.file), 'grain');
+});

@@ -56,6 +56,8 @@ function assertNear(values, expected, tolerance, quantity) {
 /** Reads the robot's own answer to `cal`. */
 async function readCalibration(page) {
   await sendToBoard(page, 'cal');
+  // The dialog may have read the settings at the same time, and its answer comes first.
+  await page.clock.runFor(500);
   return (await page.locator('#log div', { hasText: /^# A\d trim/ }).allInnerTexts()).slice(-4);
 }
 
@@ -275,6 +277,44 @@ testPage('leaving restores the calibration, and the dialog opens again at the sa
   await findDialog(page).getByText('Not checked yet: the sign of A2, A3, A4.').waitFor();
 });
 
+testPage('a sign that was reversed but not saved has to be checked again after the board was written', () => openWithBoard('robot', 4500), async (page) => {
+  await goToStep(page, 'Signs', 1500);
+  await pressAndWait(page, 'Turn A1', /^A1 received the command to turn by 10°/);
+  await pressAndWait(page, 'No, in the other direction', /^The sign of A1 is now "-"/);
+  await pressAndWait(page, 'Turn A1', /^A1 received the command to turn by 10°/);
+  await press(page, 'Yes');
+  await goToStep(page, 'Firmware');
+  await pressAndWait(page, 'Write this robot alone', /^written and verified/);
+  await waitForThisRobot(page);
+  await goToStep(page, 'First walk', 5000);
+  assert.match((await readCalibration(page))[0], / dir \+ /, 'the board has its previous sign');
+  await findDialog(page).getByText('Not checked yet: the sign of A1, A2, A3, A4.').waitFor();
+});
+
+testPage('leaving while a servo turns drops the next change and restores the calibration', () => openWithBoard('robot', 4500), async (page) => {
+  const previousCalibration = await readCalibration(page);
+  await goToStep(page, 'Trims', 500);
+  await pressAndWait(page, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
+  await goToStep(page, 'Signs', 1500);
+  await pressAndWait(page, 'Turn A1', /^A1 received the command to turn by 10°/);
+  // The servo turns back while both buttons are pressed.
+  await goToStep(page, 'Trims');
+  await press(page, '↺ 0.1°');
+  await leave(page);
+  await page.getByText('the robot has its previous calibration').waitFor();
+  await page.clock.runFor(3000);
+  assert.deepEqual(await readCalibration(page), previousCalibration);
+  // After a restart, an action first reads the calibration.
+  await page.locator('#setup-open').click();
+  await page.evaluate(() => window.attachedBoard.reset('external'));
+  await waitForMessage(page, /^The board has restarted/);
+  await page.clock.runFor(1000);
+  await press(page, '↺ 0.1°');
+  await leave(page);
+  await page.clock.runFor(3000);
+  assert.deepEqual(await readCalibration(page), previousCalibration);
+});
+
 testPage('leaving reverts a setting whose answer was lost, and saving stores the shown settings', () => openWithBoard('robot', 4500), async (page) => {
   const previousCalibration = await readCalibration(page);
   const setTrimWithoutAnswer = async () => {
@@ -297,6 +337,21 @@ testPage('leaving reverts a setting whose answer was lost, and saving stores the
   await pressAndWait(page, 'Save in the board', /^Saved: the board starts with it/);
   await findDialog(page).getByRole('row', { name: /^A1, front left \+ 0\.50°/ }).waitFor();
   assert.match((await readCalibration(page))[0], /^# A1 trim 0\.50 /);
+});
+
+testPage('the dialog keeps a setting that the console or the panel Calibrate has changed meanwhile', () => openWithBoard('robot', 4500), async (page) => {
+  await goToStep(page, 'Keep', 1500);
+  await sendToBoard(page, 'trim 1 5');
+  await pressAndWait(page, 'Save in the board', /^Saved: the board starts with it/);
+  await findDialog(page).getByRole('row', { name: /^A1, front left \+ 5\.00°/ }).waitFor();
+  assert.match((await readCalibration(page))[0], /^# A1 trim 5\.00 /);
+  await sendToBoard(page, 'TRIM 1 6');
+  await goToStep(page, 'Signs');
+  await goToStep(page, 'Keep');
+  const isShown = () => findDialog(page).getByRole('row', { name: /^A1, front left \+ 6\.00°/ }).isVisible();
+  await runUntil(page, 'the dialog shows the new trim', isShown);
+  await leave(page);
+  assert.match((await readCalibration(page))[0], /^# A1 trim 6\.00 /);
 });
 
 testPage('the dialog quotes a refusal by the robot and keeps the calibration', () => openWithBoard('robot', 4500), async (page) => {

@@ -77,6 +77,21 @@ impl<C: Console> Session<C> {
         std::mem::take(&mut self.was_reset)
     }
 
+    /// Reads the settings again, because another program may have changed them. If the session has no unsaved changes,
+    /// [`Session::restore`] keeps the other program's changes.
+    ///
+    /// # Errors
+    /// Fails if the robot does not answer, or if its answer has an unknown format.
+    pub async fn read_again(&mut self) -> Result<(), C> {
+        let has_changes = self.has_unsaved_changes();
+        self.may_be_outdated = true;
+        self.refresh().await?;
+        if !has_changes {
+            self.saved = self.active.clone();
+        }
+        Ok(())
+    }
+
     /// Makes the robot stand; returns the neutral angles, degrees.
     ///
     /// # Errors

@@ -22,7 +22,7 @@ impl BodyPose {
         heading: 0.0,
     };
 
-    /// Returns the pose after this twist, in which the body's velocities in its own axes are constant. The opposite
+    /// Returns the pose after the body has moved by this twist, at constant velocities in its own axes. The opposite
     /// twist leads back, except for rounding.
     pub(crate) fn moved_by_twist(self, [forward, left, turn]: Twist) -> Self {
         // The ratio of the chord's length to the arc's. The chord's direction is the heading at half the turn.
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn the_travel_in_the_bodys_axes_does_not_depend_on_the_pose_at_the_start() {
+    fn the_travel_of_a_twist_does_not_depend_on_the_start_pose() {
         let start = BodyPose::START.moved_by_twist([3.0, 4.0, FRAC_PI_2]);
         let twist = [10.0, -2.0, 0.3];
         let end = start.moved_by_twist(twist);

@@ -55,7 +55,7 @@ impl Drive {
 
     /// Clamps a lag (deg) to the leg's stops with its servo at `sweep` (deg).
     pub(crate) fn clamp_lag(&self, leg: usize, sweep: f64, lag: f64) -> f64 {
-        let [min, max] = self.lag_energy(leg, sweep, 1.0, 1.0).stops();
+        let [min, max] = self.lag_energy(leg, sweep, 1.0, 1.0).lag_range();
         lag.clamp(min.to_degrees(), max.to_degrees())
     }
 

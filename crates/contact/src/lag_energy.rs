@@ -43,7 +43,7 @@ pub(crate) struct SlottedStrut {
 }
 
 /// The triangle that determines a strut's length at a lag of its leg. Its sides are the strut, the leg's arm, and the
-/// base: the line from the leg's pivot to the strut's joint at the servo.
+/// base: the line from the leg's pivot to the strut's end on the servo's arm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct StrutTriangle {
     /// Length of the base, mm.
@@ -58,7 +58,8 @@ pub(crate) struct StrutTriangle {
     unlagged_length: f64,
 }
 
-/// Energy of a unit torque that resists a positive `x`: the ramp `max(x, 0)` with its kink smoothed over `eps`.
+/// Energy, torque and stiffness of a unit torque that resists a positive `x`; the energy is the ramp `max(x, 0)` with
+/// its kink smoothed over `eps`.
 fn smoothed_ramp(x: f64, eps: f64) -> Expansion {
     let length = (x * x + eps * eps).sqrt();
     if length == 0.0 {
@@ -168,16 +169,16 @@ impl Resistance {
             Self::Strut(strut) => {
                 // The preload causes the torque at the kink; the spring's further torque grows from zero.
                 let kink_torque = strut.preload * strut.triangle.lever_arm().abs();
-                let mut energy = Expansion::default();
+                let mut expansion = Expansion::default();
                 if excess_lag > 0.0 {
-                    energy = strut.spring_energy(excess_lag, kink_torque);
+                    expansion = strut.spring_energy(excess_lag, kink_torque);
                 }
-                energy = energy.plus_scaled(kink_torque, ramp);
+                expansion = expansion.plus_scaled(kink_torque, ramp);
                 if strut.end_lag.is_finite() {
                     let end_ramp = smoothed_ramp(excess_lag - strut.end_lag, eps);
-                    energy = energy.plus_scaled(stop_torque, end_ramp);
+                    expansion = expansion.plus_scaled(stop_torque, end_ramp);
                 }
-                energy
+                expansion
             }
         }
     }
@@ -200,7 +201,7 @@ impl Resistance {
 }
 
 impl LagEnergy {
-    /// Energy at a lag (rad) of leg and servo together, slope and curvature, with kinks smoothed over `eps` rad.
+    /// Energy, torque and stiffness at a lag (rad) of leg and servo together, with kinks smoothed over `eps` rad.
     pub fn expand(&self, lag: f64, eps: f64) -> Expansion {
         let Some(motor) = &self.motor else {
             return self.expand_leg(lag, eps);
@@ -259,7 +260,7 @@ impl LagEnergy {
     }
 
     /// The smallest and the largest lag that the stops allow, rad.
-    pub fn stops(&self) -> [f64; 2] {
+    pub fn lag_range(&self) -> [f64; 2] {
         let [lower, upper] = self.resistances.map(|side| side.max_excess_lag());
         [-self.play - lower, self.play + upper]
     }
@@ -357,8 +358,8 @@ mod tests {
         let torque = (8.0 + 0.7 * extension) * lever_arm;
         assert_near(lag_energy.expand(0.11, 0.0).torque, torque, 1e-9);
         assert_eq!(lag_energy.expand(-0.11, 0.0).torque, -STOP_TORQUE);
-        let stops = [-0.1, 0.1 + triangle.lag_at_extension(5.0)];
-        assert_eq!(lag_energy.stops(), stops);
+        let lag_range = [-0.1, 0.1 + triangle.lag_at_extension(5.0)];
+        assert_eq!(lag_energy.lag_range(), lag_range);
         assert_near(lag_energy.spring_torque(0.11), torque, 1e-9);
         assert_eq!(lag_energy.spring_torque(-0.2), 0.0, "a stop does not pull");
     }

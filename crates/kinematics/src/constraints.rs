@@ -182,14 +182,14 @@ fn put_derivative<const N: usize>(
 mod tests {
     use proptest::prelude::*;
 
-    use crate::reference::{any_solved_robot, config_with_cases};
+    use crate::reference::{any_solved_lizard, config_with_cases};
 
     proptest! {
         #![proptest_config(config_with_cases(2048))]
 
         #[test]
         fn k_and_k_star_are_the_derivatives_of_the_loop_equations(
-            (robot, pose, solution) in any_solved_robot(),
+            (robot, pose, solution) in any_solved_lizard(),
         ) {
             let passive = solution.passive_joints();
             compare_with_difference_quotients("K", solution.active_matrix(), |column, step| {
@@ -210,7 +210,7 @@ mod tests {
 
         #[test]
         fn the_product_of_the_block_determinants_is_the_determinant_of_k_star(
-            (robot, _, solution) in any_solved_robot(),
+            (robot, _, solution) in any_solved_lizard(),
         ) {
             let product = solution.block_determinants().determinant();
             let determinant = compute_determinant(solution.passive_matrix());

@@ -186,7 +186,7 @@ mod tests {
 
     use super::*;
     use crate::lizard::{Lizard, Pose};
-    use crate::reference::{any_solved_robot, config_with_cases};
+    use crate::reference::{any_solved_lizard, config_with_cases};
     use crate::wrap;
 
     /// Largest step of the central differences, s.
@@ -265,7 +265,7 @@ mod tests {
 
         #[test]
         fn rates_and_accelerations_equal_the_difference_quotients_of_positions(
-            (robot, pose, solution) in any_solved_robot(), motion in any_motion(),
+            (robot, pose, solution) in any_solved_lizard(), motion in any_motion(),
         ) {
             // Near a singularity, higher derivatives are too large for any fixed step.
             prop_assume!(solution.margins.type2[0] > 0.3 && solution.margins.type2[1] > 0.3);

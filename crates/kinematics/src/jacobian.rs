@@ -71,14 +71,14 @@ mod tests {
     use proptest::prelude::*;
 
     use crate::derivatives::ServoMotion;
-    use crate::reference::{any_solved_robot, config_with_cases};
+    use crate::reference::{any_solved_lizard, config_with_cases};
 
     proptest! {
         #![proptest_config(config_with_cases(2048))]
 
         #[test]
         fn the_jacobian_gives_the_velocity_of_the_head(
-            (_, _, solution) in any_solved_robot(), rates in [-300.0..300.0, -300.0..300.0f64],
+            (_, _, solution) in any_solved_lizard(), rates in [-300.0..300.0, -300.0..300.0f64],
         ) {
             prop_assume!(solution.head.type2 > 1e-3);
             let motion = ServoMotion { rates: [rates[0], rates[1], 0.0, 0.0], ..ServoMotion::default() };

@@ -14,13 +14,13 @@ impl RobotIdentity {
     /// Returns the identity that a board will report for a robot.
     #[must_use]
     pub fn for_robot(robot: &lizard_core::numbers::robot::Robot) -> Self {
-        let name = robot.robot_name().map(char::from).collect();
+        let name = robot.name().map(char::from).collect();
         let hash = format!("{:08x}", robot.hash());
         Self { name, hash }
     }
 }
 
-/// The firmware and the robot on a board.
+/// The contents of a banner: the firmware and the robot on a board.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Banner {

@@ -49,7 +49,7 @@ pub use config::{
     healthy_rail_pin_mv,
 };
 pub use file::{Error, MAX_FILE_BYTES, edit, explain_mistake};
-pub use gaits::{Bars, Harmonic, Path, PathLeg, Routine, Stride, Waveform, to_command};
+pub use gaits::{Bars, Harmonic, Path, PathSweep, Routine, Stride, Waveform, to_command};
 pub use lizard_contact::{
     Body, BodyPose, Contacts, DEFAULT_FRICTION, Drive, DriveKind, GRAVITY, GroundContact,
     JointFriction, LegGeometry, Motor, Motors, Prediction, SLOT_LENGTH, Stance, Strut, Travel,

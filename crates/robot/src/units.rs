@@ -1,11 +1,11 @@
-//! The core's unit constants as floating-point numbers.
+//! The core's unit constants as floating-point numbers, and the number of frames after which a robot stands still.
 
 use lizard_core::numbers::units;
 
 /// The core's angle steps per degree.
 pub const STEPS_PER_DEGREE: f64 = units::STEPS_PER_TURN as f64 / 360.0;
 
-/// Frames, of 20 ms each, per second.
+/// Frames per second; a frame lasts 20 ms.
 pub const FRAMES_PER_SECOND: f64 = units::FRAMES_PER_SECOND as f64;
 
 /// Number of frames with an unchanged pose in `status` after which a robot counts as standing still. It must exceed the
@@ -22,5 +22,5 @@ pub(crate) const ONE_Q15: f64 = units::ONE_Q15 as f64;
 /// The value that represents 1.0 in one of the core's gains.
 pub(crate) const ONE_Q14: f64 = units::ONE_Q14 as f64;
 
-/// Number of phases in one cycle of a gait's table.
-pub(crate) const PHASES_PER_CYCLE: f64 = units::CYCLE16 as f64;
+/// Steps of the 16-bit phase per gait cycle.
+pub(crate) const PHASE_STEPS_PER_CYCLE: f64 = units::CYCLE16 as f64;

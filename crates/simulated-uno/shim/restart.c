@@ -41,7 +41,7 @@ void restart_advance_in_reset(struct uno *uno, uint64_t until)
 {
 	avr_t *avr = uno->avr;
 	uint64_t cycles_to_timer = avr_cycle_timer_process(avr);
-	if (uno->reset.requested_causes)
+	if (uno->reset.requested_causes) /* one of the timers has requested a reset */
 		return;
 	uint64_t cycles_to_end = until - avr->cycle;
 	avr->cycle += cycles_to_timer < cycles_to_end ? cycles_to_timer : cycles_to_end;

@@ -28,8 +28,8 @@ pub struct BuiltGait {
 }
 
 impl BuiltGait {
-    /// Builds a gait with the shortest period at which no servo exceeds `max_servo_speed` (deg/s). Returns `None` if
-    /// the gait violates a limit of the robot, or if this period exceeds [`MAX_PERIOD_S`].
+    /// Builds a gait with nearly the shortest period at which no servo exceeds `max_servo_speed` (deg/s). Returns
+    /// `None` if the gait violates a limit of the robot, or if no period up to [`MAX_PERIOD_S`] is found.
     pub(crate) fn build(robot: &Robot, bars: &Bars, max_servo_speed: f64) -> Option<Self> {
         let build_with_period = |period: f64| {
             let mut bars = bars.clone();
@@ -62,12 +62,12 @@ impl BuiltGait {
             .or(shortest_gait)
     }
 
-    /// Finds the largest amplitude, deg, of a wave gait within the robot's limits, with the parameters at which
-    /// the search for a wave gait begins.
+    /// Finds the largest amplitude, deg, at which a wave gait with the first of its start parameters is within the
+    /// robot's limits.
     pub(crate) fn find_max_amplitude(robot: &Robot, goal: Goal, max_servo_speed: f64) -> f64 {
-        let is_within_limits = |max_amplitude: f64| {
+        let is_within_limits = |amplitude: f64| {
             let parameters = &GaitKind::Wave.start_parameters()[0];
-            let bars = GaitKind::Wave.plan_gait(goal, max_amplitude, "x", parameters);
+            let bars = GaitKind::Wave.plan_gait(goal, amplitude, "x", parameters);
             Self::build(robot, &bars, max_servo_speed).is_some()
         };
         let (mut low, mut high) = AMPLITUDE_BOUNDS;
@@ -237,6 +237,11 @@ mod tests {
                 "{name}: score {score}, nominal speed {nominal_speed}"
             );
         }
+    }
+
+    #[test]
+    fn a_gait_that_moves_in_another_direction_than_the_goal_has_no_score() {
+        let robot = paper_robot();
         let walk = robot.gait("walk").expect("paper.toml has the gait");
         let turn_scorer = Scorer::new(&robot, robot.ground(), Goal::Turn(1.0), 2, 0);
         assert_eq!(turn_scorer.score(walk), None);

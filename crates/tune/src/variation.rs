@@ -4,8 +4,8 @@ use fastrand::Rng;
 use lizard_robot::{CheckedGait, DriveKind, GroundContact, Robot, Travel, Walker};
 use lizard_twin::{FRAME_PERIOD_S, ServoModel};
 
-/// Number of the firmware's phase steps in a cycle.
-const PHASES_PER_CYCLE: f64 = 65536.0;
+/// Steps of the firmware's 16-bit phase per gait cycle.
+const PHASE_STEPS_PER_CYCLE: f64 = 65536.0;
 
 /// Range of the random factor on the friction in robot.toml.
 pub const FRICTION_FACTORS: (f64, f64) = (0.5, 1.5);
@@ -96,7 +96,7 @@ impl Variation {
     /// are equal to the second cycle.
     pub fn simulate_cycle(&self, robot: &Robot, gait: &CheckedGait, model: ServoModel) -> Travel {
         let mut sweeps = gait.sweeps(gait.phase_at(0.0));
-        let compute_targets = |phase: u16| gait.sweeps(f64::from(phase) / PHASES_PER_CYCLE);
+        let compute_targets = |phase: u16| gait.sweeps(f64::from(phase) / PHASE_STEPS_PER_CYCLE);
         let place_walker = |sweeps: [f64; 4]| {
             Walker::with_unevenness(self.ground, sweeps, self.pad_factors, self.ratio_factor)
         };

@@ -17,14 +17,14 @@ pub trait Board {
     /// Fails if the bytes cannot be sent, or the connection is lost.
     fn write(&mut self, bytes: &[u8]) -> impl Future<Output = Result<(), BoardError>>;
 
-    /// Reads until `bytes` is full or the time limit has passed; returns the number of bytes read. Takes no more bytes
-    /// from the connection than fit into `bytes`, since the rest may be for another reader.
+    /// Reads until `buffer` is full or the time limit has passed; returns the number of bytes read. Takes no more bytes
+    /// from the connection than fit into `buffer`, since the rest may be for another reader.
     ///
     /// # Errors
     /// Fails if the connection is lost.
     fn read(
         &mut self,
-        bytes: &mut [u8],
+        buffer: &mut [u8],
         time_limit: Duration,
     ) -> impl Future<Output = Result<usize, BoardError>>;
 

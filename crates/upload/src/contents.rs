@@ -101,7 +101,7 @@ impl FlashContents {
 
 /// Formats a robot's name and hash as the firmware's banner does.
 pub fn format_robot_label(robot: &Robot) -> String {
-    let name: String = robot.robot_name().map(char::from).collect();
+    let name: String = robot.name().map(char::from).collect();
     format!("{name} {:08x}", robot.hash())
 }
 

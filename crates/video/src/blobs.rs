@@ -12,7 +12,7 @@ const HALF_WINDOW_FRACTION: f64 = 1.0 / 24.0;
 const MAX_DARK_PERCENT: u64 = 88;
 /// Smallest width and height of a candidate blob, px: two pixels for each cell of a tag.
 const MIN_SIDE_PX: usize = 16;
-/// Smallest distance of the two other corners from the longest diagonal, as a fraction of the diagonal.
+/// Smallest distance of the other two corners from the longest diagonal, as a fraction of the diagonal.
 const MIN_CORNER_DISTANCE_FRACTION: f64 = 0.15;
 /// Smallest and largest ratio of a blob's pixel count to the area of its quadrilateral.
 const FILL_RATIO_RANGE: [f64; 2] = [0.3, 1.2];
@@ -26,7 +26,7 @@ pub(crate) fn half_window(frame: &Frame) -> usize {
     ((height as f64 * HALF_WINDOW_FRACTION) as usize).max(MIN_SIDE_PX / 2)
 }
 
-/// Finds the dark blobs that are nearly quadrilaterals. Each pixel is compared with the mean of a window that extends
+/// Finds the dark blobs that are roughly quadrilateral. Each pixel is compared with the mean of a window that extends
 /// `half_window` px to each side.
 pub(crate) fn find_quads(frame: &Frame, half_window: usize) -> Vec<Quad> {
     let [width, height] = frame.size();
@@ -61,7 +61,7 @@ pub(crate) fn find_quads(frame: &Frame, half_window: usize) -> Vec<Quad> {
     quads
 }
 
-/// Finds the dark pixels: true for each pixel that is darker than its window.
+/// Finds the dark pixels: true for each pixel whose grey is below `MAX_DARK_PERCENT` of its window's mean.
 fn find_dark_pixels(frame: &Frame, half_window: usize) -> Vec<bool> {
     let [width, height] = frame.size();
     // Each entry is the sum of all pixels above and to the left. The table has one more column and row than the frame.

@@ -2,8 +2,8 @@
 //!
 //! The first strip defines the coordinate axes of the floor. The pose of the second strip adds three unknowns. Light
 //! and ink spread, so every black square is larger or smaller than designed by the same small length. This length is
-//! one more unknown; the distance between a strip's tags distinguishes it from the scale. From the floor tags alone, a
-//! camera that looks nearly straight down cannot distinguish its focal length from its distance. The deck tag can,
+//! one more unknown; the distance between a strip's tags distinguishes it from the scale. The floor tags alone cannot
+//! distinguish the focal length from the distance of a camera that looks nearly straight down. The deck tag can,
 //! because its height is known.
 
 use lizard_contact::BodyPose;
@@ -29,7 +29,7 @@ const DECK_SIGMA: f64 = 0.08;
 const START_FOCAL_RATIOS: [f64; 3] = [0.8, 1.1, 1.6];
 /// Largest root-mean-square error of a corner, px.
 const MAX_CORNER_ERROR: f64 = 1.5;
-/// Largest displacement of a tag's edges by the spread of light and ink, mm.
+/// Largest displacement of a tag's edges by the spread of light and ink, in mm of the sheet's design.
 const MAX_INK_SPREAD: f64 = 0.6;
 
 /// The corners of each floor tag, in one frame or averaged over several.
@@ -85,8 +85,8 @@ impl Scene {
         let best_fit = fits.min_by(|a, b| a.sum_of_squares.total_cmp(&b.sum_of_squares));
         let best_fit = best_fit.ok_or(VideoError::NoCamera)?;
         let corner_count = views.len() * FLOOR_TAG_COUNT * 4;
-        let floor_residuals = compute_residuals(&best_fit.parameters, views, &dimensions, false);
-        let mean_square = squared_norm(&floor_residuals) / corner_count as f64;
+        let residuals = compute_residuals(&best_fit.parameters, views, &dimensions, false);
+        let mean_square = squared_norm(&residuals) / corner_count as f64;
         let corner_error = FLOOR_SIGMA * mean_square.sqrt();
         if !corner_error.is_finite() || corner_error > MAX_CORNER_ERROR {
             return Err(VideoError::SheetMismatch {
@@ -199,7 +199,7 @@ fn strip_to_floor(shared: &[f64], print_scale: f64, id: usize, point: [f64; 2]) 
     to_body_pose(&shared[2..]).to_floor(point)
 }
 
-/// Converts the parameters of a pose on the floor, which may be followed by other parameters.
+/// Returns the pose on the floor that the first three parameters describe.
 fn to_body_pose(parameters: &[f64]) -> BodyPose {
     BodyPose {
         forward: parameters[0],
@@ -330,21 +330,21 @@ fn compute_residuals(
 }
 
 /// Fits all parameters, starting with the given focal length; `None` if the tags do not determine them.
-fn fit_parameters(views: &[View], dimensions: &Dimensions, focal_length: f64) -> Option<Fit> {
+fn fit_parameters(views: &[View], dimensions: &Dimensions, start_focal_length: f64) -> Option<Fit> {
     let first_view = views.first()?;
     let to_floor = strip_homography(&first_view.floor_corners, dimensions)?.inverse()?;
     let find_centre = |id: usize| {
         let corners = first_view.floor_corners[id].map(|corner| to_floor.map(corner));
         [0, 1].map(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 4.0)
     };
-    let [first, second] = [TAGS_PER_STRIP, TAGS_PER_STRIP + 1].map(find_centre);
-    let heading = (second[1] - first[1]).atan2(second[0] - first[0]);
-    let [x, y] = [0, 1].map(|i| (first[i] + second[i]) / 2.0);
-    let mut start = vec![focal_length, 0.0, x, y, heading];
+    let [first_centre, second_centre] = [TAGS_PER_STRIP, TAGS_PER_STRIP + 1].map(find_centre);
+    let heading = (second_centre[1] - first_centre[1]).atan2(second_centre[0] - first_centre[0]);
+    let [x, y] = [0, 1].map(|i| (first_centre[i] + second_centre[i]) / 2.0);
+    let mut start = vec![start_focal_length, 0.0, x, y, heading];
     let mut deck_poses = Vec::new();
     for view in views {
-        let pose = estimate_camera_pose(&view.floor_corners, dimensions, focal_length)?;
-        let camera = Camera::new(focal_length, dimensions.frame_size, &pose);
+        let pose = estimate_camera_pose(&view.floor_corners, dimensions, start_focal_length)?;
+        let camera = Camera::new(start_focal_length, dimensions.frame_size, &pose);
         start.extend(pose);
         for corners in &view.deck_corners {
             let pose = estimate_deck_pose(&camera, corners, dimensions.deck_height)?;

@@ -18,7 +18,8 @@ const BYTES_PER_SECOND: usize = 11_520;
 /// The duration of each flood, s.
 const FLOOD_SECONDS: u64 = 15;
 
-/// Sends bytes for the duration of a flood, and checks the pulses every second, and the board after the flood.
+/// Sends the bytes that `next_bytes` makes for the duration of a flood. Checks the pulses every second, and the board
+/// after the flood.
 fn assert_harmless(mut next_bytes: impl FnMut(&mut Rng) -> Vec<u8>) {
     let mut bench = boot_to_stand(Fidelity::DataSheet);
     let mut rng = lizard_host_tests::rng(77);
@@ -71,6 +72,7 @@ fn assert_unharmed(mut bench: FirmwareBench) {
     assert!(contents[192..].iter().all(|byte| *byte == 0xff));
     let operations = bench.uno.eeprom_operations();
     println!("{} EEPROM operations", operations.len());
+    // An operation takes 3.4 ms.
     let is_separate = |pair: &[EepromOperation]| pair[1].cycle - pair[0].cycle > 3 * CYCLES_PER_MS;
     assert!(operations.windows(2).all(is_separate));
 }

@@ -9,15 +9,15 @@ use crate::{Status, boot_to_stand, start_in_both_simulations};
 #[test]
 fn each_overrun_of_the_receiver_is_counted() {
     let mut bench = boot_to_stand(Fidelity::DataSheet);
-    let mut overruns_before = 0;
+    let mut lost_bytes_before = 0;
     for overrun_count in 1..=5 {
         // Two bytes wait in the buffer, a third is in the shift register, and more arrive.
         bench.uno.send(&[b' '; 12]);
         bench.uno.run_cycles(2_000);
         bench.uno.block_interrupts(8_000);
         bench.run_ms(20);
-        assert!(bench.uno.overrun_count() > overruns_before);
-        overruns_before = bench.uno.overrun_count();
+        assert!(bench.uno.overrun_count() > lost_bytes_before);
+        lost_bytes_before = bench.uno.overrun_count();
         bench.uno.send(b"\n");
         bench.run_ms(20);
         Status::read(&mut bench).assert_has(&format!("rx_lost={overrun_count}"));
@@ -34,10 +34,10 @@ fn a_counter_read_during_a_carry_has_its_old_or_new_value() {
         run.bench.run_ms(20_000);
         let start = run.run_to_next_frame();
         let (mut old_value_count, mut new_value_count) = (0, 0);
-        // The main loop is to read the count at A2's rising edge. The last part of its answer to `status` begins
-        // `answer_delay` cycles after the line arrives, and the count is read about `read_lead` cycles before it.
-        // Interrupts lengthen this delay depending on the phase of the frame, so it is measured until it no longer
-        // changes. Each attempt takes three frames, so that an answer is complete before the next line is sent.
+        // The main loop is to read the count about `read_lead` cycles before A2's rising edge: when the last part of its
+        // answer to `status` begins, `answer_delay` cycles after the line arrives. Interrupts lengthen this delay
+        // depending on the phase of the frame, so it is measured until it no longer changes. Each attempt takes three
+        // frames, so that an answer is complete before the next line is sent.
         let a2_rise_cycle = |n: u64| start + 3 * n * FRAME_CYCLES + SLOT_CYCLES;
         let (mut answer_delay, mut read_lead, mut attempt) = (150_000, 2_800, 0);
         loop {

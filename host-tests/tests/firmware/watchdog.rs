@@ -11,8 +11,9 @@ use crate::measurements::{
 };
 use crate::{Status, boot_to_stand, boot_to_walk, first_moving_gait, neutral_widths, pose_command};
 
-/// Data addresses of Timer1's registers.
+/// Data address of Timer1's clock selection.
 const TCCR1B: u16 = 0x81;
+/// Data address of Timer1's interrupt mask.
 const TIMSK1: u16 = 0x6f;
 
 /// The longest time until the watchdog resets a program that hangs, ms: two stages of 125 ms each, plus the frame in
@@ -140,7 +141,7 @@ fn a_robot_that_works_is_never_reset() {
 }
 
 /// Returns a board shortly after power-on, with or without a boot loader.
-fn boot_with_or_without_loader(has_boot_loader: bool) -> FirmwareBench {
+fn boot(has_boot_loader: bool) -> FirmwareBench {
     let mut bench = FirmwareBench::power_on(Fidelity::DataSheet);
     bench.uno.set_boot_loader(has_boot_loader);
     bench.run_ms(700);
@@ -151,7 +152,7 @@ fn boot_with_or_without_loader(has_boot_loader: bool) -> FirmwareBench {
 fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
     use ResetCause::{BrownOut, External, PowerOn, Watchdog};
     for has_boot_loader in [false, true] {
-        let mut bench = boot_with_or_without_loader(has_boot_loader);
+        let mut bench = boot(has_boot_loader);
         let assert_reported = |bench: &mut FirmwareBench, cause: &str, resets: f64| {
             bench.uno.run_ms(700);
             let status = Status::read(bench);
@@ -184,7 +185,7 @@ fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
 
 #[test]
 fn resets_are_counted_up_to_255_and_no_further() {
-    let mut bench = boot_with_or_without_loader(true);
+    let mut bench = boot(true);
     for reset in 1..=260u32 {
         bench.uno.reset();
         bench.run_ms(5);
@@ -198,7 +199,7 @@ fn resets_are_counted_up_to_255_and_no_further() {
 
 #[test]
 fn power_on_is_recognised_whatever_the_ram_contains() {
-    let mut bench = boot_with_or_without_loader(true);
+    let mut bench = boot(true);
     // The angles as `status` prints them, deg.
     let servos = robot().servos();
     let neutral_angles = servos.map(|servo| round_to_hundredths(servo.neutral));
@@ -277,5 +278,5 @@ fn a_resting_robot_rests_after_a_reset_until_boot_or_a_command() {
     bench.uno.reset();
     bench.uno.run_ms(1000);
     bench.uno.send(b"\r");
-    assert_no_pulse(&mut bench, 5_000, "a byte did not cancel `boot`");
+    assert_no_pulse(&mut bench, 5_000, "after a byte, which cancels `boot`");
 }

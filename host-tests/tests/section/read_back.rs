@@ -43,7 +43,7 @@ fn steps_to_degrees(sweep: i32) -> f64 {
 #[test]
 fn the_name_the_pins_and_the_supplies_are_read_back() {
     for_each_robot(|name, robot, file_robot, _| {
-        let read_name: String = robot.robot_name().map(char::from).collect();
+        let read_name: String = robot.name().map(char::from).collect();
         assert_eq!(read_name, file_robot.name(), "{name}");
         let pins = file_robot.servos().map(|servo| servo.pin);
         assert_eq!(robot.pins(), pins, "{name}");

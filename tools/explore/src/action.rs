@@ -90,7 +90,7 @@ impl Action {
         ];
         let begins_line = |word: &&Word| {
             let mut first_words = LINES.iter().filter_map(|line| line.split(' ').next());
-            first_words.any(|first_word| first_word == word.text())
+            first_words.any(|first_word| first_word == word.spelling())
         };
         let other_words = Word::ALL.iter().filter(|word| !begins_line(word));
         actions.extend(LINES.map(Self::Line));

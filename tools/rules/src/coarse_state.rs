@@ -96,10 +96,10 @@ impl Observer {
             has_just_received_motion_command: is_within_ms(self.last_motion_command_at, 45),
             was_recently_disturbed: is_within_ms(self.disturbed_until, 300),
             supply_crossing_ages: crossing_times.map(rounded_signed_age),
-            stop_age: self.reports.stopped_at.map(rounded_age),
-            is_stop_reported: self.reports.is_reported,
+            stop_age: self.stop_report.stopped_at.map(rounded_age),
+            is_stop_reported: self.stop_report.is_reported,
             was_stop_recently_reported: self
-                .reports
+                .stop_report
                 .reported_at
                 .is_some_and(|time| is_within_ms(time, 400)),
             recent_brown_out_count: recent_brown_outs.count(),

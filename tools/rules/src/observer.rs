@@ -6,7 +6,7 @@ use lizard_core::memory::restart::Cause;
 use crate::event::{Event, MS, NEVER, Pulse, Time};
 use crate::limits::Limits;
 use crate::pulses::{MAX_TIME_TO_REST, Permission, ServoHistory};
-use crate::reports::Reports;
+use crate::reports::StopReport;
 use crate::rule::{Rule, Violation};
 use crate::supply::SupplyHistory;
 
@@ -52,7 +52,7 @@ pub struct Observer {
     pub(crate) last_wake: (usize, Time, bool),
     pub(crate) is_pulse_end_checked: bool,
     pub(crate) supply: SupplyHistory,
-    pub(crate) reports: Reports,
+    pub(crate) stop_report: StopReport,
     pub(crate) pending_promises: PendingPromises,
     /// The time of the first of consecutive `rest` commands; `NEVER` after any other command.
     pub(crate) first_rest_at: Time,
@@ -101,7 +101,7 @@ impl Observer {
             last_wake: (0, NEVER, false),
             is_pulse_end_checked: true,
             supply: SupplyHistory::default(),
-            reports: Reports::default(),
+            stop_report: StopReport::default(),
             pending_promises: PendingPromises::default(),
             first_rest_at: NEVER,
             brown_out_times: [NEVER; 5],
@@ -163,12 +163,12 @@ impl Observer {
 
     /// Returns the time at which a fault stopped the robot; `None` without a fault, or if a command has ended the stop.
     pub const fn stop_time(&self) -> Option<Time> {
-        self.reports.stopped_at
+        self.stop_report.stopped_at
     }
 
     /// True from a stop until the console reports it.
     pub const fn is_stop_unreported(&self) -> bool {
-        self.reports.stopped_at.is_some() && !self.reports.is_reported
+        self.stop_report.stopped_at.is_some() && !self.stop_report.is_reported
     }
 
     /// True if the supply was below a level at any time in the last `duration`. `level_index` is an index of
@@ -285,7 +285,7 @@ impl Observer {
             Event::LinePrinted(first_byte_at, line) => self.check_printed_line(first_byte_at, line),
             Event::Pulse(pulse) => self.check_pulse(pulse),
             Event::ByteWritten => self.check_eeprom_write(),
-            Event::Fault => self.reports.record_stop(time),
+            Event::Fault => self.stop_report.record_stop(time),
         }
     }
 
@@ -298,11 +298,11 @@ impl Observer {
         let stop_mv = self.limits.levels_mv[1].saturating_sub(self.limits.supply_error_mv);
         let low_since = self.now - 280 * MS;
         let is_undisturbed = low_since > self.started_at && self.disturbed_until < low_since;
-        if self.reports.stopped_at.is_none()
+        if self.stop_report.stopped_at.is_none()
             && is_undisturbed
             && self.supply.has_been_low_since(stop_mv, low_since)
         {
-            self.reports.record_stop(self.now);
+            self.stop_report.record_stop(self.now);
         }
     }
 
@@ -356,7 +356,7 @@ impl Observer {
             no_pulses: self.pending_promises.no_pulses.filter(survives),
             ..PendingPromises::default()
         };
-        self.reports.record_start(cause, now);
+        self.stop_report.record_start(cause, now);
     }
 
     /// Returns the total duration, up to `time`, of the stalls of the main loop that end after `time` minus 300 ms.
@@ -407,7 +407,8 @@ impl Observer {
             self.first_rest_at = NEVER;
         }
         if effect == Effect::Motion {
-            self.reports.record_motion_command(is_accepted.is_some());
+            self.stop_report
+                .record_motion_command(is_accepted.is_some());
             self.unfinished_motion_count += 1;
         }
         let is_certain = is_accepted.is_some() && self.disturbed_until <= self.now;

@@ -328,7 +328,7 @@ impl Observer {
             || self.supply.time_below(rest_mv, end - 600 * MS, end) > 0
             // A rest during a routine does not end if the supply forbids motions or if no line arrives.
             || self.supply.time_below(stop_mv, end, end + self.limits.max_routine_rest) > 0
-            || self.reports.reported_at.is_some_and(|time| time > end);
+            || self.stop_report.reported_at.is_some_and(|time| time > end);
         if !has_reason {
             let ms = (self.now - end) / MS;
             let observation = format!("no pulses for {ms} ms, and no reset");

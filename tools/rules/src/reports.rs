@@ -9,9 +9,15 @@ use crate::event::{MS, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
+/// The longest time by which the report of a fault may precede the stop that it reports.
+const MAX_REPORT_LEAD: Time = 400 * MS;
+
+/// Time for which the supply must be low before `status` must name a fault.
+const MAX_LOW_TIME_WITHOUT_FAULT: Time = 340 * MS;
+
 /// The last stop by a fault, and its report on the console.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Reports {
+pub(crate) struct StopReport {
     /// The time at which a fault stopped the robot; `None` if no fault has occurred since the last motion command.
     pub stopped_at: Option<Time>,
     /// True if the console has reported the cause of the stop.
@@ -23,16 +29,17 @@ pub(crate) struct Reports {
     pub reported_at: Option<Time>,
 }
 
-impl Reports {
+impl StopReport {
     /// Records that a fault stops the robot, unless the robot is already stopped.
     pub(crate) fn record_stop(&mut self, time: Time) {
         if self.stopped_at.is_none() {
             self.stopped_at = Some(time);
-            let is_recent = |reported_at| time - reported_at < 400 * MS;
+            let is_recent = |reported_at| time - reported_at < MAX_REPORT_LEAD;
             self.is_reported = self.may_still_be_stopped || self.reported_at.is_some_and(is_recent);
         }
     }
 
+    /// Records a start of the chip. A watchdog reset counts as a stop.
     pub(crate) fn record_start(&mut self, cause: Cause, time: Time) {
         *self = Self::default();
         if cause == Cause::Watchdog {
@@ -65,12 +72,12 @@ impl Observer {
         }
         self.record_accepted_command(line);
         if is_complete && (line.starts_with("# fault: ") || line.starts_with("# held")) {
-            self.reports.is_reported = true;
-            self.reports.reported_at = Some(self.now);
+            self.stop_report.is_reported = true;
+            self.stop_report.reported_at = Some(self.now);
             if line.contains("no command within") {
                 // Soon after a command, the line may report a stop that the command has already ended.
                 if first_byte_at - self.last_motion_command_at >= self.limits.max_queue_time {
-                    self.reports.record_stop(self.now);
+                    self.stop_report.record_stop(self.now);
                 }
                 let silence = first_byte_at - self.last_command_at;
                 // If main was late, the command may have arrived after the stop, but before the report.
@@ -96,7 +103,7 @@ impl Observer {
         if let Some(boot_action) = line.strip_prefix("# boot: ") {
             // A fault just after `boot` is reported before `boot`.
             let is_earlier = |time| self.now - time > self.limits.max_report_time;
-            if self.reports.reported_at.is_some_and(is_earlier) {
+            if self.stop_report.reported_at.is_some_and(is_earlier) {
                 self.record_violation(Rule::NoBootAfterStop, line);
             }
             if boot_action == "rest" {
@@ -126,7 +133,7 @@ impl Observer {
             _ => {}
         }
         match Word::find(word.as_bytes()).map(Word::effect) {
-            // A word that is not a command is the name of a gait or a routine.
+            // `ok gait=...` answers `status`. Any other word that is not a command is the name of a gait or a routine.
             None if !word.starts_with("gait=") => self.is_gait_or_routine = word != "stand",
             Some(Effect::Motion | Effect::CalibrationChange) => self.is_gait_or_routine = false,
             _ => {}
@@ -136,7 +143,7 @@ impl Observer {
     /// Checks that the console has reported a stop by now. Call this only while a host reads the console.
     pub fn check_stop_is_reported(&mut self) {
         let is_due = |time| self.now - time > self.limits.max_report_time;
-        if self.reports.stopped_at.is_some_and(is_due) && !self.reports.is_reported {
+        if self.stop_report.stopped_at.is_some_and(is_due) && !self.stop_report.is_reported {
             self.record_violation(Rule::StopReported, "no report on the console");
         }
     }
@@ -155,7 +162,7 @@ impl Observer {
         }
         let max_report_time = self.limits.max_report_time;
         let is_due = |since| now - since > max_report_time;
-        if !has_fault && self.reports.stopped_at.is_some_and(is_due) {
+        if !has_fault && self.stop_report.stopped_at.is_some_and(is_due) {
             self.record_violation(Rule::StopReported, answer);
         }
         let is_watchdog_report_due = self.start_cause == Cause::Watchdog && is_due(self.started_at);
@@ -163,7 +170,7 @@ impl Observer {
             self.record_violation(Rule::StopReported, answer);
         }
         let stop_mv = self.limits.levels_mv[1].saturating_sub(self.limits.supply_error_mv);
-        let low_since = now - 340 * MS;
+        let low_since = now - MAX_LOW_TIME_WITHOUT_FAULT;
         if !has_fault
             && low_since > self.started_at
             && self.supply.has_been_low_since(stop_mv, low_since)
@@ -171,9 +178,9 @@ impl Observer {
             self.record_violation(Rule::StopReported, format!("the supply is low: {answer}"));
         }
         self.check_stop_is_reported();
-        if has_fault && self.reports.stopped_at.is_none() {
-            self.reports.stopped_at = Some(now);
-            self.reports.is_reported = self.reports.reported_at.is_some();
+        if has_fault && self.stop_report.stopped_at.is_none() {
+            self.stop_report.stopped_at = Some(now);
+            self.stop_report.is_reported = self.stop_report.reported_at.is_some();
         }
         if gait == Some("rest") {
             self.forbid_pulses(Rule::NoPulsesInRest);

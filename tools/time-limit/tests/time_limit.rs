@@ -1,4 +1,5 @@
-//! Tests of waits with a time limit: a wait that hangs fails with a message, and every other wait succeeds.
+//! Tests of waits with a time limit: a wait that hangs fails with a message, and every other wait returns its result or
+//! its own error.
 #![cfg(unix)] // the tests start Unix programs
 
 use std::io::ErrorKind;
@@ -47,7 +48,7 @@ fn a_condition_is_checked_until_it_holds() {
 }
 
 #[test]
-fn the_error_of_a_task_that_blocks_names_the_event() {
+fn the_panic_of_a_task_that_blocks_names_the_event() {
     let (_sender, receiver) = mpsc::channel::<()>();
     let message = panic_message(|| SHORT_LIMIT.run("a message", move || receiver.recv()));
     assert_eq!(message, "waited 100ms for a message");
@@ -108,7 +109,7 @@ fn the_error_for_processes_that_a_program_leaves_running_names_the_program() {
 }
 
 #[test]
-fn a_missing_program_is_a_system_error() {
+fn a_missing_program_is_reported_as_not_found() {
     let error = TIME_LIMIT.run_command(&mut Command::new("no-such-program"), b"");
     let error = error.expect_err("the program is missing");
     assert_eq!(error.kind(), ErrorKind::NotFound);

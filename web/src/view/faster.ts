@@ -22,8 +22,8 @@ const ROBOT_COUNT = { progress: 20, final: 200 };
 export interface GaitEditor {
   gait(): Bars | null;
   setGait(gait: Bars): void;
-  /** Makes two robots walk the found gait and the previous gait, and shows their displacements in `output`. */
-  compare(previousGait: Bars, foundGait: Bars, output: HTMLElement): Promise<void>;
+  /** Makes two robots walk the found gait and the gait to beat, and shows their displacements in `output`. */
+  compare(referenceGait: Bars, foundGait: Bars, output: HTMLElement): Promise<void>;
 }
 
 const BUTTON_LABELS = { start: 'Make it faster', stop: 'Stop the search', take: 'Use this gait', back: 'Back to the previous gait' };
@@ -66,8 +66,8 @@ export class FasterView {
     element('faster-both').addEventListener('click', () => void this.compare());
   }
 
-  /** Ends the search if the robot has changed, because the result would not fit the new robot. */
-  endIfRobotChanged(): void {
+  /** Ends the search and hides the result if the robot has changed, because the result would not fit the new robot. */
+  discardIfRobotChanged(): void {
     if (this.toml === '' || this.session.robot.toml === this.toml) return;
     this.toml = '';
     this.resultBox.hidden = true;
@@ -101,40 +101,40 @@ export class FasterView {
   /** Tries gaits until all are tried or the user stops the search; shows the progress and the result. */
   private async search(worker: CallableWorker<FasterWorkerApi>, request: RobotOnFloor & { task: SearchTask }): Promise<void> {
     const module = await files.searchModule();
-    const { total, rate, referenceTrial } = await worker.call((search) => search.begin(module, request));
+    const { total: gaitCount, rate, referenceTrial } = await worker.call((search) => search.begin(module, request));
     this.referenceTrial = referenceTrial;
-    this.progressBar.max = total;
+    this.progressBar.max = gaitCount;
     this.progressBar.value = 0;
-    this.setMessage(`Trying ${total} gaits with servo speeds of at most ${rate.toFixed(0)} °/s…`);
-    let [reportedScore, done] = [-Infinity, 0];
-    while (done < total && !this.isStopped) {
+    this.setMessage(`Trying ${gaitCount} gaits with servo speeds of at most ${rate.toFixed(0)} °/s…`);
+    let [reportedScore, triedCount] = [-Infinity, 0];
+    while (triedCount < gaitCount && !this.isStopped) {
       const progress = await worker.call((search) => search.tryNext());
-      done = progress.done;
-      this.progressBar.value = done;
-      if (done % GAITS_PER_REPORT !== 0 || done === total || progress.best_score === null || progress.best_score <= reportedScore) continue;
+      triedCount = progress.done;
+      this.progressBar.value = triedCount;
+      if (triedCount % GAITS_PER_REPORT !== 0 || triedCount === gaitCount || progress.best_score === null || progress.best_score <= reportedScore) continue;
       reportedScore = progress.best_score;
       const best = await worker.call((search) => search.compareBest(ROBOT_COUNT.progress));
-      if (best?.is_better) this.show(best);
+      if (best?.is_better) this.showComparison(best);
       if (best) this.setMessage(best.is_better ? `The best gait so far is ${formatGain(best)}faster.` : 'No faster gait so far.');
     }
     const best = await worker.call((search) => search.compareBest(ROBOT_COUNT.final));
     this.endSearch();
-    this.showEnd(best, done, done < total ? `Stopped after ${done} of ${total} gaits. ` : '');
+    this.showResult(best, triedCount, triedCount < gaitCount ? `Stopped after ${triedCount} of ${gaitCount} gaits. ` : '');
   }
 
-  /** Shows the result after `done` tried gaits: the best gait, or null if no gait was valid. */
-  private showEnd(best: BestGait | null, done: number, stopText: string): void {
+  /** Shows the result after `triedCount` gaits: the best gait, or null if no gait was valid. */
+  private showResult(best: BestGait | null, triedCount: number, stopText: string): void {
     if (best?.is_better) {
-      this.show(best);
+      this.showComparison(best);
       const { comparison } = best;
       return this.setMessage(`${stopText}Faster on ${comparison.faster} of ${comparison.robots} random robots and floors; the speed that 95 % of them exceed is ${formatGain(best)}higher. No servo turns faster than ${comparison.rate.toFixed(0)} °/s.`);
     }
     this.resultBox.hidden = true;
-    if (done === 0) return this.setMessage(`${stopText}No gait was tried.`);
-    this.setMessage(`${stopText}No faster gait was found for the slowest random robots and floors. More rounds or another seed may find a faster gait.`);
+    if (triedCount === 0) return this.setMessage(`${stopText}No gait was tried.`);
+    this.setMessage(`${stopText}No gait was found that is faster both on most of the random robots and floors and on the slowest of them. More rounds or another seed may find one.`);
   }
 
-  /** Ends the search at once, and resets the view, so that the button starts a new one. */
+  /** Ends the search at once, and resets the view, so that the button starts a new search. */
   private endSearch(): void {
     this.worker?.terminate();
     this.worker = null;
@@ -142,7 +142,7 @@ export class FasterView {
     this.startButton.textContent = BUTTON_LABELS.start;
   }
 
-  private show(bestGait: BestGait): void {
+  private showComparison(bestGait: BestGait): void {
     const { referenceTrial } = this;
     if (!referenceTrial) return;
     this.best = bestGait;

@@ -22,7 +22,7 @@ const HELD_BAR_FRACTION = 0.25;
 
 /** The keys of a gait's numbers that have an input. In index.html, each input has a range that robot.toml allows. */
 const GAIT_NUMBERS = ['period', 'duty', 'amplitude'] as const;
-/** Ranges of a leg's numbers, which robot.toml allows, and the steps of their inputs. */
+/** The ranges that robot.toml allows for a leg's numbers, and the steps of their inputs. */
 const LEG_NUMBER_RANGES = { start: { min: '0', max: '1', step: '0.005' }, gain: { min: '-4', max: '4', step: '0.05' } };
 
 /** Rounds a value to a multiple of `step`. */
@@ -50,7 +50,7 @@ export class GaitEditorView {
   ) {
     this.trial = new TrialView(session, writer, { prefix: 'gait', editedGait: () => this.gait, change: (key, value) => this.changeGait({ [key]: value }) });
     this.faster = new FasterView(session, { gait: () => this.gait, setGait: (gait) => this.changeGait(gait), compare });
-    session.robot.follow(() => this.faster.endIfRobotChanged());
+    session.robot.follow(() => this.faster.discardIfRobotChanged());
     followShownRobot(element<HTMLDetailsElement>('gait-editor'), session, (description) => this.showRobot(description));
     this.templateList.addEventListener('change', () => this.editTemplate());
     this.nameInput.addEventListener('input', () => this.changeGait({ name: this.nameInput.value.trim().replaceAll(' ', '-') }));
@@ -132,7 +132,7 @@ export class GaitEditorView {
     mark.addEventListener('pointermove', (event) => {
       if (!startGait || !mark.hasPointerCapture(event.pointerId)) return;
       const currentPhase = computePhase(event);
-      // Between two events, the pointer moves less than half a circle.
+      // Assumes that the pointer moves less than half a circle between two events.
       draggedCycles += wrapPhase(currentPhase - lastPhase + 0.5) - 0.5;
       lastPhase = currentPhase;
       onDrag(draggedCycles, startGait);

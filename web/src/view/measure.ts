@@ -34,6 +34,12 @@ type Task = 'idle' | 'record' | 'drive' | 'play' | 'compute';
 
 type VideoWorker = CallableWorker<VideoWorkerApi>;
 
+/** The robot in a video: its robot.toml, and its name there. */
+interface MeasuredRobot {
+  toml: string;
+  name: string;
+}
+
 /** Starts the worker that finds the tags in frames and measures the walks. */
 async function startVideoWorker(): Promise<VideoWorker> {
   const module = await files.measureModule();
@@ -41,6 +47,10 @@ async function startVideoWorker(): Promise<VideoWorker> {
   await videoWorker.call((video) => video.load(module));
   return videoWorker;
 }
+
+/** Returns the walks with the gaits' names in robot.toml instead of their commands. */
+const withGaitNames = (walks: Walk[], gaits: Gait[]): RequestedWalk[] =>
+  walks.map(({ gait, during }) => ({ gait: gaits.find(({ command }) => command === gait)?.name ?? gait, during }));
 
 export class MeasureView {
   private readonly room = element('room-measure');
@@ -74,7 +84,7 @@ export class MeasureView {
     private readonly predictor: Predictor,
     private readonly isSetupOpen: () => boolean,
   ) {
-    this.showResults = setUpResults(session);
+    this.showResults = setUpResults();
     const video = this.view.querySelector('video');
     if (!video) throw new Error('the page has no video for the camera');
     this.source = new FrameSource(video, (frame, seconds) => this.processFrame(frame, seconds));
@@ -97,6 +107,8 @@ export class MeasureView {
     predictor.predictions.subscribe(() => this.tickMovingGaits());
     session.state.gait.subscribe((activity) => this.protocol?.setActivity(activity));
     session.state.isSilent.subscribe((isSilent) => isSilent && this.protocol?.stop('the robot is silent'));
+    // A restarted robot stands, as between two walks, but has forgotten its pace.
+    session.state.bannerCount.subscribe(() => this.protocol?.end('the robot has restarted'));
     session.state.link.subscribe(() => this.followLink());
   }
 
@@ -258,6 +270,8 @@ export class MeasureView {
   /** Drives the gaits, and measures the walks even after an interruption. */
   private async driveGaits(gaits: Gait[]): Promise<void> {
     const session = this.session;
+    // The user may choose another robot before the walks are measured.
+    const robot = this.shownRobot;
     const { cycles, pause } = this.values;
     const speed = this.values.speed ?? 100;
     const protocol = new Protocol({
@@ -275,20 +289,14 @@ export class MeasureView {
     try {
       await this.clearVideo();
       await protocol.run({ gaits, cycles: cycles ?? 8, speed, pause: pause ?? 1 });
-      await this.measureWalks(this.withGaitNames(protocol.walks), speed);
+      await this.measureWalks(withGaitNames(protocol.walks, gaits), speed, [], robot);
     } catch (error) {
       if (!(error instanceof ProtocolInterrupted) || protocol.walks.length === 0) throw error;
-      await this.measureWalks(this.withGaitNames(protocol.walks), speed, [`Ended before all gaits were walked: ${error.message}`]);
+      await this.measureWalks(withGaitNames(protocol.walks, gaits), speed, [`Ended before all gaits were walked: ${error.message}`], robot);
     } finally {
       this.protocol = null;
       this.task = 'idle';
     }
-  }
-
-  /** Returns the walks with the gaits' names in robot.toml instead of their commands. */
-  private withGaitNames(walks: Walk[]): RequestedWalk[] {
-    const { gaits } = this.session.robot.description;
-    return walks.map(({ gait, during }) => ({ gait: gaits.find(({ command }) => command === gait)?.name ?? gait, during }));
   }
 
   /** Asks the user to put the robot back, and waits for the button or the end of the protocol. */
@@ -304,18 +312,24 @@ export class MeasureView {
     this.isBeingPutBack = false;
   }
 
+  /** The robot that the page shows. */
+  private get shownRobot(): MeasuredRobot {
+    const { toml, description } = this.session.robot;
+    return { toml, name: description.name };
+  }
+
   /** Measures walks in the video. Shows the results, the given problems, and why other walks have no result. */
-  private async measureWalks(walks: RequestedWalk[], speed = this.values.speed ?? 100, problems: string[] = []): Promise<void> {
+  private async measureWalks(walks: RequestedWalk[], speed = this.values.speed ?? 100, problems: string[] = [], { toml, name } = this.shownRobot): Promise<void> {
     this.task = 'compute';
     this.setMessage('Measuring…');
     this.updateControls();
     const { height = null, ruler } = this.values;
     try {
-      const results = await this.callVideo((video) => video.measure({ toml: this.session.robot.toml, speed, deck_height: height, ruler_length: ruler ?? 100, walks }));
-      this.showResults(results.gaits);
+      const results = await this.callVideo((video) => video.measure({ toml, speed, deck_height: height, ruler_length: ruler ?? 100, walks }));
+      this.showResults(name, results.gaits);
       problems.push(...results.problems);
     } catch (error) {
-      this.showResults([]);
+      this.showResults(name, []);
       problems.push(getMessage(error));
     }
     this.task = 'idle';

@@ -9,11 +9,14 @@ export class OwnRobots {
   /** The robots in the list; another tab may have changed the stored robots since. */
   private listedRobots: SavedChanges[] = [];
 
-  /** `loadFile` loads a robot by its file name; `showNames` shows the names of the robots put aside. */
+  /**
+   * `loadFile` loads a robot by its file name, and returns false if another robot is chosen meanwhile; `showNames`
+   * shows the names of the robots put aside.
+   */
   constructor(
     private readonly session: Session,
     private readonly problems: ProblemList,
-    private readonly loadFile: (file: string) => Promise<void>,
+    private readonly loadFile: (file: string) => Promise<boolean>,
     private readonly showNames: (names: string[]) => void,
   ) {
     this.updateList();
@@ -31,9 +34,8 @@ export class OwnRobots {
     const ownRobot = this.listedRobots[index];
     this.problems.setMessage('own', null);
     const { changes: previousRobot } = this.session.robot;
-    await this.loadFile(ownRobot.file);
-    // Empty: the user has meanwhile chosen another robot, whose file is still being loaded.
-    if (this.session.robot.file === '') return;
+    // The user may have chosen another robot meanwhile. Without a file, no robot could be loaded.
+    if (!(await this.loadFile(ownRobot.file)) || this.session.robot.file === '') return;
     // If the file has changed since the robot was put aside, the text is loaded without its floor, servos and supply.
     const isRestored = (await this.session.robot.restoreSaved(ownRobot)) || (await this.session.robot.change(ownRobot.toml)) === null;
     if (!isRestored) return this.putAside(previousRobot);

@@ -240,10 +240,10 @@ export class RecordView {
     return { toml: this.session.robot.toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], output: element('keep-message') };
   }
 
-  /** Makes the page's robot walk the found gait of a search, and the second robot the previous gait. */
-  async compare(previousGait: Bars, foundGait: Bars, output: HTMLElement): Promise<void> {
+  /** Makes the page's robot walk the found gait of a search, and the second robot the gait to beat. */
+  async compare(referenceGait: Bars, foundGait: Bars, output: HTMLElement): Promise<void> {
     const session = this.session;
-    const toml = session.robot.wasm.putGait(session.robot.toml, previousGait);
+    const toml = session.robot.wasm.putGait(session.robot.toml, referenceGait);
     this.setMessage('The robot restarts with this gait…', output);
     const refusal = await restartWithGait(session, foundGait);
     if (refusal) return this.setMessage(refusal.reason, output);

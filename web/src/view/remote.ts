@@ -11,7 +11,8 @@ export function vibrate(): void {
   if (navigator.userActivation?.hasBeenActive) navigator.vibrate?.(VIBRATION_MS);
 }
 
-export function setUpRemote(): void {
+/** `stop` stops the robot. */
+export function setUpRemote(stop: () => void): void {
   const button = element('remote');
   let wakeLock: WakeLockSentinel | null = null;
   const releaseWakeLock = () => {
@@ -40,8 +41,13 @@ export function setUpRemote(): void {
     if (document.fullscreenElement) await document.exitFullscreen().catch(() => {});
   };
   button.addEventListener('click', () => void (isRemote() ? leave() : enter()));
-  // The system's gesture that leaves full screen also leaves the remote control.
-  document.addEventListener('fullscreenchange', () => !document.fullscreenElement && setRemote(false));
+  // The system's gesture that leaves full screen also leaves the remote control. In full screen the browser keeps the
+  // Esc key, by which the user stops the robot, and only leaves full screen.
+  document.addEventListener('fullscreenchange', () => {
+    if (document.fullscreenElement || !isRemote()) return;
+    setRemote(false);
+    stop();
+  });
   // A hidden page loses its wake lock.
   document.addEventListener('visibilitychange', () => !document.hidden && isRemote() && void keepScreenOn());
 }

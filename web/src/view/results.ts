@@ -1,17 +1,17 @@
 // The results of the room Measure: tables on the page, and files to save, share and print.
 import { drawResults, formatCsv, listColumnHeadings, formatRange, formatRows, formatTitle } from '../measure/report-formats';
 import type { Report } from '../../generated/measure';
-import type { Session } from '../session';
 import { saveFile } from './download';
 import { element, make, note, table } from './elements';
 
 /** Pixels of the PNG per unit of the SVG. */
 const PNG_SCALE = 2;
 
-/** Sets the buttons up; returns a function that shows the given reports, or hides the section if there are none. */
-export function setUpResults(session: Session): (reports: Report[]) => void {
+/** Sets the buttons up; returns a function that shows a robot's reports, or hides the section if there are none. */
+export function setUpResults(): (robotName: string, reports: Report[]) => void {
+  let robotName = '';
   let reports: Report[] = [];
-  const drawPicture = () => drawResults(session.robot.description.name, reports);
+  const drawPicture = () => drawResults(robotName, reports);
   const savePng = async () => {
     const image = new Image();
     image.src = `data:image/svg+xml,${encodeURIComponent(drawPicture())}`;
@@ -27,8 +27,8 @@ export function setUpResults(session: Session): (reports: Report[]) => void {
   onClick('csv', () => saveFile('measured.csv', [formatCsv(reports)], 'text/csv'));
   onClick('json', () => saveFile('measured.json', [JSON.stringify({ gaits: reports }, null, 2)], 'application/json'));
   onClick('print', () => print());
-  return (newReports) => {
-    reports = newReports;
+  return (newName, newReports) => {
+    [robotName, reports] = [newName, newReports];
     element('measure-results').hidden = reports.length === 0;
     const sections = reports.flatMap((report) => [make('h4', {}, formatTitle(report)), table(formatTitle(report), listColumnHeadings(report), formatRows(report)), note(formatRange(report))]);
     element('measured').replaceChildren(...sections);

@@ -88,7 +88,7 @@ export class RobotTextView {
     try {
       const encoded = parseFragment(hash).get('robot');
       const toml = encoded === null ? this.session.robot.toml : await unpack(encoded);
-      return toml === this.session.robot.toml || (await this.loadOrShowError(toml));
+      return toml === this.session.robot.toml || (await this.loadOrShowError(toml, null));
     } catch (error) {
       reveal(this.textBox);
       this.showRefusal(refuse(getMessage(error)));
@@ -101,12 +101,15 @@ export class RobotTextView {
     // The box must not show a binary file; a folder has no text.
     const toml = file.size > 1_000_000 ? '' : await file.text().catch(() => '');
     if (toml === '' || toml.includes('\0')) return this.showRefusal(refuse(`${file.name} is not a robot.toml.`));
-    await this.loadOrShowError(toml);
+    await this.loadOrShowError(toml, null);
   }
 
-  /** Loads a text as the robot, or shows it with its error; returns true if the text was accepted. */
-  async loadText(toml: string): Promise<boolean> {
-    const refusal = await this.session.robot.change(toml);
+  /**
+   * Loads a text as the robot, or shows it with its error; returns true if the text was accepted. `floor` is as in
+   * `ShownRobot.change`: null for another robot, whose own floor must replace the floor set in the page.
+   */
+  async loadText(toml: string, floor?: null): Promise<boolean> {
+    const refusal = await this.session.robot.change(toml, floor);
     if (!refusal) return true;
     this.textBox.value = toml;
     this.showRefusal(refusal);
@@ -117,8 +120,8 @@ export class RobotTextView {
    * Loads a text as the robot; after a refusal, opens the panel and selects the line with the error. Returns true if
    * the text was accepted.
    */
-  private async loadOrShowError(toml: string): Promise<boolean> {
-    if (await this.loadText(toml)) return true;
+  private async loadOrShowError(toml: string, floor?: null): Promise<boolean> {
+    if (await this.loadText(toml, floor)) return true;
     reveal(this.textBox);
     this.selectErrorLine();
     return false;

@@ -63,6 +63,8 @@ export class SetupDialog {
   private isLost = false;
   /** True if the board has reported that it has no saved calibration. */
   private isUncalibrated = false;
+  /** True while the dialog is being closed; no action may start meanwhile, because it would move a servo afterwards. */
+  private isLeaving = false;
 
   constructor(
     readonly session: Session,
@@ -119,6 +121,11 @@ export class SetupDialog {
     } else this.enterStep(this.step === boardStep && step ? step : this.step);
   }
 
+  /** Handles a line that the page has sent to the robot: the panel Calibrate and the console also change settings. */
+  handleSent(line: string): void {
+    this.calibrator?.handleSent(line);
+  }
+
   /** Evaluates a line from the robot. */
   handleReceived(line: string): void {
     if (line.startsWith(NOTHING_SAVED_LINE)) this.isUncalibrated = true;
@@ -160,6 +167,8 @@ export class SetupDialog {
 
   /** Closes the dialog after the current action; restores the previous calibration if settings are unsaved. */
   private async leave(): Promise<void> {
+    if (this.isLeaving) return;
+    this.isLeaving = true;
     if (this.calibrator?.isCurrent) await this.runningAction;
     let message = '';
     const { calibrator } = this;
@@ -171,6 +180,7 @@ export class SetupDialog {
       }
     }
     this.dialog.hidden = true;
+    this.isLeaving = false;
     this.isLost = false;
     const opener = element('setup-open');
     opener.setAttribute('aria-expanded', 'false');
@@ -190,8 +200,10 @@ export class SetupDialog {
 
   /** Writes the page's robot, alone or with the firmware. */
   readonly write = (content: WriteContent): void => {
-    this.calibrator = null;
     this.runAction(async () => {
+      // Writing restarts the board, which loses unsaved settings: a reversed sign, for example, is wrong again.
+      if (this.calibrator?.isChanged) this.doneSteps.clear();
+      this.calibrator = null;
       if (await this.writer.write(content, 'setup')) this.markDone('Firmware');
       return this.message.textContent ?? '';
     });
@@ -230,12 +242,18 @@ export class SetupDialog {
   private async requireCalibrator(): Promise<BoardCalibrator> {
     if (this.isLost) throw new Error(LOST_MESSAGE);
     if (!this.session.program.isFirmwareAnswering) throw new Error(NO_ROBOT_MESSAGE);
-    this.calibrator ??= await BoardCalibrator.begin(this.session);
-    return this.calibrator;
+    if (this.calibrator) return this.calibrator;
+    const { actionCount } = this;
+    const calibrator = await BoardCalibrator.begin(this.session);
+    // The action was dropped meanwhile, for example because the user has left, and must move no servo.
+    if (actionCount !== this.actionCount) throw new Error(LOST_MESSAGE);
+    this.calibrator = calibrator;
+    return calibrator;
   }
 
   /** Runs an action unless another action is running; `isAutomatic` is true if the dialog itself starts the action. */
   private runAction(action: () => Promise<string>, isAutomatic = false): void {
+    if (this.isLeaving) return;
     if (this.isBusy) {
       if (this.isAutomatic && !isAutomatic) this.queuedAction = action;
       return;
@@ -283,10 +301,10 @@ export class SetupDialog {
     this.redraw();
     this.title.focus({ preventScroll: true });
     if (!step.needsRobot || !this.session.program.isFirmwareAnswering || this.isLost) return;
-    // Servos that the previous step turned return to neutral.
+    // Servos that the previous step turned return to neutral, and the step shows the robot's current settings.
     const { calibrator } = this;
     if (!calibrator) this.runAction(async () => this.requireCalibrator().then(() => ''), true);
-    else if (this.session.board.gait !== STAND) this.runAction(async () => calibrator.run((calibrator) => calibrator.stand()).then(() => ''), true);
+    else if (calibrator.mayBeOutdated || this.session.board.gait !== STAND) this.runAction(async () => calibrator.run((calibrator) => calibrator.stand()).then(() => ''), true);
   }
 
   readonly redraw = (): void => {

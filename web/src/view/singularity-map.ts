@@ -14,7 +14,7 @@ export class SingularityMapView {
   private readonly canvas: HTMLCanvasElement;
   private map: SingularityMap | null = null;
   private trail: [number, number][] = [];
-  /** The map without trail and dot, drawn once per canvas size; null if it must be redrawn. */
+  /** The map without trail and dot; redrawn if it is null or the canvas has another size. */
   private background: HTMLCanvasElement | null = null;
 
   /** `endIndex` is 0 for the head and 1 for the tail. */
@@ -73,6 +73,7 @@ export class SingularityMapView {
       const [column, row] = [Math.floor(index / map.size), index % map.size];
       if (margin === null || margin <= 0) return;
       context.fillStyle = map.safe[index] ? colours.safe : colours.near;
+      // Margins are in hundredths.
       context.globalAlpha = map.safe[index] ? 0.45 + Math.min(0.55, margin / 160) : 0.7;
       context.fillRect((column - 0.5) * cellSize, size - (row + 0.5) * cellSize, cellSize + 0.6, cellSize + 0.6);
     });

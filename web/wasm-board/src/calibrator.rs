@@ -39,6 +39,12 @@ impl Calibrator {
         self.0.take_reset()
     }
 
+    /// Reads the calibration again, because another part of the page may have changed it.
+    #[wasm_bindgen(js_name = readAgain)]
+    pub async fn read_again(&mut self) -> Result<(), JsValue> {
+        self.0.read_again().await.map_err(error_to_js)
+    }
+
     /// Makes the robot stand.
     pub async fn stand(&mut self) -> Result<(), JsValue> {
         self.0.stand().await.map(drop).map_err(error_to_js)

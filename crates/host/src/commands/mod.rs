@@ -161,7 +161,8 @@ fn translate_old_arguments(mut arguments: Vec<OsString>) -> Result<Vec<OsString>
         return Err(Failure::Input(message));
     }
     if let Some((old, new)) = RENAMED_COMMANDS.iter().find(|(old, _)| *old == word) {
-        eprintln!(
+        let _ = writeln!(
+            io::stderr(),
             "lizard: `{old}` is deprecated and will be removed in the next version; use `lizard {}`",
             new.join(" ")
         );
@@ -244,7 +245,7 @@ fn exit_with(error: &clap::Error) -> ! {
     if shortened_text == text {
         error.exit();
     }
-    eprint!("{shortened_text}");
+    let _ = write!(io::stderr(), "{shortened_text}");
     std::process::exit(error.exit_code())
 }
 

@@ -84,7 +84,8 @@ pub fn identify_keys(args: KeysArgs) -> Result<(), Failure> {
     for path in &args.paths {
         movements.append(&mut read_movements(path, &robot)?);
     }
-    files::check_replaceable_robot(&args.output, |text| is_earlier_output(text, old_text))?;
+    let is_own_output = |text: &str| is_earlier_output(text, old_text);
+    files::check_replaceable_robot(&args.output, is_own_output)?;
     let spinner = create_spinner("simulating the gaits");
     let to_failure = |error: IdentifyError| Failure::Input(error.to_string());
     let identified = identify(&robot, &movements, &|count, walk| {
@@ -96,7 +97,7 @@ pub fn identify_keys(args: KeysArgs) -> Result<(), Failure> {
     if has_changes {
         let new_text = identified.updated_robot_toml(old_text);
         let new_text = new_text.map_err(to_failure)?;
-        files::write_checked(&args.output, new_text.as_bytes())?;
+        files::write_robot(&args.output, new_text.as_bytes(), is_own_output)?;
     }
     let output_path = has_changes.then_some(args.output.as_path());
     let report = KeysReport::new(&identified, output_path);

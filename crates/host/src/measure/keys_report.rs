@@ -1,7 +1,7 @@
 //! The report of the identified keys, as text and as JSON.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use lizard_identify::{
     COMPONENTS, CardPose, GoodnessOfFit, Identification, Key, KeyResult, MovementResult, Verdict,
@@ -20,7 +20,7 @@ pub(super) struct KeysReport {
     gaits: Vec<GaitReport>,
     /// The new robot.toml; null if no key has changed.
     #[serde(rename = "written")]
-    output_path: Option<PathBuf>,
+    output_name: Option<String>,
 }
 
 /// A key of robot.toml: its old and new values, and the standard error of the new value.
@@ -134,7 +134,8 @@ impl KeysReport {
                 error_factor: goodness.error_factor,
             },
             gaits: gaits.collect(),
-            output_path: output_path.map(Path::to_owned),
+            // A path that is not UTF-8 cannot be serialized.
+            output_name: output_path.map(|path| path.display().to_string()),
         }
     }
 }

@@ -104,14 +104,31 @@ pub(super) fn format_toml_lines(keys: &[MeasuredKey]) -> String {
 }
 
 /// True for the text of an earlier output with measured keys, which a new output may replace: each of its lines is a
-/// measured key, a table header, blank, or a line of `robot_toml`, so it has no key or comment that a user has added.
+/// measured key, a table header, blank, or a line of `robot_toml`, so it has no key, value or comment that a user has
+/// changed.
 pub(super) fn is_earlier_output(text: &str, robot_toml: &str) -> bool {
-    let is_measured = |line: &str| line.contains(" # measured: ");
     let is_known = |line: &str| {
         let is_added = is_measured(line) || line.is_empty() || line.starts_with('[');
         is_added || robot_toml.lines().any(|old_line| old_line == line)
     };
     text.lines().any(is_measured) && text.lines().all(is_known)
+}
+
+/// True for a line with the measured numbers that its comment states, as in `x = 1.5 # measured: 1.5 +- 0.2, was 1.0`
+/// and `x = [0.0, 1.5] # measured: [1] 1.5 +- 0.2, was 1.0`. A number that was measured by hand is not in the comment.
+fn is_measured(line: &str) -> bool {
+    let Some((key, comment)) = line.split_once(" # measured: ") else {
+        return false;
+    };
+    let value = key.split('#').next().unwrap_or_default();
+    let words = value.split(|c: char| c.is_whitespace() || "=,[]{}".contains(c));
+    let numbers: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
+    let is_in_line = |result: &str| {
+        let number = result.split_once(" +- ").map(|(number, _)| number);
+        let number = number.and_then(|number| number.rsplit(' ').next()?.parse().ok());
+        number.is_some_and(|number| numbers.contains(&number))
+    };
+    comment == "by hand" || comment.split("; ").all(is_in_line)
 }
 
 /// Returns robot.toml with the measured values of the keys that do not agree, each with a comment. All other bytes stay
@@ -135,4 +152,50 @@ pub(super) fn with_measured_keys(
         robot_toml = with_comment(&robot_toml, &name, "measured:", &comment)?;
     }
     Ok(robot_toml)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_an_unedited_output_is_an_earlier_output() {
+        let robot_toml = "[links]\nl0 = 60.0\n[servo]\n# volts = 4.8\n";
+        for (line, is_unedited) in [
+            ("play = 1.25 # measured: 1.25 +- 0.02, was 1.5", true),
+            ("play = 12.0 # measured: 12 +- 20, was 1.5", true),
+            (
+                "play = -1.5 # deg, 2 # measured: -1.50 +- 0.02, was 1.5",
+                true,
+            ),
+            (
+                "centre = [2.0, 0.0] # measured: [0] 2.0 +- 0.3, was 1.0",
+                true,
+            ),
+            (
+                "c = [2.0, 3.1] # measured: [0] 2.0 +- 0.3, was 1.0; [1] 3.1 +- 0.4, was 0.0",
+                true,
+            ),
+            (
+                "A1 = { us_per_degree = -9.8 } # measured: -9.80 +- 0.05, was 10.00",
+                true,
+            ),
+            ("volts = 4.5 # measured: by hand", true),
+            ("play = 1.3 # measured: 1.25 +- 0.02, was 1.5", false),
+            ("play = 1.3 # 1.25 # measured: 1.25 +- 0.02, was 1.5", false),
+            (
+                "c = [2.0, 3.2] # measured: [0] 2.0 +- 0.3, was 1.0; [1] 3.1 +- 0.4, was 0.0",
+                false,
+            ),
+            ("play = 1.25 # measured: with a ruler", false),
+            ("play = 1.25", false),
+        ] {
+            let text = format!("{robot_toml}\n[leg.drive]\n{line}\n");
+            assert_eq!(is_earlier_output(&text, robot_toml), is_unedited, "{line}");
+        }
+        assert!(
+            !is_earlier_output(robot_toml, robot_toml),
+            "it is the input"
+        );
+    }
 }

@@ -103,7 +103,7 @@ struct Report {
     is_volts_measured: bool,
     /// The file of the new robot.toml; null without `--output`.
     #[serde(rename = "written")]
-    output_path: Option<PathBuf>,
+    output_name: Option<String>,
     /// Slew limit in the given robot.toml, deg/s.
     #[serde(skip)]
     slew: f64,
@@ -116,10 +116,9 @@ struct Report {
 pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
     let robot_toml = args.robot.text()?;
     let robot = args.robot.load()?;
+    let is_own_output = |text: &str| measured_key::is_earlier_output(text, robot_toml);
     if let Some(output) = &args.output {
-        files::check_replaceable_robot(output, |text| {
-            measured_key::is_earlier_output(text, robot_toml)
-        })?;
+        files::check_replaceable_robot(output, is_own_output)?;
     }
     let jig = Jig {
         side: steps::find_free_direction(&robot, args.servo)?,
@@ -148,7 +147,7 @@ pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
     let report = Report::new(&robot, &args, &analysis, &free_servo, stall_torque);
     if let Some(output) = &args.output {
         let updated_toml = report.update_robot_toml(robot_toml)?;
-        files::write_checked(output, updated_toml.as_bytes())?;
+        files::write_robot(output, updated_toml.as_bytes(), is_own_output)?;
     }
     json::print_json_or_text(args.json, &report, || report.format_text())
 }
@@ -220,7 +219,8 @@ impl Report {
             is_reversed: measured_servo.gain.value < 0.0,
             volts,
             is_volts_measured: args.volts.is_some(),
-            output_path: args.output.clone(),
+            // A path that is not UTF-8 cannot be serialized.
+            output_name: args.output.as_ref().map(|path| path.display().to_string()),
             slew: robot.speed_limits().slew,
         }
     }
@@ -280,11 +280,10 @@ impl Report {
         if self.keys.iter().all(|key| key.name != "stall_kg_cm") {
             text += "Not measured: stall_kg_cm (needs a second video with a weight, --load).\n";
         }
-        if let Some(path) = &self.output_path {
+        if let Some(name) = &self.output_name {
             let _ = writeln!(
                 text,
-                "Written: {}; its [limits] slew is still {} deg/s for the jig.",
-                path.display(),
+                "Written: {name}; its [limits] slew is still {} deg/s for the jig.",
                 self.slew
             );
         }

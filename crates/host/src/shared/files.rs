@@ -28,21 +28,33 @@ pub fn record_input(path: &Path) -> &Path {
     path
 }
 
-/// Reads the text of an input file.
+/// Reads the text of an input file: UTF-8, or UTF-16 as PowerShell's `>` writes it. Skips a byte order mark.
 ///
 /// # Errors
-/// Fails if the file cannot be read, is not valid UTF-8, or is longer than 256 MiB, as an endless device is.
+/// Fails if the file cannot be read, is not such a text, or is longer than 256 MiB, as an endless device is.
 pub fn read_text(path: &Path) -> Result<String, Failure> {
     const MAX_BYTES: u64 = 256 << 20;
-    let mut text = String::new();
+    let mut bytes = Vec::new();
     let outcome = File::open(record_input(path)).and_then(|file| {
-        match file.take(MAX_BYTES + 1).read_to_string(&mut text)? as u64 {
-            0..=MAX_BYTES => Ok(()),
+        match file.take(MAX_BYTES + 1).read_to_end(&mut bytes)? as u64 {
+            0..=MAX_BYTES => decode_text(bytes)
+                .ok_or_else(|| io::Error::other("it is not UTF-8 text; save it as UTF-8")),
             _ => Err(io::Error::other("the file is longer than 256 MiB")),
         }
     });
-    outcome.map_err(|error| Failure::Input(format!("cannot read {}: {error}", path.display())))?;
-    Ok(text)
+    outcome.map_err(|error| Failure::Input(format!("cannot read {}: {error}", path.display())))
+}
+
+/// Decodes UTF-8, or UTF-16 with the byte order mark FF FE; removes a byte order mark. Returns `None` for other bytes.
+fn decode_text(bytes: Vec<u8>) -> Option<String> {
+    let Some(utf16_bytes) = bytes.strip_prefix(&[0xff, 0xfe]) else {
+        let text = String::from_utf8(bytes).ok()?;
+        let without_mark = text.strip_prefix('\u{feff}').map(str::to_owned);
+        return Some(without_mark.unwrap_or(text));
+    };
+    let (units, rest) = utf16_bytes.as_chunks();
+    let units: Vec<u16> = units.iter().copied().map(u16::from_le_bytes).collect();
+    String::from_utf16(&units).ok().filter(|_| rest.is_empty())
 }
 
 /// Checks that an output may be written to `path`.
@@ -131,15 +143,20 @@ fn is_robot_file(path: &Path, is_own_output: impl Fn(&str) -> bool) -> bool {
 /// Fails if the folder cannot be created or written to, if the path names neither a regular file nor a stream (for
 /// example, a folder), or if the file is an input or a robot ([`check_replaceable`]).
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    check_replaceable(path)?;
-    write_checked(path, bytes)
+    write_robot(path, bytes, |_| false)
 }
 
-/// Writes a file as [`write`] does, after [`check_replaceable_robot`].
+/// Writes a file as [`write`] does, but also replaces a robot file that is an earlier output of the same command, as
+/// [`check_replaceable_robot`] describes. Checks this again, because the user may have edited the file since.
 ///
 /// # Errors
-/// Fails as [`write`] does, except that the file may be an input or a robot.
-pub fn write_checked(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+/// Fails as [`write`] does, except for such an earlier output.
+pub fn write_robot(
+    path: &Path,
+    bytes: &[u8],
+    is_own_output: impl Fn(&str) -> bool,
+) -> Result<(), Failure> {
+    check_replaceable_robot(path, is_own_output)?;
     let outcome = if is_standard_output(path) {
         // Standard output may be a file with other contents, so it is neither opened again nor replaced.
         let mut out = io::stdout().lock();
@@ -331,12 +348,35 @@ mod tests {
             assert_eq!(fs::read(path).expect("the file is readable"), old_bytes);
         }
         write(&folder.path().join("c"), b"x").expect("any other file is written");
+        let is_mine = |text: &str| text.starts_with("# mine");
         for (path, is_replaceable) in [(&robot, false), (&renamed_robot, true), (&input, false)] {
-            let result = check_replaceable_robot(path, |text| text.starts_with("# mine"));
+            let result = check_replaceable_robot(path, is_mine);
             assert_eq!(result.is_ok(), is_replaceable, "{}", path.display());
         }
+        // The user edits an earlier output during the command, after its first check.
+        let write_output = || write_robot(&renamed_robot, b"[links]", is_mine);
+        write_output().expect("an earlier output is replaced");
+        write_output().expect_err("an edited output must be kept");
         let message = failure_message(&renamed_robot.join("folder/d"));
         assert!(message.ends_with("mine/folder: a file exists where a folder is needed"));
+    }
+
+    #[test]
+    fn read_text_accepts_the_encodings_that_windows_programs_write() {
+        let folder = tempfile::tempdir().expect("a temporary folder is created");
+        let path = folder.path().join("a.json");
+        let read = |bytes: &[u8]| {
+            fs::write(&path, bytes).expect("the file is written");
+            read_text(&path).map_err(|failure| failure.to_string())
+        };
+        let utf16_bytes = b"\xff\xfe{\0\xe4\0}\0";
+        for bytes in [&b"{\xc3\xa4}"[..], b"\xef\xbb\xbf{\xc3\xa4}", utf16_bytes] {
+            assert_eq!(read(bytes), Ok("{\u{e4}}".to_owned()), "{bytes:?}");
+        }
+        for bytes in [&b"\xe4"[..], b"\xff\xfe{", b"\xff\xfe\0\xd8"] {
+            let result = read(bytes);
+            assert!(result.is_err_and(|message| message.ends_with("; save it as UTF-8")));
+        }
     }
 
     #[test]

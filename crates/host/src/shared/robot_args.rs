@@ -126,6 +126,8 @@ impl RobotArgs {
             let name = path.display().to_string();
             let suggestion = format_suggestion(&name, built_in_names());
             return match built_in {
+                // `lizard parts large --robot large` makes a folder with the robot's name.
+                Some((_, text)) if path.is_dir() => Ok(RobotSource::Text(text)),
                 _ if path.exists() => Ok(RobotSource::File(path.clone())),
                 Some((_, text)) => Ok(RobotSource::Text(text)),
                 None if suggestion.is_empty() => Ok(RobotSource::File(path.clone())),

@@ -53,18 +53,27 @@ fn model_writes_the_meshes_named_in_a_urdf_or_sdf() {
         let text = fs::read_to_string(folder.join(file)).expect("the file is readable");
         (output, text)
     };
-    for file in ["new/my.urdf", "new/my.sdf"] {
+    for (file, mesh_folder) in [
+        ("new/my.urdf", "my-urdf-meshes"),
+        ("new/my.sdf", "my-sdf-meshes"),
+    ] {
         let (output, text) = write_model(file, "");
-        assert!(output.contains("my-meshes"), "{output}");
-        let texts_after = text.split("my-meshes/").skip(1);
+        assert!(output.contains(mesh_folder), "{output}");
+        let texts_after = text.split(mesh_folder).skip(1);
         let names = texts_after.filter_map(|rest| Some(rest.split_once(".stl")?.0));
         let names: Vec<&str> = names.collect();
         assert!(names.len() > 30, "{names:?}");
         for name in names {
-            let mesh = folder.join(format!("new/my-meshes/{name}.stl"));
+            let mesh = folder.join(format!("new/{mesh_folder}{name}.stl"));
             assert!(mesh.is_file(), "{name}");
         }
     }
+    // A model of another robot in the other format has its own meshes.
+    let mesh = folder.join("new/my-urdf-meshes/link_A1-printed.stl");
+    let read_mesh = || fs::read(&mesh).expect("the mesh is readable");
+    let bytes = read_mesh();
+    write_model("new/my.sdf", "--robot large");
+    assert!(read_mesh() == bytes, "the mesh of my.urdf has changed");
     let (_, text) = write_model("my.urdf", "--mesh-address package://my_robot/meshes/");
     assert!(text.contains("\"package://my_robot/meshes/link_A1-printed.stl\""));
 }

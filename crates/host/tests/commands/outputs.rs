@@ -55,7 +55,7 @@ fn no_command_overwrites_its_input_or_a_robot_file() {
         let is_unchanged = current_text.expect("the file is readable") == text;
         assert!(is_unchanged, "{name} has changed");
     }
-    assert!(!folder_path.join("my-meshes").exists());
+    assert!(!folder_path.join("my-urdf-meshes").exists());
 }
 
 #[test]
@@ -77,6 +77,19 @@ fn new_writes_a_valid_robot_file_and_replaces_no_file() {
     assert_eq!(current_text, "mine");
     let outcome = run_line_in(folder_path, "new no/folder/my.toml");
     assert_eq!(outcome.code, Some(1), "{}", outcome.stderr);
+}
+
+#[test]
+fn a_folder_does_not_hide_the_built_in_robot_of_its_name() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    let line = "gaits --robot large";
+    let output = run_line_in(folder.path(), line).expect_success();
+    fs::create_dir(folder.path().join("large")).expect("the folder is created");
+    let output_with_folder = run_line_in(folder.path(), line).expect_success();
+    assert_eq!(output_with_folder, output);
+    fs::create_dir(folder.path().join("mine")).expect("the folder is created");
+    let failure = "lizard: mine: cannot be read: Is a directory (os error 21)";
+    run_line_in(folder.path(), "gaits --robot mine").expect_refusal_with(failure);
 }
 
 #[test]

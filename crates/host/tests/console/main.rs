@@ -7,7 +7,7 @@ mod fixture;
 mod terminal;
 
 use std::fs::{self, File};
-use std::io::{Read, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::path::Path;
 use std::process::Stdio;
 
@@ -345,6 +345,41 @@ fn a_backup_whose_output_cannot_be_printed_ends_with_code_1() {
         .expect("the program starts");
     assert_eq!(wait_for_exit(&mut child).code(), Some(1));
     assert!(folder.path().join("a.toml").exists());
+}
+
+#[test]
+fn flash_names_the_robot_before_it_writes_the_board() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    let device = Device::start(|_| ());
+    for (options, robot) in [
+        ("", "the built-in robot.toml"),
+        ("--robot large", "the robot large"),
+    ] {
+        let line = format!("flash {} {options}", device.port);
+        let mut command = lizard_command(&folder, &line);
+        let mut child = command.stderr(Stdio::piped()).spawn();
+        let child = child.as_mut().expect("the program starts");
+        let stderr = child.stderr.take().expect("standard error is a pipe");
+        let first_line = BufReader::new(stderr).lines().next();
+        child.kill().expect("the program can be ended");
+        wait_for_exit(child);
+        let first_line = first_line.expect("there is a line");
+        let first_line = first_line.expect("the line is UTF-8");
+        assert_eq!(first_line, format!("lizard: writing {robot}"));
+    }
+    device.stop();
+}
+
+#[test]
+fn a_full_standard_error_does_not_end_a_command() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    for line in ["calibrate backup a.toml --sim", "backup b.toml --sim"] {
+        let mut command = lizard_command(&folder, line);
+        let child = command.stdout(Stdio::null()).stderr(full_device()).spawn();
+        let mut child = child.expect("the program starts");
+        assert_eq!(wait_for_exit(&mut child).code(), Some(0), "{line}");
+    }
+    assert!(folder.path().join("b.toml").exists());
 }
 
 /// Opens a device to which nothing can be written.

@@ -94,39 +94,87 @@ fn sigterm_restores_the_terminal() {
     }
 }
 
-#[test]
-fn console_sends_the_robots_own_deadman_three_times_at_its_end_if_it_is_not_confirmed() {
-    let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let (sender, own_deadman_lines) = mpsc::channel();
+/// Starts a walking robot whose own `deadman` is 2000 ms, and which answers `stop` only from the second one on. The
+/// receiver gets each line from the program except `status`.
+fn start_walking_robot() -> (Device, mpsc::Receiver<String>) {
+    let (sender, lines) = mpsc::channel();
     let mut received_text = String::new();
+    let mut stop_count = 0;
     let device = Device::start(move |terminal| {
         let mut bytes = [0; 64];
         let count = terminal.read(&mut bytes).unwrap_or_default();
         received_text += &String::from_utf8_lossy(&bytes[..count]);
         while let Some((line, rest)) = received_text.split_once('\n') {
+            stop_count += u32::from(line == "stop");
+            if line != "status" {
+                let _ = sender.send(line.to_owned());
+            }
             let answer = match line {
-                "status" => "ok gait=walk pose=1,2,3,4 fault=none",
+                "status" => "ok gait=walk pose=1,2,3,4 margin=0.5 fault=none",
                 "cal" => "# deadman 2000\nok cal",
                 // This answers an earlier `status`, and does not confirm the line.
-                "deadman 2000" if sender.send(()).is_ok() => "ok gait=walk late",
+                "deadman 2000" => "ok gait=walk late",
+                "stop" if stop_count == 1 => "# the answer is lost",
                 line => &format!("ok {line}"),
             };
             let _ = writeln!(terminal, "{answer}");
             received_text = rest.to_owned();
         }
     });
+    (device, lines)
+}
+
+#[test]
+fn console_sends_the_robots_own_deadman_three_times_at_its_end_if_it_is_not_confirmed() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    let (device, lines) = start_walking_robot();
     let mut session = TerminalSession::start(&folder, &format!("console {}", device.port));
     session.wait_for("not reset");
     session.press_and_wait("walk\r", "ok walk");
     session.press("\x04");
     assert_eq!(session.wait_for_exit(), Some(0));
+    let is_own_deadman = |line: &String| line == "deadman 2000";
     let mut line_count = 0;
     TIME_LIMIT.wait_for("three lines", || {
-        line_count += own_deadman_lines.try_iter().count();
+        line_count += lines.try_iter().filter(is_own_deadman).count();
         line_count >= 3
     });
     device.stop();
-    assert_eq!(line_count + own_deadman_lines.iter().count(), 3);
+    assert_eq!(line_count + lines.iter().filter(is_own_deadman).count(), 3);
+}
+
+#[test]
+fn a_walking_robot_keeps_the_deadman_for_driving_if_sigterm_ends_the_program() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    let (device, lines) = start_walking_robot();
+    let mut session = TerminalSession::start(&folder, &format!("console {}", device.port));
+    session.wait_for("not reset");
+    session.press_and_wait("walk\r", "ok walk");
+    send_signal(&session.child, Signal::TERM);
+    let code = wait_for_exit(&mut session.child).code();
+    assert_eq!(code, Some(0));
+    device.stop();
+    let lines: Vec<String> = lines.iter().collect();
+    assert_eq!(lines, ["cal", "deadman 901", "walk"]);
+}
+
+#[test]
+fn a_stop_before_the_end_of_the_console_is_sent_and_repeated_until_the_robot_answers() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    let (device, lines) = start_walking_robot();
+    let mut session = TerminalSession::start(&folder, &format!("console {}", device.port));
+    session.wait_for("not reset");
+    session.press_and_wait("walk\r", "ok walk");
+    session.press("stop\r\x04");
+    TIME_LIMIT.wait_for("the end of the program", || {
+        let status = session.child.try_wait();
+        status.expect("the wait succeeds").is_some()
+    });
+    device.stop();
+    let lines: Vec<String> = lines.iter().collect();
+    assert_eq!(lines[..5], ["cal", "deadman 901", "walk", "stop", "stop"]);
+    session.read_output();
+    assert!(!session.new_text.contains("continues its gait"));
 }
 
 #[test]

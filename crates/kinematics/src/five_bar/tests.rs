@@ -1,4 +1,5 @@
-//! Comparisons of the five-bar's solutions with Newton's method and with the law of cosines.
+//! Tests of the five-bar: comparisons with Newton's method and with the law of cosines, margins, the inverse, and
+//! faults.
 
 use crate::reference::{PAPER_HEAD, end_point_by_cosines, loop_residuals, solve_by_newton};
 use lizard_kinematics::{AssemblyMode, Elbow, Fault, FiveBar, Vector, wrap};
@@ -23,8 +24,8 @@ proptest! {
                     [left, pose.theta_left_coupler(), pose.theta_right_coupler(), right],
                 );
                 prop_assert!(x.hypot(y) < 1e-9, "{mode:?}: the loop is open by {x} {y} mm");
-                let reach = (pose.end_point - pose.right_tip).length();
-                prop_assert!((reach - five_bar.right_coupler_length).abs() < 1e-9);
+                let coupler_length = (pose.end_point - pose.right_tip).length();
+                prop_assert!((coupler_length - five_bar.right_coupler_length).abs() < 1e-9);
             }
         }
     }
@@ -34,10 +35,10 @@ proptest! {
         five_bar in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
     ) {
         match (five_bar.forward(left, right), end_point_by_cosines(&five_bar, left, right)) {
-            (Ok(pose), Some(point)) => {
+            (Ok(pose), Some(expected_point)) => {
                 // acos loses half the digits when the triangle is flat.
                 let tolerance = 1e-9 / pose.type2.max(1e-9);
-                prop_assert!((pose.end_point - point).length() < tolerance);
+                prop_assert!((pose.end_point - expected_point).length() < tolerance);
             }
             (Err(Fault::TooFarApart { .. } | Fault::TooClose { .. }), None) => {}
             (computed, expected) => prop_assert!(false, "{computed:?}, expected {expected:?}"),
@@ -157,8 +158,8 @@ fn the_loop_closes_near_the_poses_at_which_the_papers_a_vanishes() {
             };
             min_double_a = min_double_a.min((pose.gap.length_squared() - 100.0 * pose.gap.x).abs());
             let (theta2, theta3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
-            let gap = loop_residuals(&PAPER_HEAD, [theta1, theta2, theta3, theta4]);
-            assert!(gap[0].hypot(gap[1]) < 1e-12);
+            let [x, y] = loop_residuals(&PAPER_HEAD, [theta1, theta2, theta3, theta4]);
+            assert!(x.hypot(y) < 1e-12);
         }
     }
     assert!(

@@ -7,7 +7,7 @@ use lizard_kinematics::{Check, End, Limits, Lizard, Side, Vector};
 use proptest::prelude::*;
 
 use crate::reference::{
-    any_lizard, any_pose, any_solved_robot, circle_intersection, cis, config_with_cases,
+    any_lizard, any_pose, any_solved_lizard, circle_intersection, cis, config_with_cases,
 };
 
 /// The sine of the angle from `a` to `b`.
@@ -117,7 +117,7 @@ proptest! {
 
     #[test]
     fn violations_are_exactly_the_conditions_out_of_range(
-        (_, _, solution) in any_solved_robot(), limits in any_limits(),
+        (_, _, solution) in any_solved_lizard(), limits in any_limits(),
     ) {
         let mut expected = Vec::new();
         for (check, value) in solution.conditions() {
@@ -168,7 +168,7 @@ proptest! {
 
     #[test]
     fn crank_tips_end_points_and_arm_tips_lie_at_the_ends_of_their_links(
-        (robot, pose, solution) in any_solved_robot(),
+        (robot, pose, solution) in any_solved_lizard(),
     ) {
         prop_assume!(solution.head.type2.min(solution.tail.type2) > 1e-3);
         let l = &robot.links;
@@ -199,7 +199,7 @@ proptest! {
 
     #[test]
     fn point_angles_put_the_end_point_at_the_point(
-        (robot, pose, solution) in any_solved_robot(),
+        (robot, pose, solution) in any_solved_lizard(),
     ) {
         // `point_angles` returns only outward elbows, and loses digits near a singularity.
         prop_assume!(solution.margins.type1.iter().chain(&solution.margins.type2).all(|m| *m > 1e-2));

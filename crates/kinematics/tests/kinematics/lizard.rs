@@ -1,6 +1,6 @@
 //! The complete robot: loops, conventions, neutral pose, limits.
 
-use crate::reference::{any_solved_robot, cis, config_with_cases, loop_residuals, paper_lizard};
+use crate::reference::{any_solved_lizard, cis, config_with_cases, loop_residuals, paper_lizard};
 use lizard_kinematics::{Check, End, Limits, Vector, wrap};
 use proptest::prelude::*;
 
@@ -40,7 +40,7 @@ proptest! {
     #![proptest_config(config_with_cases(4096))]
 
     #[test]
-    fn all_four_loops_close_in_the_chassis_frame((robot, pose, solution) in any_solved_robot()) {
+    fn all_four_loops_close_in_the_chassis_frame((robot, pose, solution) in any_solved_lizard()) {
         let [t1, t4, t8, t5] = pose;
         // With angles in the chassis frame, one equation holds for both ends, although their own frames are mirrored.
         let head = loop_residuals(&robot.end(End::Head), [t1, solution.theta2(), solution.theta3(), t4]);

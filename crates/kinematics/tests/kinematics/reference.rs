@@ -1,5 +1,5 @@
 //! Random robots, and reference solutions of the same mechanisms: by Newton's method on the loop equations, and by
-//! intersections of circles with the law of cosines. The solutions share only the link lengths with the crate.
+//! intersecting circles, with the law of cosines. The solutions share only the link lengths with the crate.
 
 #![allow(dead_code)] // Unit tests and integration tests use different parts.
 
@@ -80,23 +80,23 @@ pub fn end_point_by_cosines(
 pub fn any_lizard() -> impl Strategy<Value = Lizard> {
     proptest::collection::vec(0.6..1.6f64, 20).prop_map(|factors| {
         let paper = paper_lizard();
-        let mut l = paper.links.to_array();
-        for (length, factor) in l.iter_mut().zip(factors) {
+        let mut lengths = paper.links.to_array();
+        for (length, factor) in lengths.iter_mut().zip(factors) {
             *length *= factor;
         }
-        l[15] = l[10];
+        lengths[15] = lengths[10];
         Lizard {
-            links: l.into(),
+            links: lengths.into(),
             ..paper
         }
     })
 }
 
 /// Random robots, each with a pose in which all loops close, and with its solution.
-pub fn any_solved_robot() -> impl Strategy<Value = (Lizard, [f64; 4], Solution)> {
-    (any_lizard(), any_pose()).prop_filter_map("a loop does not close", |(robot, pose)| {
-        let solution = robot.solve(&pose.into()).ok()?;
-        Some((robot, pose, solution))
+pub fn any_solved_lizard() -> impl Strategy<Value = (Lizard, [f64; 4], Solution)> {
+    (any_lizard(), any_pose()).prop_filter_map("a loop does not close", |(lizard, pose)| {
+        let solution = lizard.solve(&pose.into()).ok()?;
+        Some((lizard, pose, solution))
     })
 }
 

@@ -16,7 +16,7 @@ use crate::config::{RobotConfig, describe_open_loop, describe_violation};
 use crate::file::{Error, ReadResult};
 use crate::gaits::Gait;
 use crate::tables::Tables;
-use crate::units::{FRAMES_PER_SECOND, PHASES_PER_CYCLE, STEPS_PER_DEGREE};
+use crate::units::{FRAMES_PER_SECOND, PHASE_STEPS_PER_CYCLE, STEPS_PER_DEGREE};
 
 /// Number of evenly spaced phases in a cycle that are checked in addition to the tables' samples.
 const CHECKED_PHASE_COUNT: usize = 1024;
@@ -140,7 +140,7 @@ pub(crate) fn check_gait(
         let sweeps = tables.sweeps(index, phase);
         let angles = gait.angles_from_table(sweeps);
         let sweeps = Pose(sweeps.map(Sweep));
-        let phase = f64::from(phase) / PHASES_PER_CYCLE;
+        let phase = f64::from(phase) / PHASE_STEPS_PER_CYCLE;
         check_travels(gait, config, angles, phase)?;
         if let Some(hazard) = Clearance::measure(core_robot, &sweeps).first_hazard(core_robot) {
             guard_stop.get_or_insert((phase, check_of_hazard(&hazard)));

@@ -13,7 +13,7 @@ use crate::config::servo::LEG_NAMES;
 use crate::file::{Error, ReadResult, Table, read_for_each, suggest};
 use crate::gaits::gait::{Gait, Stride};
 use crate::gaits::path::{Harmonic, Path};
-use crate::gaits::path_leg::PathLeg;
+use crate::gaits::path_sweep::PathSweep;
 use crate::gaits::waveform::Waveform;
 
 /// The keys of a gait's table.
@@ -270,14 +270,14 @@ fn read_path(name: &str, table: &Table, config: &RobotConfig) -> ReadResult<[Str
             x: read_harmonics(&end_table, "x")?,
             y: read_harmonics(&end_table, "y")?,
         };
-        let legs = PathLeg::for_both_servos(config.lizard, config.neutral_angles(), end, &path)
+        let sweeps = PathSweep::for_both_servos(config.lizard, config.neutral_angles(), end, &path)
             .map_err(|problem| {
                 let consequence = format!("in \"{name}\" the {end} would not reach its path");
                 Error::with_consequence(end_table.key.clone(), consequence, problem)
             })?;
-        for (servo, leg) in legs {
+        for (servo, sweep) in sweeps {
             strides[servo] = Stride {
-                waveform: Waveform::Path(Box::new(leg)),
+                waveform: Waveform::Path(Box::new(sweep)),
                 start: 0.0,
                 amplitude: 1.0,
             };

@@ -8,7 +8,7 @@ mod bars;
 pub(crate) mod define;
 mod gait;
 mod path;
-mod path_leg;
+mod path_sweep;
 pub(crate) mod routine;
 mod waveform;
 
@@ -16,7 +16,7 @@ pub use bars::Bars;
 pub(crate) use gait::Gait;
 pub use gait::Stride;
 pub use path::{Harmonic, Path};
-pub use path_leg::PathLeg;
+pub use path_sweep::PathSweep;
 pub use routine::Routine;
 pub use waveform::Waveform;
 pub(crate) use waveform::canonicalize;

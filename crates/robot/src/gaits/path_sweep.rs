@@ -8,7 +8,7 @@ use crate::gaits::path::Path;
 
 /// The motion of one of the two servos that move the end point of the head or the tail along a path.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PathLeg {
+pub struct PathSweep {
     lizard: Lizard,
     /// The end whose point follows the path.
     end: End,
@@ -16,21 +16,21 @@ pub struct PathLeg {
     /// Index of the servo, 0 to 3.
     servo: usize,
     /// Neutral angle of this servo, deg.
-    neutral: f64,
+    neutral_angle: f64,
 }
 
-/// Number of points per cycle at which a path is checked to be within reach.
+/// Number of points per cycle at which `for_both_servos` checks that the path is within reach.
 const CHECKED_POINTS_PER_CYCLE: usize = 4096;
 
-impl PathLeg {
-    /// Creates the motions of both servos of the head or the tail, each with its servo's index. `neutral` contains the
-    /// neutral angles of all four servos, deg.
+impl PathSweep {
+    /// Creates the motions of both servos of the head or the tail, each with its servo's index. `neutral_angles` are
+    /// those of all four servos, deg.
     ///
     /// # Errors
     /// Returns a message if a point of the path is out of reach.
     pub(crate) fn for_both_servos(
         lizard: Lizard,
-        neutral: [f64; 4],
+        neutral_angles: [f64; 4],
         end: End,
         path: &Path,
     ) -> Result<[(usize, Self); 2], String> {
@@ -45,14 +45,14 @@ impl PathLeg {
             }
         }
         Ok(end.servos().map(|servo| {
-            let leg = Self {
+            let sweep = Self {
                 lizard,
                 end,
                 path: path.clone(),
                 servo,
-                neutral: neutral[servo],
+                neutral_angle: neutral_angles[servo],
             };
-            (servo, leg)
+            (servo, sweep)
         }))
     }
 
@@ -62,13 +62,13 @@ impl PathLeg {
             let point = self.path.point_at(phase);
             self.lizard.point_angles(self.end, point)
         };
-        // Between two points that `for_both_servos` has checked, the path may leave the reach by a fraction of a
+        // Between two points that `for_both_servos` has checked, the path may be out of reach by a fraction of a
         // millimetre. The nearest checked point then replaces the point beyond the reach.
         let count = CHECKED_POINTS_PER_CYCLE as f64;
         let checked_phase = (phase * count).round() % count / count;
         let angles = angles_at(phase).or_else(|_| angles_at(checked_phase));
         let angle = angles.expect("the checked point is within reach")[self.servo % 2];
-        FORWARD_TURN_SIGN[self.servo] * wrap(angle - self.neutral)
+        FORWARD_TURN_SIGN[self.servo] * wrap(angle - self.neutral_angle)
     }
 }
 
@@ -78,7 +78,7 @@ mod tests {
 
     #[test]
     fn a_path_that_leaves_the_reach_between_two_checked_points_is_rejected() {
-        // In the middle, the head reaches y = 79.3725 mm. The peaks at 79.3728 mm are halfway between checked points.
+        // At x = 0 the head reaches at most y = 79.3725 mm. The peaks at 79.3728 mm are halfway between checked points.
         let gait = "[gait.reach]\nperiod = 32.768\n[gait.reach.head]\ncentre = [0.0, 69.3728]\n\
                     y = [{ k = 16, amplitude = 10.0, shift = 0.001953125 }]";
         let error = paper_with_tables(gait).expect_err("the arms are straight at the peaks");

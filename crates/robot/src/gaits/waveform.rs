@@ -5,7 +5,7 @@
 //!
 //! A waveform maps the phase (one cycle = 1) to -1..1, foot forward = 1.
 
-use crate::gaits::path_leg::PathLeg;
+use crate::gaits::path_sweep::PathSweep;
 
 /// The fraction of the cycle that each of the five moves of a held gait takes.
 const MOVE_FRACTION: f64 = 0.2;
@@ -29,7 +29,7 @@ pub enum Waveform {
     },
     /// A leg whose servo follows a path of the head or tail point. The value is the sweep itself in degrees, so the
     /// amplitude is 1.
-    Path(Box<PathLeg>),
+    Path(Box<PathSweep>),
 }
 
 impl Waveform {

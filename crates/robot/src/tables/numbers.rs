@@ -80,13 +80,17 @@ pub(crate) fn build_content(
 }
 
 /// Computes the hash of the servos' numbers. A saved calibration contains this hash, so that the firmware uses it only
-/// with the servos for which it was made. Gaits, bars and limits do not change the hash.
-fn compute_servo_hash(pins: &[u8; 4], neutral: &[Angle; 4], calibration: &[Calibration; 4]) -> u32 {
+/// with the servos for which it was made. Link lengths, gaits and the table `[limits]` do not change the hash.
+fn compute_servo_hash(
+    pins: &[u8; 4],
+    neutral_angles: &[Angle; 4],
+    calibrations: &[Calibration; 4],
+) -> u32 {
     // Boards store this hash, so the text must not change, even if the fields are renamed.
-    let angles = neutral
+    let angles = neutral_angles
         .map(|angle| format!("Angle({})", angle.0))
         .join(", ");
-    let servos = calibration.each_ref().map(|servo| {
+    let servos = calibrations.each_ref().map(|servo| {
         let neutral = servo.neutral_width.0;
         let [min, max] = [servo.travel_min.0, servo.travel_max.0];
         let gain = servo.gain;
@@ -100,14 +104,14 @@ fn convert_five_bar(five_bar: &kinematics::FiveBar) -> FiveBarLengths {
     let scale = scale::find_five_bar_scale(five_bar);
     let to_length = |mm: f64| to_steps(mm, scale) as i16;
     // The crank tips are farthest apart if both cranks point outward. The core expects the squared distance in units of
-    // four squared steps, so half the distance is squared.
+    // four squared steps, so half the distance is squared. Two steps cover the rounding.
     let [base, left, right] = [
         five_bar.base,
         five_bar.left_crank_length,
         five_bar.right_crank_length,
     ]
     .map(to_length);
-    let half_tip_distance = (base as u32 + left as u32 + right as u32) / 2 + 2;
+    let max_half_tip_distance = (base as u32 + left as u32 + right as u32) / 2 + 2;
     let [left_coupler, right_coupler] =
         [five_bar.left_coupler_length, five_bar.right_coupler_length].map(to_length);
     FiveBarLengths {
@@ -118,7 +122,7 @@ fn convert_five_bar(five_bar: &kinematics::FiveBar) -> FiveBarLengths {
         can_nearly_stretch: Couplers::is_near_stretched(
             left_coupler,
             right_coupler,
-            half_tip_distance * half_tip_distance,
+            max_half_tip_distance * max_half_tip_distance,
         ),
     }
 }
@@ -290,7 +294,7 @@ mod tests {
 
     #[test]
     fn a_travel_of_a_whole_number_of_steps_keeps_its_last_step() {
-        // 9.2 and 10.4 us are not exact in binary, so the quotient may be slightly too small.
+        // Only 8.5 is exact in binary; with the other values, the quotient may be slightly too small.
         for us_per_degree in [7.3, -7.3, 8.5, 9.2, -10.4, 11.1] {
             for k in 1..=13 {
                 let half_width_us = f64::abs(us_per_degree) * 5.625 * f64::from(k);

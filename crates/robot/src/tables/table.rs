@@ -11,7 +11,7 @@ use lizard_core::numbers::units::CYCLE;
 use crate::config::servo::{FORWARD_TURN_SIGN, SERVO_NAMES};
 use crate::file::{Error, ReadResult};
 use crate::gaits::{Gait, Stride, Waveform, canonicalize, to_command};
-use crate::units::{FRAMES_PER_SECOND, ONE_Q14, PHASES_PER_CYCLE, STEPS_PER_DEGREE};
+use crate::units::{FRAMES_PER_SECOND, ONE_Q14, PHASE_STEPS_PER_CYCLE, STEPS_PER_DEGREE};
 
 /// Largest difference between two waveforms that share one table, deg: about a third of an angle step.
 const SHARED_WAVE_TOLERANCE_DEG: f64 = 0.002;
@@ -72,7 +72,7 @@ impl Tables {
             Channel {
                 wave: stride.wave_index as u16,
                 // A shift of one full cycle wraps to 0.
-                offset: (stride.lead.rem_euclid(1.0) * PHASES_PER_CYCLE).round() as u32 as u16,
+                offset: (stride.lead.rem_euclid(1.0) * PHASE_STEPS_PER_CYCLE).round() as u32 as u16,
                 gain: (gain * ONE_Q14).round() as i16,
             }
         };

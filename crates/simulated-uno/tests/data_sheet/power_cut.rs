@@ -11,7 +11,7 @@ const TWO_BYTES_PROGRAM: &str = "int main(void) {
     for (;;) {} }";
 
 /// Returns a UNO with [`TWO_BYTES_PROGRAM`] at power-on, and 0xa6 at address 0 of its EEPROM.
-fn uno_with_two_bytes() -> Uno {
+fn uno_writing_two_bytes() -> Uno {
     let mut uno = new_uno(compile(TWO_BYTES_PROGRAM));
     let mut contents = [0xff; EEPROM_SIZE];
     contents[0] = 0xa6;
@@ -19,10 +19,10 @@ fn uno_with_two_bytes() -> Uno {
     uno
 }
 
-/// Returns the UNO of [`uno_with_two_bytes`] after this power cut.
+/// Returns the UNO of [`uno_writing_two_bytes`] after this power cut; for `ones`, see [`Uno::cut_power`].
 #[track_caller]
 fn uno_after_cut(cut: PowerCut, ones: u8) -> Uno {
-    let mut uno = uno_with_two_bytes();
+    let mut uno = uno_writing_two_bytes();
     uno.cut_power(cut, ones);
     assert_eq!(*uno.run_ms(20), State::Off);
     uno
@@ -58,7 +58,7 @@ fn a_power_cut_in_the_write_phase_leaves_the_new_byte_with_the_chosen_bits_set()
 
 #[test]
 fn a_power_cut_at_a_cycle_tears_the_byte_according_to_its_phase() {
-    let mut unbroken_uno = uno_with_two_bytes();
+    let mut unbroken_uno = uno_writing_two_bytes();
     unbroken_uno.run_ms(20);
     let start = unbroken_uno.eeprom_operations()[1].cycle;
     for (delay_cycles, expected) in [
@@ -85,6 +85,7 @@ fn erase_only_operations_set_torn_bits_and_write_only_operations_keep_them() {
         assert_eq!(*uno.run_ms(5), State::Off);
         uno.eeprom()[0]
     };
+    // EEPM mode 1 only erases, mode 2 only writes.
     for cut in [PowerCut::InErase(0), PowerCut::InWrite(0)] {
         assert_eq!(tear_byte(1, cut, 0x11), 0xa6 | 0x11);
         assert_eq!(tear_byte(2, cut, 0x82), 0xa6 & (0x35 | 0x82));
@@ -121,7 +122,7 @@ fn a_power_cut_happens_once() {
 #[test]
 fn a_reset_before_a_power_cut_does_not_prevent_it() {
     for cut in [PowerCut::AtCycle(40_000), PowerCut::InWrite(0)] {
-        let mut uno = uno_with_two_bytes();
+        let mut uno = uno_writing_two_bytes();
         uno.cut_power(cut, 0x02);
         uno.run_ms(1);
         uno.reset();
@@ -133,7 +134,7 @@ fn a_reset_before_a_power_cut_does_not_prevent_it() {
 
 #[test]
 fn a_cancelled_power_cut_does_not_happen() {
-    let mut uno = uno_with_two_bytes();
+    let mut uno = uno_writing_two_bytes();
     uno.cut_power(PowerCut::AtCycle(60_000), 0);
     uno.cut_power(PowerCut::InErase(1), 0);
     uno.cancel_power_cut();
@@ -143,7 +144,7 @@ fn a_cancelled_power_cut_does_not_happen() {
 
 #[test]
 fn a_power_cycle_during_a_write_tears_the_byte() {
-    let mut uno = uno_with_two_bytes();
+    let mut uno = uno_writing_two_bytes();
     uno.set_torn_bits(0x40);
     uno.run_ms(1);
     uno.power_cycle();

@@ -129,7 +129,7 @@ fn robot_image(name: &str) -> Image {
 /// Reads the name of the robot that the firmware would load.
 fn read_robot_name(board: &BoardDouble) -> Option<String> {
     let robot = find_robot(&board.flash[..BOOT_ADDRESS])?;
-    Some(robot.robot_name().map(char::from).collect())
+    Some(robot.name().map(char::from).collect())
 }
 
 /// Creates the image of the firmware with the named robot.

@@ -5,7 +5,9 @@ use lizard_studio::render::{Studio, random_normal};
 use lizard_studio::walk::{Variation, Walk, paper_gait, true_displacement};
 use lizard_video::{CameraEstimate, Gait, Mean, MeasuredGait, Video, read_tags};
 
-use crate::studio::{FULL_SCALE, analyse, record_hand_held, record_walk, small_studio};
+use crate::studio::{
+    FULL_SCALE, analyse, low_resolution_studio, record_walk, record_walk_hand_held,
+};
 
 /// Records some cycles of a gait with a random camera, and measures them.
 fn record_and_measure(
@@ -194,7 +196,7 @@ fn a_hand_held_camera_measures_a_cycle_to_a_fifth_of_a_millimetre_and_half_a_deg
     studio.focal_length = 0.75;
     let start = [-2.5 * true_displacement(&gait).forward, 0.0, 0.0];
     let walk = Walk::new(&gait, start, 5, Variation::default(), &mut rng);
-    let video = record_hand_held(&studio, &walk, 12.0, 3.0, &mut rng);
+    let video = record_walk_hand_held(&studio, &walk, 12.0, 3.0, &mut rng);
     let (measured, camera) = analyse_and_measure(&video, &gait);
     assert!(camera.has_camera_moved);
     for (i, (mean, truth)) in means_and_truths(&measured, &gait).into_iter().enumerate() {
@@ -211,7 +213,7 @@ fn a_hand_held_camera_measures_a_cycle_to_a_fifth_of_a_millimetre_and_half_a_deg
 #[test]
 fn tags_found_near_their_last_positions_equal_those_of_a_full_search_even_after_a_jump() {
     let mut rng = Rng::with_seed(9);
-    let mut studio = small_studio(9, 25.0);
+    let mut studio = low_resolution_studio(9, 25.0);
     let mut video = Video::default();
     for i in 0..12 {
         let distance = f64::from(i) * 4.0;

@@ -5,7 +5,7 @@ use lizard_studio::render::Studio;
 use lizard_studio::walk::{Variation, Walk, paper_gait, true_displacement};
 
 use crate::accuracy::{check_accuracy, means_and_truths, read_environment_number};
-use crate::studio::{FULL_SCALE, record_hand_held, record_walk};
+use crate::studio::{FULL_SCALE, record_walk, record_walk_hand_held};
 
 /// Number of cycles in a video.
 const CYCLE_COUNT: usize = 6;
@@ -105,7 +105,7 @@ fn every_camera_measures_a_cycle_to_a_fifth_of_a_millimetre_and_half_a_degree() 
         let walk = Walk::new(&gait, start, CYCLE_COUNT, variation, &mut rng);
         let video = match camera.shake {
             0.0 => record_walk(&studio, &walk, frame_rate, &mut rng),
-            shake => record_hand_held(&studio, &walk, frame_rate, shake, &mut rng),
+            shake => record_walk_hand_held(&studio, &walk, frame_rate, shake, &mut rng),
         };
         let measured = video
             .measure(FULL_SCALE, &gait)

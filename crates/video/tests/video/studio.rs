@@ -6,7 +6,7 @@ use lizard_studio::render::{Pose, Studio, random_normal};
 use lizard_studio::walk::Walk;
 use lizard_video::{AnalysedVideo, Frame, Gait, Setup, Video};
 
-/// The setup for a sheet that is printed at full scale (1:1).
+/// The setup for a sheet that is printed at full scale (1:1), and a deck tag 83 mm above the floor.
 pub const FULL_SCALE: Setup = Setup {
     print_scale: 1.0,
     deck_height: 83.0,
@@ -17,14 +17,15 @@ pub const FRAME_RATE: f64 = 8.0;
 
 /// Returns the studio of most tests.
 pub fn studio() -> Studio {
-    small_studio(5, 20.0)
+    low_resolution_studio(5, 20.0)
 }
 
-/// Returns a studio with a fixed camera pose and a low resolution, in which the sheet fills the frame.
-pub fn small_studio(seed: u64, tilt: f64) -> Studio {
+/// Returns a random studio with a low resolution, whose camera is tilted by `camera_tilt` deg and so near that the sheet
+/// fills the frame.
+pub fn low_resolution_studio(seed: u64, camera_tilt: f64) -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(seed));
     (studio.size, studio.focal_length) = ([640, 360], 1.0);
-    studio.aim_camera(800.0, tilt);
+    studio.aim_camera(800.0, camera_tilt);
     studio
 }
 
@@ -46,7 +47,7 @@ pub fn record_walk(studio: &Studio, walk: &Walk, frame_rate: f64, rng: &mut Rng)
     record_robot(studio, walk.duration_s(), frame_rate, pose_at, rng)
 }
 
-/// Records a robot that moves as `pose_at` determines.
+/// Records a robot; `pose_at` returns its pose at a time, s.
 pub fn record_robot(
     studio: &Studio,
     duration_s: f64,
@@ -60,7 +61,7 @@ pub fn record_robot(
     })
 }
 
-/// Records frames at regular intervals; `frame_at` renders a frame at a time, s.
+/// Records frames at regular intervals; `frame_at` renders the frame at a given time, s.
 pub fn record_frames(
     duration_s: f64,
     frame_rate: f64,
@@ -76,7 +77,7 @@ pub fn record_frames(
 
 /// Records a walk with a hand-held camera. The standard deviation of its position is `shake` mm, that of its angles
 /// `shake / 10` deg.
-pub fn record_hand_held(
+pub fn record_walk_hand_held(
     studio: &Studio,
     walk: &Walk,
     frame_rate: f64,
@@ -94,7 +95,7 @@ pub fn record_hand_held(
     })
 }
 
-/// Returns a gait that moves `scale` times as far.
+/// Returns a gait that moves and turns `scale` times as far.
 pub fn scaled_gait(gait: &Gait, scale: f64) -> Gait {
     let scale_pose = |pose: &BodyPose| BodyPose {
         forward: scale * pose.forward,

@@ -21,7 +21,7 @@ export const signsStep: Step = {
     const { servo, currentTurn } = dialog;
     const name = `A${servo + 1}`;
     return [
-      paragraph(`${formatServo(servo)}: only this servo turns, by 10°. Look from above.`),
+      paragraph(`${formatServo(servo)}: only this servo turns, by 10° or less. Look from above.`),
       row(button(currentTurn ? `Turn ${name} again` : `Turn ${name}`, () => turnServo(dialog), !currentTurn)),
       ...(currentTurn ? makeQuestion(dialog, currentTurn) : []),
       note('Do not skip this step: with a wrong sign, the robot would treat an unsafe pose as safe.'),

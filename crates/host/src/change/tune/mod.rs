@@ -79,8 +79,8 @@ impl Spreadable for Args {
 ///
 /// # Errors
 /// Fails if robot.toml, the rate or the name is invalid, if the gait does not exist or cannot be tuned, if the search
-/// finds no gait within the limits, or if the output cannot be written. Also fails, after the output, if robot.toml
-/// has no room for the new gait.
+/// finds no gait within the limits, or if the output cannot be written. Also fails, after an output in which the new
+/// gait is a comment, if robot.toml has no room for it.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     // The output may be appended to robot.toml, so the old text is read first.
@@ -88,8 +88,26 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let Some(comparison) = tune(&robot, &args)? else {
         return Ok(());
     };
-    json::print_json_or_text(args.json, &comparison, || report::format(&comparison))?;
-    check_room(robot_toml, &comparison.fragment)
+    let room = check_room(robot_toml, &comparison.fragment);
+    json::print_json_or_text(args.json, &comparison, || {
+        format_addition(&comparison, room.is_ok())
+    })?;
+    room
+}
+
+/// Formats the comparison so that it can be appended to robot.toml: if there is no room for the new gait, its table is
+/// also a comment.
+fn format_addition(comparison: &Comparison, has_room: bool) -> String {
+    let text = report::format(comparison);
+    if has_room {
+        return text;
+    }
+    let lines = text.lines().map(|line| match line {
+        "" => "\n".to_owned(),
+        line if line.starts_with('#') => format!("{line}\n"),
+        line => format!("# {line}\n"),
+    });
+    lines.collect()
 }
 
 /// Refuses the table of a new gait with which robot.toml would be invalid, for example too large for the board.
@@ -226,6 +244,15 @@ mod tests {
         let forward = forward.expect("the contact model predicts the distance");
         let speed = forward / gait.period();
         assert!((speed - tuned.predicted).abs() < 0.01, "{forward}");
+        // Appended to a full robot.toml, the text changes nothing.
+        let full_toml = fill_board();
+        assert!(check_room(&full_toml, &comparison.fragment).is_err());
+        let addition = format_addition(&comparison, false);
+        let robot = Robot::parse(&format!("{full_toml}\n{addition}"));
+        let robot = robot.expect("the addition is a comment");
+        assert!(robot.gait("tuned").is_none(), "{addition}");
+        assert!(addition.contains("\n# [gait.tuned]\n"), "{addition}");
+        assert_eq!(format_addition(&comparison, true), printed);
         let docs = include_str!("../../../../../docs/twin.md");
         let is_quoted = docs.contains(&format!("```text\n{printed}```"));
         assert!(is_quoted, "docs/twin.md does not quote\n{printed}");
@@ -268,16 +295,16 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_gait_for_which_the_board_has_no_room_is_refused() {
-        let format_gait = |name: &str, duty: usize| {
-            format!(
-                "[gait.{name}]\nperiod = 2.0\nwaveform = \"wave\"\nduty = 0.{duty}\namplitude = 10.0\n\
-                 start = {{ LF = 0.25, RF = 0.75, RH = 0.5, LH = 0.0 }}\n"
-            )
-        };
-        let new_gait = format_gait("tuned", 72);
-        assert!(check_room(PAPER_TOML, &new_gait).is_ok());
+    /// Formats a gait's table.
+    fn format_gait(name: &str, duty: usize) -> String {
+        format!(
+            "[gait.{name}]\nperiod = 2.0\nwaveform = \"wave\"\nduty = 0.{duty}\namplitude = 10.0\n\
+             start = {{ LF = 0.25, RF = 0.75, RH = 0.5, LH = 0.0 }}\n"
+        )
+    }
+
+    /// Returns the paper's robot.toml with as many further gaits as the board has room for.
+    fn fill_board() -> String {
         // Each of these gaits has its own waveform.
         let mut full_toml = PAPER_TOML.to_owned();
         for duty in 51..72 {
@@ -287,7 +314,14 @@ mod tests {
             }
             full_toml = next_toml;
         }
-        let failure = check_room(&full_toml, &new_gait).expect_err("the board is full");
+        full_toml
+    }
+
+    #[test]
+    fn a_gait_for_which_the_board_has_no_room_is_refused() {
+        let new_gait = format_gait("tuned", 72);
+        assert!(check_room(PAPER_TOML, &new_gait).is_ok());
+        let failure = check_room(&fill_board(), &new_gait).expect_err("the board is full");
         let message = failure.to_string();
         assert!(
             message.contains("the board's limit of 4096 bytes"),

@@ -18,7 +18,8 @@ use crate::shared::files;
 /// Save the robot's calibration to a file
 ///
 /// Writes the servos' trims, limits, signs and scales, `boot` and `deadman` as TOML.
-/// Opening the port resets the board, so these are the last saved values.
+/// Opening a USB port resets the board, so these are the last saved values. By radio they
+/// are the active values, saved or not.
 #[derive(clap::Args, Debug)]
 pub struct BackupArgs {
     /// The file to write; an existing file is replaced

@@ -1,6 +1,7 @@
 //! Connecting to a board: from the command's arguments to the board's first line.
 
 use std::cell::OnceCell;
+use std::io::{self, Write};
 use std::path::PathBuf;
 
 use serialport::SerialPort;
@@ -148,7 +149,12 @@ impl BoardFinder {
     /// Fails as [`BoardFinder::open`] does, or if no lizard answers.
     pub fn connect(&self) -> Result<(Connection, Option<String>), Failure> {
         let mut board = self.open()?;
-        eprintln!("lizard: waiting for the board at {}", board.name);
+        // A closed standard error must not end the program, so `eprintln`, which may panic, is not used.
+        let _ = writeln!(
+            io::stderr(),
+            "lizard: waiting for the board at {}",
+            board.name
+        );
         let banner = board.link.wait_for_robot();
         let banner = banner.map_err(|error| board.to_failure(error))?;
         Ok((board, banner))

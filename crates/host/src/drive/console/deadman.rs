@@ -11,9 +11,17 @@ use lizard_core::console::word::Word;
 /// The `deadman` while a person drives, ms, unless the robot's own is shorter. Users set round numbers; a robot with
 /// this value therefore got it from a program that ended without restoring the setting.
 const DRIVING_DEADMAN_MS: u16 = 901;
-/// Interval between the lines that keep the robot walking. It is so short that two of three lines may be lost, even if
-/// the robot's own setting is somewhat shorter than [`DRIVING_DEADMAN_MS`].
+/// Interval between the lines that keep the robot walking, even while an answer is outstanding. It is so short that two
+/// of three lines may be lost, even if the robot's own setting is somewhat shorter than [`DRIVING_DEADMAN_MS`].
 pub(super) const LINE_INTERVAL: Duration = Duration::from_millis(200);
+
+/// Returns the `deadman` while a person drives a robot with this setting of its own, both in ms.
+pub(super) fn limit_deadman_ms(own_ms: u16) -> u16 {
+    match own_ms {
+        0 => DRIVING_DEADMAN_MS,
+        own_ms => own_ms.min(DRIVING_DEADMAN_MS),
+    }
+}
 
 /// A line that reads or sets `deadman`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -101,8 +109,7 @@ impl Deadman {
             DeadmanLine::RestoreForOneLine => {}
         }
         let ms = match (deadman_line, self.own_ms?) {
-            (DeadmanLine::Set, 0) => DRIVING_DEADMAN_MS,
-            (DeadmanLine::Set, own_ms) => own_ms.min(DRIVING_DEADMAN_MS),
+            (DeadmanLine::Set, own_ms) => limit_deadman_ms(own_ms),
             (_, own_ms) => own_ms,
         };
         Some(format!("deadman {ms}"))

@@ -44,6 +44,8 @@ pub struct ConsoleArgs {
 const ROBOT_READ_TIMEOUT: Duration = Duration::from_millis(10);
 /// Pause before each attempt to reopen a vanished port.
 const RETRY_INTERVAL: Duration = Duration::from_millis(300);
+/// Longest wait for the answer to `stop` after the user has quit.
+const MAX_STOPPING_TIME: Duration = Duration::from_secs(2);
 
 /// Runs `lizard console`.
 ///
@@ -134,11 +136,28 @@ impl Dialogue {
         }
     }
 
-    /// Sends the lines from standard input. A port that does not reset the board when it is opened may be a radio link:
-    /// then `deadman` is set as for a person, and stays set after the last line if the robot is still walking.
+    /// Sends the lines from standard input, as [`Dialogue::send_script`] does. After an error, for example if the
+    /// output cannot be written, stops the robot: the rest of the script, which may stop it, is not sent.
     fn run_script(
         mut self,
         mut board: Connection,
+        first_line: &str,
+        is_reset_by_opening: bool,
+    ) -> Result<(), Failure> {
+        let sent = self.send_script(&mut board, first_line, is_reset_by_opening);
+        if sent.is_err() {
+            // The port may be gone.
+            let _ = board.link.send("stop");
+        }
+        sent?;
+        self.session.check_all_accepted()
+    }
+
+    /// Sends the lines from standard input. A port that does not reset the board when it is opened may be a radio link:
+    /// then `deadman` is set as for a person, and stays set after the last line if the robot is still walking.
+    fn send_script(
+        &mut self,
+        board: &mut Connection,
         first_line: &str,
         is_reset_by_opening: bool,
     ) -> Result<(), Failure> {
@@ -166,7 +185,7 @@ impl Dialogue {
                     Err(TryRecvError::Disconnected) => has_input_ended = true,
                 }
             }
-            let outcome = self.exchange_lines(&mut board, |line| writeln!(out, "{line}"));
+            let outcome = self.exchange_lines(board, |line| writeln!(out, "{line}"));
             if matches!(outcome, Err(DialogueError::Link(LinkError::Gone))) {
                 self.record(Event::Gone)?;
             }
@@ -175,12 +194,12 @@ impl Dialogue {
         if self.session.is_driven() {
             writeln!(out, "(no more lines: the robot now stops by itself)")?;
         } else if !self.session.status().is_some_and(Status::is_walking) {
-            self.restore_deadman(&mut board);
+            self.restore_deadman(board);
         }
         if let Some(recorder) = &mut self.recorder {
             recorder.flush()?;
         }
-        self.session.check_all_accepted()
+        Ok(())
     }
 
     /// Sends the robot's own `deadman` if it was replaced; returns false if the robot does not confirm it.
@@ -231,23 +250,30 @@ impl Dialogue {
             let prefix = if self.recorder.is_some() { "REC  " } else { "" };
             screen.draw(&format!("{prefix}{status}"), &prompt)?;
         }
-        // After a failure, the `deadman` for driving stays set, so that the robot stops by itself.
-        let has_quit = fatal_failure.is_none();
+        // After a failure, or if the terminal was closed, nobody can stop the robot. The `deadman` for driving then
+        // stays set, so that the robot stops by itself.
+        let has_quit = fatal_failure.is_none() && terminal::is_open();
         let mut is_restored = true;
+        let was_stopping = self.session.is_stopping();
         if has_quit && let Some(board) = &mut board {
             // The terminal may be closed.
             let _ = screen.draw("waiting for the robot", &prompt);
+            self.finish_stop(board, &mut screen);
             is_restored = self.restore_deadman(board);
         }
         drop(screen);
         history::save(prompt.history());
-        let is_walking = self.session.status().is_some_and(Status::is_walking);
-        if has_quit && (is_walking || !is_restored) && board.is_some() && !finder.is_simulated() {
-            let message = match is_restored {
-                true => "the robot continues its gait",
-                false => {
-                    "(the robot has not confirmed its `deadman` setting: a gait may end by itself)"
-                }
+        // The latest status may be older than a `stop`.
+        let is_walking = !was_stopping && self.session.status().is_some_and(Status::is_walking);
+        let is_stopping = self.session.is_stopping();
+        let has_message = is_walking || is_stopping || !is_restored;
+        if has_quit && has_message && board.is_some() && !finder.is_simulated() {
+            let message = if is_stopping {
+                "(no answer to `stop`: the robot may still move)"
+            } else if is_restored {
+                "the robot continues its gait"
+            } else {
+                "(the robot has not confirmed its `deadman` setting: a gait may end by itself)"
             };
             // The terminal may be closed; a failed message is not an error.
             let _ = writeln!(io::stdout(), "{message}");
@@ -256,6 +282,18 @@ impl Dialogue {
             recorder.flush()?;
         }
         fatal_failure.map_or(Ok(()), Err)
+    }
+
+    /// Repeats an unanswered `stop` before the program ends, at most for [`MAX_STOPPING_TIME`]. A link that fails in
+    /// the meantime is not an error, because the user has quit.
+    fn finish_stop(&mut self, board: &mut Connection, screen: &mut Screen) {
+        let end = self.clock.now() + MAX_STOPPING_TIME;
+        while self.session.is_stopping() && self.clock.now() < end {
+            let exchanged = self.exchange_lines(board, |line| screen.print(line));
+            if exchanged.is_err() {
+                break;
+            }
+        }
     }
 
     /// Handles the pressed keys; returns true if the user quits.
@@ -307,10 +345,12 @@ impl Dialogue {
                 if let Some(banner) = &banner {
                     self.record(Event::Note(banner.clone()))?;
                 }
+                let is_reset = banner.is_some();
                 let banner = banner.unwrap_or_default();
                 screen.print(&format!("{} is connected again: {banner}", board.name))?;
                 let is_recorded = self.recorder.is_some();
-                for message in self.session.restart(self.clock.now(), is_recorded) {
+                let now = self.clock.now();
+                for message in self.session.restart(now, is_recorded, is_reset) {
                     screen.print(&message)?;
                 }
                 Ok(Some(board))

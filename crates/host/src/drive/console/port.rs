@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use serialport::{ErrorKind, SerialPort};
+use serialport::{ErrorKind, SerialPort, SerialPortBuilder};
 
 use super::usb_ports;
 
@@ -81,21 +81,27 @@ pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     if let Some(holder) = find_persistent_holder(name) {
         return Err(busy_error(holder));
     }
-    let result = serialport::new(name, BAUD_RATE)
-        .timeout(READ_TIMEOUT)
-        .open();
-    result.map_err(|error| match error.kind() {
-        ErrorKind::Io(io::ErrorKind::PermissionDenied) => PortError::Forbidden(name.to_owned()),
-        ErrorKind::Io(io::ErrorKind::NotFound) => missing_port_error(name),
-        // Windows reports a missing port and a busy port by the same error.
-        ErrorKind::NoDevice if cfg!(windows) && !is_listed(name) => missing_port_error(name),
-        ErrorKind::NoDevice => busy_error("another program".to_owned()),
-        _ if cfg!(unix) && is_not_terminal(name) => PortError::NotAPort(name.to_owned()),
-        _ => PortError::Other {
-            name: name.to_owned(),
-            error,
-        },
-    })
+    port_builder(name)
+        .open()
+        .map_err(|error| match error.kind() {
+            ErrorKind::Io(io::ErrorKind::PermissionDenied) => PortError::Forbidden(name.to_owned()),
+            ErrorKind::Io(io::ErrorKind::NotFound) => missing_port_error(name),
+            // Windows reports a missing port and a busy port by the same error.
+            ErrorKind::NoDevice if cfg!(windows) && !is_listed(name) => missing_port_error(name),
+            ErrorKind::NoDevice => busy_error("another program".to_owned()),
+            _ if cfg!(unix) && is_not_terminal(name) => PortError::NotAPort(name.to_owned()),
+            _ => PortError::Other {
+                name: name.to_owned(),
+                error,
+            },
+        })
+}
+
+/// Returns the settings of a port. The line DTR, which resets a UNO, is set explicitly: Linux sets it when a port is
+/// opened, but Windows does not. A port without this line, such as a pseudo terminal, opens, too.
+fn port_builder(name: &str) -> SerialPortBuilder {
+    let builder = serialport::new(name, BAUD_RATE).timeout(READ_TIMEOUT);
+    builder.dtr_on_open(true)
 }
 
 /// True if this user may open a port. Does not open the port, which would reset a UNO.
@@ -174,10 +180,20 @@ fn is_memory_device(_: &str) -> bool {
     false
 }
 
-/// True if the file can be opened and is not a terminal. On Unix, every serial port is a terminal.
+/// True if the file is not a terminal. On Unix, every serial port is a terminal, which is a character device. Only such
+/// a device is opened, because the opening of a FIFO would wait for a program that writes to it.
+#[cfg(unix)]
 fn is_not_terminal(name: &str) -> bool {
     use std::io::IsTerminal;
-    std::fs::File::open(name).is_ok_and(|file| !file.is_terminal())
+    use std::os::unix::fs::FileTypeExt;
+    let is_device = |metadata: std::fs::Metadata| metadata.file_type().is_char_device();
+    !Path::new(name).metadata().is_ok_and(is_device)
+        || std::fs::File::open(name).is_ok_and(|file| !file.is_terminal())
+}
+
+#[cfg(not(unix))]
+fn is_not_terminal(_: &str) -> bool {
+    false
 }
 
 #[cfg(test)]
@@ -191,11 +207,31 @@ mod tests {
         open(name).expect_err("the port must not open")
     }
 
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_fifo_is_refused_although_no_program_writes_to_it() {
+        use rustix::fs::{CWD, FileType, Mode, mknodat};
+        let folder = tempfile::tempdir().expect("a temporary folder is created");
+        let fifo = folder.path().join("fifo");
+        let created = mknodat(CWD, &fifo, FileType::Fifo, Mode::RWXU, 0);
+        created.expect("the FIFO is created");
+        let name = fifo.display().to_string();
+        let expected = format!("{name} is not a serial port");
+        let message = TIME_LIMIT.run("a refusal", move || open_error(&name).to_string());
+        assert_eq!(message, expected);
+    }
+
     /// Creates a file, which is not a port; also returns its name.
     fn create_file() -> (tempfile::NamedTempFile, String) {
         let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
         let name = file.path().display().to_string();
         (file, name)
+    }
+
+    #[test]
+    fn opening_a_port_sets_the_line_that_resets_a_uno_on_every_system() {
+        let builder = port_builder("COM3");
+        assert_eq!(builder, builder.clone().dtr_on_open(true));
     }
 
     #[test]

@@ -15,8 +15,11 @@ use crate::Failure;
 use lizard_robot::Status;
 
 use answer::{can_answer, is_stop_refusal};
+use request::{Request, UnansweredStop};
 
 pub(super) mod answer;
+mod request;
+mod reset;
 
 /// Interval between two `status` lines while no person drives the robot.
 const STATUS_INTERVAL: Duration = Duration::from_millis(500);
@@ -30,43 +33,6 @@ const STOP_INTERVAL: Duration = Duration::from_millis(250);
 const LATE_ANSWER_TIME: Duration = Duration::from_millis(500);
 /// Time without an answer to `stop` before the user is informed.
 const SILENCE_TIMEOUT: Duration = Duration::from_millis(800);
-
-/// A line that waits to be sent, or for its answer.
-#[derive(Debug)]
-enum Request {
-    /// A user's line.
-    Line(String),
-    /// The program's own `status`.
-    Status,
-    /// The program's own `watch`.
-    Watch,
-    /// The program's own line about `deadman`.
-    Deadman(DeadmanLine),
-}
-
-/// An unanswered `stop`.
-#[derive(Debug)]
-struct UnansweredStop {
-    /// Time of the user's request, or of the board's reconnection.
-    request_time: Instant,
-    /// Time of the next `stop` line.
-    next_send_time: Instant,
-    /// Number of `stop` lines sent.
-    sent_count: u32,
-    /// True once the user has been informed of the missing answer.
-    is_reported: bool,
-}
-
-impl UnansweredStop {
-    fn new(now: Instant) -> Self {
-        Self {
-            request_time: now,
-            next_send_time: now,
-            sent_count: 0,
-            is_reported: false,
-        }
-    }
-}
 
 /// The state of a dialogue with the robot.
 #[derive(Debug)]
@@ -94,6 +60,8 @@ pub struct Session {
     is_watch_due: bool,
     /// The robot's latest status.
     status: Option<Status>,
+    /// The number of frames since the robot's reset in its latest status.
+    frame_count: u64,
     /// The events since the last call of `take_events`.
     events: Vec<Event>,
     /// Number of the user's lines that were sent or failed, including each `stop`.
@@ -118,6 +86,7 @@ impl Session {
             watches_poses,
             is_watch_due: watches_poses,
             status: None,
+            frame_count: 0,
             events: Vec::new(),
             user_line_count: 0,
             failures: Vec::new(),
@@ -150,8 +119,12 @@ impl Session {
     }
 
     /// Returns the line that restores the robot's own `deadman` before the program ends, so that the robot continues
-    /// its gait; `None` if `deadman` is not set.
+    /// its gait; `None` if `deadman` is not set. Also `None` if the robot has not answered `stop`: it may still walk,
+    /// and then stops by itself.
     pub fn restore_deadman(&mut self) -> Option<String> {
+        if self.is_stopping() {
+            return None;
+        }
         let deadman = self.deadman.as_mut();
         let overridden = deadman.filter(|deadman| deadman.is_overridden)?;
         overridden.apply_line(DeadmanLine::Restore)
@@ -167,6 +140,11 @@ impl Session {
         self.deadman.as_ref().is_some_and(Deadman::is_driving)
     }
 
+    /// True while a `stop` is unanswered.
+    pub fn is_stopping(&self) -> bool {
+        self.unanswered_stop.is_some()
+    }
+
     /// Stops the robot. Queued lines are dropped, because they could start it again. Lines about `deadman` stay: an
     /// earlier line may have restored the robot's own setting for a dropped line.
     pub fn stop(&mut self, now: Instant) {
@@ -176,27 +154,6 @@ impl Session {
         self.user_line_count += 1;
         self.events.push(Event::Sent("stop".to_owned()));
         self.unanswered_stop.get_or_insert(UnansweredStop::new(now));
-    }
-
-    /// Starts over with a board that was plugged in again. An unanswered `stop` is repeated. The user's other waiting
-    /// lines are dropped; returns a message about each of them.
-    pub fn restart(&mut self, now: Instant, watches_poses: bool) -> Vec<String> {
-        let pending_request = self.pending_request.take().map(|(request, ..)| request);
-        let requests = pending_request.into_iter().chain(self.queue.drain(..));
-        let to_message = |request| match request {
-            Request::Line(line) => Some(format!("(not sent or not answered: `{line}`)")),
-            _ => None,
-        };
-        let messages = requests.filter_map(to_message).collect();
-        let unanswered_stop = self.unanswered_stop.take();
-        *self = Self {
-            // The board could not answer while it was unplugged.
-            unanswered_stop: unanswered_stop.map(|_| UnansweredStop::new(now)),
-            events: self.take_events(),
-            ..Self::new(now, self.polls_status, watches_poses)
-        }
-        .with_deadman();
-        messages
     }
 
     /// Takes the line to send now; `None` if no line is due, or if an answer must come first.
@@ -210,7 +167,10 @@ impl Session {
             self.late_answers_until = now + LATE_ANSWER_TIME;
             return Some("stop".to_owned());
         }
-        if self.pending_request.is_some() || now < self.late_answers_until {
+        if self.pending_request.is_some() {
+            return self.take_extra_status(now);
+        }
+        if now < self.late_answers_until {
             return None;
         }
         let request = if std::mem::take(&mut self.is_watch_due) {
@@ -246,15 +206,29 @@ impl Session {
         Some(line)
     }
 
+    /// Takes an additional `status` while an answer is outstanding and `deadman` is set: the link may have lost the
+    /// answer, and the robot would end its gait before the end of the wait.
+    fn take_extra_status(&mut self, now: Instant) -> Option<String> {
+        let is_overridden = (self.deadman.as_ref()).is_some_and(|deadman| deadman.is_overridden);
+        if !self.polls_status || !is_overridden || now < self.next_status_time {
+            return None;
+        }
+        self.next_status_time = now + deadman::LINE_INTERVAL;
+        Some("status".to_owned())
+    }
+
     /// Records that the robot has not confirmed a line about `deadman`; returns the message to the user.
-    /// [`DeadmanLine::Restore`] is sent again after the next status in which the robot does not walk. After any other
-    /// line, drops the queued lines, because the robot would keep walking out of range.
+    /// [`DeadmanLine::Restore`] is sent again after the next status in which the robot does not walk, and before a
+    /// queued line that needs it. After any other line, drops the queued lines, because the robot would keep walking
+    /// out of range.
     fn record_unconfirmed_deadman(&mut self, deadman_line: DeadmanLine) -> String {
         if let Some(deadman) = &mut self.deadman {
             deadman.record_unconfirmed();
         }
         let failure_count = self.failures.len();
-        if deadman_line != DeadmanLine::Restore {
+        if deadman_line == DeadmanLine::Restore {
+            self.plan_queue_again();
+        } else {
             for request in std::mem::take(&mut self.queue) {
                 if let Request::Line(line) = request {
                     self.user_line_count += 1;
@@ -303,14 +277,7 @@ impl Session {
         if line.starts_with('#') {
             self.events.push(Event::from_note(line));
             if line.starts_with(BANNER_START) {
-                self.is_watch_due = self.watches_poses;
-                self.deadman = self.deadman.take().map(|_| Deadman::default());
-                // The queued lines about `deadman` belong to the time before the reset.
-                for request in std::mem::take(&mut self.queue) {
-                    if let Request::Line(queued_line) = request {
-                        self.queue(&queued_line);
-                    }
-                }
+                self.begin_after_reset();
                 // The board was reset and will not answer the request.
                 if let Some((Request::Line(sent_line), ..)) = self.pending_request.take() {
                     let message = format!("{line} (no answer to `{sent_line}`)");
@@ -322,6 +289,9 @@ impl Session {
         }
         self.is_silent = false;
         let status = Status::parse(line);
+        if let Some(status) = &status {
+            self.receive_frame_count(status.frames);
+        }
         self.status = status.clone().or(self.status.take());
         let is_answered = |(request, sent_line, _): &mut (Request, String, _)| match request {
             // A late answer may belong to an earlier line with the other value.
@@ -354,6 +324,11 @@ impl Session {
                     deadman.record_accepted_line(&sent_line);
                 }
             }
+            // The answer to an additional or a late `status` of the program.
+            _ if self.polls_status && status.is_some() => {
+                self.events.push(Event::Status(line.to_owned()));
+                return None;
+            }
             _ => {}
         }
         self.events.push(Event::Answer(line.to_owned()));
@@ -376,6 +351,9 @@ impl Session {
         match self.pending_request.take() {
             Some((Request::Line(sent_line), ..)) => self.record_failure(sent_line, "no answer"),
             Some((Request::Deadman(line), ..)) if line != DeadmanLine::RestoreForOneLine => {
+                if let (DeadmanLine::Restore, Some(deadman)) = (line, &mut self.deadman) {
+                    deadman.record_unconfirmed();
+                }
                 self.queue.push_front(Request::Deadman(line));
             }
             _ => {}

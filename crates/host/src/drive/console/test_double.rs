@@ -56,6 +56,14 @@ impl BoardDouble {
         self.collect_output();
     }
 
+    /// Lets time pass, in which the robot receives nothing.
+    pub fn run_frames(&mut self, count: u32) {
+        for _ in 0..count {
+            self.running_robot.run_frame();
+            self.collect_output();
+        }
+    }
+
     /// Moves the robot's pending output into `output`.
     fn collect_output(&mut self) {
         self.running_robot.settle();

@@ -77,6 +77,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         Some(path) => image_source::read_hex_image(path)?,
         None => image_source::build_image(&args.robot.load()?, args.only_robot)?,
     };
+    let source = match &args.image {
+        Some(path) => path.display().to_string(),
+        None => args.robot.name()?,
+    };
     let ports = usb_ports::list();
     let (port, board_name) = match args.port {
         Some(port) => (port.clone(), port),
@@ -90,7 +94,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         may_be_nano: may_be_nano(&ports, &port),
     };
     let board = SerialBoard::open(&port)?;
-    eprintln!("lizard: contacting the boot loader of the board at {board_name}");
+    print_error(&format!("lizard: writing {source}"));
+    print_error(&format!(
+        "lizard: contacting the boot loader of the board at {board_name}"
+    ));
     let port_failure = |message: String| Failure::Operation(format!("{board_name}: {message}"));
     let (board, page_counts) = write_image(board, &image, target, args.json)
         .map_err(|error| port_failure(error.to_string()))?;
@@ -145,8 +152,6 @@ fn write_image(
     target: Target,
     prints_json: bool,
 ) -> Result<(SerialBoard, PageCounts), Failure> {
-    // Closed standard streams do not stop the upload.
-    let print_error = |line: &str| _ = writeln!(io::stderr(), "{line}");
     let print_line = |line: &str| match prints_json {
         true => print_error(line),
         false => _ = writeln!(io::stdout(), "{line}"),
@@ -185,8 +190,23 @@ fn write_image(
     let page_counts = result.map_err(to_failure)?;
     print_line(&format_summary(page_counts, start.elapsed()));
     let mut board = loader.into_board();
-    board.set_baud_rate(BAUD_RATE)?;
+    prepare_for_console(&mut board)?;
     Ok((board, page_counts))
+}
+
+/// Prints a line to standard error. A closed stream does not stop the upload.
+fn print_error(line: &str) {
+    let _ = writeln!(io::stderr(), "{line}");
+}
+
+/// Sets the console's baud rate after an upload.
+fn prepare_for_console(board: &mut SerialBoard) -> Result<(), Failure> {
+    board.set_baud_rate(BAUD_RATE).map_err(|error| {
+        Failure::Operation(format!(
+            "the flash is written and verified, but the port no longer works: {error}; if the cable is unplugged, \
+             connect it again"
+        ))
+    })
 }
 
 /// Converts an upload's error to a failure that also names the option that helps.
@@ -228,6 +248,25 @@ mod tests {
         assert_eq!(summarise(2, 210), partial_text);
         let unchanged_text = "nothing to write: all 27136 bytes are correct; 1.2 s";
         assert_eq!(summarise(0, 212), unchanged_text);
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn the_error_for_a_cable_that_is_pulled_after_the_upload_says_that_the_flash_is_written() {
+        use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
+        let device = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY);
+        let device = device.expect("a pseudo terminal can be opened");
+        unlockpt(&device).expect("the pseudo terminal can be unlocked");
+        let name = ptsname(&device, Vec::new()).expect("the pseudo terminal has a name");
+        let name = name.to_str().expect("the name is ASCII");
+        let mut board = SerialBoard::open(name).expect("the port opens");
+        prepare_for_console(&mut board).expect("the port works");
+        drop(device);
+        let failure = prepare_for_console(&mut board).expect_err("the port is gone");
+        assert_eq!(failure.exit_code(), 1);
+        let start = "the flash is written and verified, but the port no longer works: ";
+        let message = failure.to_string();
+        assert!(message.starts_with(start), "{message}");
     }
 
     fn port(name: &str, vendor_id: u16) -> UsbPort {

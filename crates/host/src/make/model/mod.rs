@@ -23,15 +23,15 @@ use long_foot::FootOffset;
 /// close the loops. With --drive, the firmware runs on the simulated UNO, and the file gets a keyframe
 /// for each frame of its pulses, which `tools/physics/view.py` plays (docs/judges.md).
 ///
-/// URDF and SDF refer to meshes, which are written to a folder beside the file, `robot-meshes` for
-/// robot.urdf. SDF closes the loops with joints. URDF cannot: its legs follow the servos, its couplers
-/// and sliders are free, and the frames `closing_..._1` and `closing_..._2` must coincide
+/// URDF and SDF refer to meshes, which are written to a folder beside the file, `robot-urdf-meshes`
+/// for robot.urdf. SDF closes the loops with joints. URDF cannot: its legs follow the servos, its
+/// couplers and sliders are free, and the frames `closing_..._1` and `closing_..._2` must coincide
 /// (docs/models.md).
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard model out/robot.urdf
   lizard model out/robot.sdf --robot robots/large.toml
-  lizard model urdf/robot.urdf --mesh-address package://my_robot/urdf/robot-meshes
+  lizard model urdf/robot.urdf --mesh-address package://my_robot/urdf/robot-urdf-meshes
   lizard model out/walk.xml --drive walk
   lizard model out/rocks.xml --drive walk --long-foot LF=0.6")]
 pub struct Args {
@@ -76,7 +76,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
     scene.trajectory = record_drive(&args, &robot)?;
     let pieces = Pieces::compute(&assembly, &scene)?;
     let stem = args.file.file_stem().unwrap_or_default();
-    let folder = format!("{}-meshes", stem.to_string_lossy());
+    // The folder's name has the extension, because robot.urdf and robot.sdf may describe different robots.
+    let extension = args.file.extension().unwrap_or_default();
+    let [stem, extension] = [stem, extension].map(std::ffi::OsStr::to_string_lossy);
+    let folder = format!("{stem}-{extension}-meshes");
     let address = args.mesh_address.as_ref().unwrap_or(&folder);
     let address = format!("{}/", address.trim_end_matches('/'));
     let text = match format {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use crate::harness::{Outcome, read_file, robot_path, run, scratch_folder};
+use crate::harness::{Outcome, read_file, robot_path, run, run_command, scratch_folder};
 
 /// Formats a gait's movement per cycle (mm, mm, deg) as `lizard measure --json` does; all standard errors are 0.05.
 fn format_gait(gait: &str, movement: [f64; 3]) -> Value {
@@ -73,17 +73,37 @@ fn measure_keys_never_overwrites_a_robot_file_or_its_input() {
     assert_eq!(robot_text, text);
 }
 
-#[test]
-fn the_written_robot_file_differs_only_in_measured_lines() {
-    // The movements that the model predicts for a friction ratio of 1.1, extrapolated from the ratio of 1 in the file.
-    let gaits = [
+/// The movements that the model predicts for a friction ratio of 1.1, extrapolated from the ratio of 1 in the file.
+fn format_movements_on_gripping_pads() -> String {
+    format_measurement(&[
         format_gait("walk", [33.57, 0.07, 0.0]),
         format_gait("trot", [25.63, -0.02, 0.0]),
         format_gait("crawl", [29.72, 0.3, -0.11]),
         format_gait("back", [-32.91, 0.08, 0.0]),
         format_gait("left", [1.09, 0.29, 14.53]),
-    ];
-    let measured_file = write_file("movements.json", &format_measurement(&gaits));
+    ])
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn an_output_name_that_is_not_utf_8_does_not_break_the_json_object() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    let measured_file = folder.path().join("movements.json");
+    let measurement = format_movements_on_gripping_pads();
+    fs::write(&measured_file, measurement).expect("the file is written");
+    let name = std::ffi::OsStr::from_bytes(b"measured-\xe4.toml");
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_lizard"));
+    command.args(["measure", "keys", "movements.json", "--robot", "paper"]);
+    command.args(["--json", "--output"]).arg(name);
+    let result = run_command(command.current_dir(folder.path()), "").expect_json();
+    assert_eq!(result["written"], "measured-\u{fffd}.toml");
+    assert!(folder.path().join(name).is_file());
+}
+
+#[test]
+fn the_written_robot_file_differs_only_in_measured_lines() {
+    let measured_file = write_file("movements.json", &format_movements_on_gripping_pads());
     let output = scratch_folder().join("measured.toml");
     let _ = fs::remove_file(&output);
     let output_name = output.to_str().expect("the path is UTF-8");
@@ -111,8 +131,15 @@ fn the_written_robot_file_differs_only_in_measured_lines() {
     let still_file = write_file("still.json", &still_measurement);
     let run_again = || run_measure_keys(&still_file, &["--output", output_name]);
     run_again().expect_refusal_with("moves no servo");
-    fs::write(&output, new_text + "# mine\n").expect("the file is written");
-    run_again().expect_refusal_with("describes a robot");
+    let edited_text = new_text.replace(
+        "friction_back_over_forward = 1.",
+        "friction_back_over_forward = 1.9",
+    );
+    assert_ne!(edited_text, new_text);
+    for edited_text in [edited_text, new_text + "# mine\n"] {
+        fs::write(&output, edited_text).expect("the file is written");
+        run_again().expect_refusal_with("describes a robot");
+    }
     let gaits = run(&["gaits", "--robot", output_name]).expect_success();
     assert!(gaits.contains("walk"));
 }

@@ -116,7 +116,10 @@ fn a_path_out_of_reach_is_rejected_at_either_end_and_on_either_side() {
 #[test]
 fn a_gait_name_may_begin_with_a_console_word_unless_it_is_reserved() {
     for word in Word::ALL.iter().filter(|word| **word != Word::QuestionMark) {
-        for name in [word.text().to_owned(), format!("{}-on", word.text())] {
+        for name in [
+            word.spelling().to_owned(),
+            format!("{}-on", word.spelling()),
+        ] {
             let gaits = format!("{STAND}{}", WALK.replace("walk", &name));
             let is_accepted = paper_with_gaits(&gaits).is_ok();
             assert_eq!(is_accepted, !word.is_reserved(), "{name}");

@@ -20,10 +20,10 @@ fn an_upload_to_an_old_nano_finds_its_baud_rate_and_keeps_its_boot_loader() {
 
 #[test]
 fn an_upload_to_an_old_nano_recovers_from_the_loss_of_any_byte_to_the_board() {
-    let (code, large) = (firmware_image("paper"), robot_image("large"));
+    let (paper_image, large) = (firmware_image("paper"), robot_image("large"));
     let run_with_lost_byte = |lost_byte| {
         let mut board = BoardDouble::old_nano();
-        board.flash[..code.end_address()].copy_from_slice(code.bytes());
+        board.flash[..paper_image.end_address()].copy_from_slice(paper_image.bytes());
         board.lost_byte_to_board = lost_byte;
         run_with_image(board, &large)
     };
@@ -45,7 +45,7 @@ fn an_image_that_reaches_into_a_nanos_boot_section_is_rejected_for_a_possible_na
     let image = firmware_image("own-gaits");
     let end_address = image.end_address();
     assert!(end_address > 0x7800, "{end_address:#x}");
-    let reject = |mut board: BoardDouble, target: Target| {
+    let rejection_message = |mut board: BoardDouble, target: Target| {
         board.flash[..500].fill(9);
         let old_flash = board.flash.clone();
         let run = run_with_target(board, &image, target);
@@ -57,19 +57,19 @@ fn an_image_that_reaches_into_a_nanos_boot_section_is_rejected_for_a_possible_na
         model: Some(model),
         may_be_nano: true,
     };
-    let message = reject(BoardDouble::old_nano(), unknown_model);
+    let message = rejection_message(BoardDouble::old_nano(), unknown_model);
     let expected_start =
         format!("{end_address} bytes of flash are needed, but a Nano has only 30720");
     assert!(message.starts_with(&expected_start), "{message}");
     assert!(message.ends_with("Nothing was written"), "{message}");
-    let nano_message = reject(BoardDouble::blank(), target_for_model(Model::Nano));
+    let nano_message = rejection_message(BoardDouble::blank(), target_for_model(Model::Nano));
     assert_eq!(message, nano_message);
     // A newer Nano answers like a UNO, and UNO clones have the same USB chip as a Nano.
     let possible_nano = Target {
         may_be_nano: true,
         ..unknown_model
     };
-    let message = reject(BoardDouble::blank(), possible_nano);
+    let message = rejection_message(BoardDouble::blank(), possible_nano);
     let reason = "; the USB chip of this board is used on both UNOs and Nanos. Nothing";
     assert!(message.contains(reason), "{message}");
     let small_image = firmware_image("paper");

@@ -5,10 +5,11 @@
 use std::io::{Read, Write};
 use std::time::Duration;
 
-use lizard_calibrate::{ConsoleError, ReplyError, SCALE_TURNS_DEG, SIGN_TURNS_DEG};
+use lizard_calibrate::{ConsoleError, ReplyError, SCALE_TURNS_DEG, SIGN_TURNS_DEG, send_command};
 use lizard_robot::Status;
 use pollster::block_on;
 
+use super::super::deadman::limit_deadman_ms;
 use super::super::link::{BANNER_START, Link, LinkError};
 use step::{Step, list_steps};
 pub use view::StepView;
@@ -52,6 +53,10 @@ pub struct Guide<'a, P> {
     /// True if the user has skipped the steps for scales and limits.
     has_skipped_scales_and_limits: bool,
     is_walking: bool,
+    /// True while `deadman` is set for the test walk, so that the robot stops if its cable is pulled out.
+    is_deadman_set: bool,
+    /// True once the user has saved a calibration.
+    has_saved: bool,
     /// The result of the last key, in words.
     message: String,
 }
@@ -74,6 +79,8 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             moved_degrees: None,
             has_skipped_scales_and_limits: false,
             is_walking: false,
+            is_deadman_set: false,
+            has_saved: false,
             message: String::new(),
         })
     }
@@ -82,9 +89,9 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         self.steps[self.step_index]
     }
 
-    /// True if the active calibration is saved.
-    pub fn is_saved(&self) -> bool {
-        self.step() == Step::Saved
+    /// True once the user has saved a calibration. Later changes are discarded when the user leaves.
+    pub fn has_saved(&self) -> bool {
+        self.has_saved
     }
 
     /// Handles a key. Returns true when the user has finished or cancelled.
@@ -181,11 +188,23 @@ impl<'a, P: Read + Write> Guide<'a, P> {
 
     fn leave(&mut self) -> Result<()> {
         self.is_walking = false;
-        block_on(self.robot.restore()).map(drop)
+        block_on(self.robot.restore())?;
+        self.restore_deadman()
+    }
+
+    /// Restores the robot's own `deadman` after a test walk.
+    fn restore_deadman(&mut self) -> Result<()> {
+        if self.is_deadman_set {
+            let line = format!("deadman {}", self.robot.calibration().deadman);
+            block_on(send_command(self.robot.console(), &line))?;
+            self.is_deadman_set = false;
+        }
+        Ok(())
     }
 
     fn save(&mut self) -> Result<()> {
         block_on(self.robot.save())?;
+        self.has_saved = true;
         self.enter_step(self.step_index + 1)
     }
 
@@ -210,7 +229,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         self.neutral_angles = block_on(self.robot.stand())?;
         self.is_walking = false;
         self.moved_degrees = None;
-        Ok(())
+        self.restore_deadman()
     }
 
     /// Moves one servo by the first of `angles` (degrees) that the robot accepts.
@@ -264,6 +283,12 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         if self.is_walking {
             return self.stand();
         }
+        let deadman_ms = limit_deadman_ms(self.robot.calibration().deadman);
+        self.is_deadman_set = true;
+        block_on(send_command(
+            self.robot.console(),
+            &format!("deadman {deadman_ms}"),
+        ))?;
         let gait = block_on(self.robot.start_walk())?;
         self.is_walking = gait.is_some();
         self.message = gait.map_or(

@@ -50,9 +50,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
         let _ = board.link.send("stop");
     }
     match result {
-        Ok(is_saved) => {
+        Ok(has_saved) => {
             // The terminal may be gone; a message that cannot be written is not an error.
-            let message = if is_saved {
+            let message = if has_saved {
                 "the calibration is saved"
             } else {
                 "cancelled: the robot keeps its old calibration"
@@ -60,9 +60,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
             let _ = writeln!(io::stdout(), "{message}");
             Ok(())
         }
-        // The next program that opens the port resets the board, which discards unsaved settings.
+        // The next program that opens a USB port resets the board, which discards unsaved settings; a radio does not.
         Err(DialogueError::Link(error)) => Err(Failure::Operation(format!(
-            "{}: {error}; unsaved settings are lost when the port is opened again",
+            "{}: {error}; a reset of the board discards the settings that are not saved",
             board.name
         ))),
         Err(error) => Err(board.to_failure(error)),
@@ -75,7 +75,7 @@ fn run_guide<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, 
     match run_steps(guide) {
         Err(DialogueError::Io(_)) if !terminal::is_open() => {
             guide.press_key(Key::Leave)?;
-            Ok(false)
+            Ok(guide.has_saved())
         }
         result => result,
     }
@@ -115,7 +115,7 @@ fn run_steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, 
                 if let Some(guide_key) = interpret_key(key)
                     && guide.press_key(guide_key)?
                 {
-                    return Ok(guide.is_saved());
+                    return Ok(guide.has_saved());
                 }
             }
             Event::Resize(..) => last_view = None,

@@ -18,7 +18,7 @@ use session::RecordedSession;
 /// Draw a session that `lizard console --record` has recorded
 ///
 /// Prints the dialogue and a summary, and draws servo angles and footfalls over
-/// time.
+/// time, at most of the first 24 hours.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// The recorded session

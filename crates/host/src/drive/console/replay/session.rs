@@ -17,7 +17,7 @@ const MAX_HELD_FRAMES: usize = 50;
 /// Largest difference between the robot's frame count and this machine's clock, in frames. A line may arrive late, and
 /// a simulated robot lags behind on a slow machine.
 const MAX_CLOCK_DIFFERENCE_FRAMES: usize = 10;
-/// Longest valid session, ms: a day.
+/// Time of the last event that is read, ms: a day.
 const MAX_SESSION_MS: u64 = 86_400_000;
 
 /// A recorded session.
@@ -28,8 +28,8 @@ pub(super) struct RecordedSession {
 }
 
 impl RecordedSession {
-    /// Parses a session's file. A partial last line, left by a killed program or a full disk, is ignored. The error
-    /// says which line is not an event or is out of place, or that the file is not a session or has another format.
+    /// Parses a session's file. A partial last line, left by a killed program or a full disk, is ignored, and so
+    /// are the events after [`MAX_SESSION_MS`]. The error says which line is not an event or is out of place, or that the file is not a session or has another format.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let not_a_session = format!(
             "this is not a session of `lizard console --record`: \"{FORMAT}\" is missing from its \
@@ -54,7 +54,7 @@ impl RecordedSession {
                 ));
             }
             if entry.ms > MAX_SESSION_MS {
-                return Err(to_error(format!("{} ms is more than a day", entry.ms)));
+                break;
             }
             if entries.last().is_some_and(|last| last.ms > entry.ms) {
                 return Err(to_error(format!("{} ms is out of order", entry.ms)));
@@ -332,10 +332,15 @@ mod tests {
             third_line_error("{\"ms\":8,\"gone\":null}"),
             "line 3: 8 ms is out of order"
         );
-        assert_eq!(
-            third_line_error("{\"ms\":99999999999,\"gone\":null}"),
-            "line 3: 99999999999 ms is more than a day"
-        );
+    }
+
+    #[test]
+    fn the_events_after_a_day_are_ignored() {
+        let session = parse_session(&[
+            "{\"ms\":1000,\"sent\":\"walk\"}".to_owned(),
+            "{\"ms\":86400001,\"sent\":\"stop\"}".to_owned(),
+        ]);
+        assert_eq!(session.end_ms(), 1000);
     }
 
     #[test]

@@ -146,7 +146,7 @@ fn a_stop_of_an_unplugged_robot_is_repeated_and_its_silence_counts_from_the_reco
     let (now, mut session) = start(false, false);
     session.stop(now);
     let later = now + SILENCE_TIMEOUT;
-    session.restart(later, false);
+    session.restart(later, false, true);
     assert_sends(&mut session, later, Some("stop"));
     assert_eq!(session.time_out_request(later), None);
     let message = session.time_out_request(later + SILENCE_TIMEOUT);
@@ -244,4 +244,18 @@ fn a_silent_robot_is_reported_once_until_it_answers() {
     assert_eq!(ask(false), None);
     assert_eq!(ask(true), None);
     assert!(ask(false).is_some());
+}
+
+#[test]
+fn poses_are_requested_again_after_a_reset_whose_banner_is_lost() {
+    let (mut now, mut session) = start(true, true);
+    assert_sends(&mut session, now, Some("watch 1"));
+    session.receive("ok watch 1");
+    for (frames, is_reset) in [(900, false), (901, false), (50, true), (75, false)] {
+        assert_sends(&mut session, now, Some("status"));
+        session.receive(&format!("{WALKING_STATUS} frames={frames}"));
+        assert_sends(&mut session, now, is_reset.then_some("watch 1"));
+        session.receive("ok watch 1");
+        now += STATUS_INTERVAL;
+    }
 }

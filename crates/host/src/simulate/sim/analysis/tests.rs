@@ -3,20 +3,25 @@
 use super::*;
 use crate::shared::robot_args::built_in_robot;
 
-/// Creates a log of frames with the pulses for `angles(seconds)`, where `seconds` counts from the first frame. The
+/// Creates a log of frames with the pulses for `angles_at(seconds)`, where `seconds` counts from the first frame. The
 /// first frame starts 1 s after power-on.
-fn create_log(robot: &Robot, count: u64, angles: impl Fn(f64) -> [f64; 4]) -> FrameLog {
-    let to_width = |i: usize, angle: f64| (robot.servos()[i].pulse(angle) * 16.0).round() as u16;
+fn create_log(robot: &Robot, frame_count: u64, angles_at: impl Fn(f64) -> [f64; 4]) -> FrameLog {
+    let to_width = |i: usize, angle: f64| {
+        let us = robot.servos()[i].pulse(angle);
+        (us * CYCLES_PER_US as f64).round() as u16
+    };
     let compute_widths = |n: u64| {
-        let angles = angles(n as f64 / 50.0);
+        let angles = angles_at(n as f64 / 50.0);
         std::array::from_fn(|i| to_width(i, angles[i]))
     };
-    FrameLog::new(FREQUENCY, (0..count).map(compute_widths).collect())
+    FrameLog::new(FREQUENCY, (0..frame_count).map(compute_widths).collect())
 }
 
-fn create_gait_log(robot: &Robot, name: &str, count: u64) -> FrameLog {
+fn create_gait_log(robot: &Robot, name: &str, frame_count: u64) -> FrameLog {
     let gait = robot.gait(name).expect("the gait is in robot.toml");
-    create_log(robot, count, |seconds| gait.angles(gait.phase_at(seconds)))
+    create_log(robot, frame_count, |seconds| {
+        gait.angles(gait.phase_at(seconds))
+    })
 }
 
 #[test]
@@ -57,7 +62,7 @@ fn displacements_of_walk_back_and_left_match_their_predictions() {
 }
 
 #[test]
-fn a_displacement_with_two_feet_against_two_is_undetermined() {
+fn the_displacement_is_undetermined_while_two_feet_pull_against_two() {
     let robot = built_in_robot("paper");
     let log = create_gait_log(&robot, "look", 100);
     let spans = [Span::new("stand", 0.0, 1.0), Span::new("look", 1.0, 3.0)];

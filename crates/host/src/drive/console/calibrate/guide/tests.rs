@@ -46,12 +46,13 @@ fn a_complete_calibration_saves_signs_and_trims() {
     assert!(view.instructions.contains(&settings_line), "{view:?}");
     // The space bar has no effect in this step.
     press_keys(&mut guide, &[Key::Act]);
-    assert!(!guide.is_saved());
+    assert!(!guide.has_saved());
     assert!(!press_keys(&mut guide, &[Key::Next]));
-    assert!(guide.is_saved(), "{:?}", guide.view());
+    assert!(guide.has_saved(), "{:?}", guide.view());
     press_keys(&mut guide, &[Key::Back]);
     let is_finished = press_keys(&mut guide, &[Key::Leave]);
     assert!(is_finished, "the guide is finished");
+    assert!(guide.has_saved(), "the saved calibration stays");
     assert_eq!(read_calibration(&mut link).servos[0].trim, 0.9);
     link.command("factory").expect("the line is accepted");
     link.command("load").expect("the calibration was saved");
@@ -192,7 +193,7 @@ fn a_reset_is_reported_and_the_lost_trim_is_no_longer_shown() {
     assert_title(&guide, "save");
     guide.robot.console().port().reset();
     press_keys(&mut guide, &[Key::Next]);
-    assert!(guide.is_saved(), "{:?}", guide.view());
+    assert!(guide.has_saved(), "{:?}", guide.view());
     link.command("load").expect("the calibration was saved");
     assert_eq!(read_calibration(&mut link).servos[0].trim, 0.5);
 }
@@ -248,4 +249,29 @@ fn limits_move_at_most_to_the_travel_that_the_gaits_need() {
     let shown_limits = format!("    limits {min:.2} to {max:.2} deg");
     let is_shown = view.instructions.contains(&shown_limits);
     assert!(is_shown, "{view:?}, {shown_limits}");
+}
+
+#[test]
+fn a_test_walk_ends_without_lines_and_the_robots_own_deadman_comes_back() {
+    for own_deadman in ["# deadman 0", "# deadman 2000"] {
+        let mut link = connect_paper_robot();
+        let line = own_deadman.trim_start_matches("# ");
+        link.command(line).expect("the line is accepted");
+        let mut guide = Guide::new(&mut link).expect("the robot answers");
+        press_keys(&mut guide, &keys_to_first_scale()[..14]);
+        press_keys(&mut guide, &[Key::Next, Key::Act]);
+        let status = guide.robot.console().ask("status");
+        let status = status.expect("the robot answers").answer;
+        assert!(status.starts_with("ok gait=walk"), "{status}");
+        // The robot receives nothing for two seconds.
+        guide.robot.console().port().run_frames(100);
+        let status = guide.robot.console().ask("status");
+        let status = status.expect("the robot answers").answer;
+        let is_stopped = status.starts_with("ok gait=stop") && status.contains(" fault=link ");
+        assert!(is_stopped, "{status}");
+        press_keys(&mut guide, &[Key::Leave]);
+        let cal = link.ask("cal").expect("the robot answers");
+        let has_own = cal.notes.iter().any(|note| note == own_deadman);
+        assert!(has_own, "{:?}", cal.notes);
+    }
 }
