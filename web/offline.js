@@ -18,8 +18,8 @@ export function writeServiceWorker(folder) {
   const fileList = paths.map((path) => `  [${JSON.stringify(path)}, '${computeHash(path)}'],`).join('\n');
   const workerSource = readFileSync(new URL(WORKER_NAME, import.meta.url), 'utf8');
   const buildHash = createHash('sha256').update(fileList).digest('hex');
-  const constants = `const BUILD = '${buildHash}';\nconst FILES = [\n${fileList}\n];\n\n`;
-  writeFileSync(join(folder, WORKER_NAME), constants + workerSource);
+  const constantsSource = `const BUILD = '${buildHash}';\nconst FILES = [\n${fileList}\n];\n\n`;
+  writeFileSync(join(folder, WORKER_NAME), constantsSource + workerSource);
 }
 
 /** A Vite plugin that writes the service worker after all other files are built. */

@@ -20,7 +20,7 @@ const BANNER_TIMEOUT_MS = 2500;
 const STATUS_TIMEOUT_MS = 1000;
 /** Number of `status` lines sent to a robot that is back in range: the radio may lose some. */
 const MAX_STATUS_COUNT = 12;
-/** Longest wait for a board to stop before the port is closed, ms. */
+/** Longest waits for a board to stop, and for its own `deadman`, before the port is closed, ms. */
 const STOP_TIMEOUT_MS = 1000;
 /** Longest time between a reset and the `boot` action, which runs after three seconds, ms. */
 const BOOT_TIMEOUT_MS = 4000;
@@ -49,6 +49,8 @@ export class Board {
   private deadman!: Deadman;
   /** Number of unanswered drive commands. */
   private pendingDriveCount = 0;
+  /** True if the page has started the robot's walk; a walk that another sender has started does not need the page. */
+  private isDriven = false;
   /** The arrival time of the robot's last line, on the page's clock, ms. */
   private lastLineAt = performance.now();
   /** Resolves the promise of `waitForBanner`. */
@@ -57,6 +59,8 @@ export class Board {
   private requestedPace: number | null = null;
   /** True once the page has requested the board's poses. */
   private isWatching = false;
+  /** The number of frames in the robot's last status. */
+  private frameCount = 0;
   /** The link that the page is leaving, or has left; null for none. */
   private leftLink: Link | null = null;
 
@@ -135,6 +139,7 @@ export class Board {
   forgetProgram(): void {
     this.state.banner.value = undefined;
     this.isWatching = false;
+    this.frameCount = 0;
     this.mayAsk = false;
   }
 
@@ -179,7 +184,7 @@ export class Board {
   private async handleRange(link: Link, isInRange: boolean): Promise<void> {
     if (this.link !== link) return;
     this.deadman.stopRepeating();
-    this.state.isSilent.value = !isInRange;
+    this.state.isSilent.value = !isInRange || this.dialogue.isSilent;
     const message = `The ${link.name} is out of range. A walking robot stops by itself; the page reconnects as soon as possible.`;
     this.listener.onProblem('port', isInRange ? null : message);
     if (!isInRange) return;
@@ -202,8 +207,11 @@ export class Board {
 
   /** Requests reports of the board's poses. */
   async watch(): Promise<void> {
+    const { link } = this;
     this.isWatching = true;
-    await this.ask(`${WORDS.watch} ${FRAMES_PER_REPORT[this.link.kind]}`);
+    const answer = await this.ask(`${WORDS.watch} ${FRAMES_PER_REPORT[link.kind]}`);
+    // The next status requests them again.
+    if (!answer && this.link === link) this.isWatching = false;
   }
 
   private handleLine(line: string): void {
@@ -219,12 +227,11 @@ export class Board {
 
   private handleBanner(line: string): void {
     const { dialogue } = this;
-    const bannerNumber = ++this.state.bannerCount.value;
     // First, because `setGait` would send the robot's own `deadman`.
-    this.deadman.reset();
+    this.handleRestart();
+    const bannerNumber = this.state.bannerCount.value;
     this.setGait(STAND);
     this.setPace(FULL_PACE);
-    this.isWatching = false;
     this.listener.onProblem('board', null);
     this.state.banner.value = parseBanner(line) ?? 'unknown';
     this.resolveBanner();
@@ -238,8 +245,20 @@ export class Board {
     });
   }
 
+  /** Forgets the robot's settings, which a restart has undone. */
+  private handleRestart(): void {
+    this.state.bannerCount.value += 1;
+    this.deadman.reset();
+    this.isWatching = false;
+    this.frameCount = 0;
+  }
+
   /** Handles a status as soon as its line is received, because it could later overwrite a newer state. */
   private handleStatus(status: Status): void {
+    // The link has lost the banner of a restart: the firmware sends it at a baud rate that not every radio module uses.
+    if (status.frames < this.frameCount) this.handleRestart();
+    this.frameCount = status.frames;
+    if (this.isReal && this.banner && this.mayAsk && !this.isWatching) void this.watch();
     if (status.pace !== null) this.setPace(status.pace);
     // A fault lasts until the robot moves again, but is reported only once.
     if (status.fault !== this.state.status.value?.fault) {
@@ -252,8 +271,10 @@ export class Board {
     // The page missed the start of this activity, for example because the link was interrupted.
     if (gait !== this.gait && !isCenter && !isRestInRoutine) this.setGait(gait);
     this.state.status.value = status;
-    // After a drive command without an answer, only the status tells whether the robot walks.
-    this.restoreDeadmanIfIdle();
+    // After a drive command without an answer, only the status tells whether the robot walks. The page's `deadman` ends
+    // during a walk if the robot does not confirm it.
+    if (this.isWalking && this.isDriven && !document.hidden) void this.deadman.engage();
+    else this.restoreDeadmanIfIdle();
   }
 
   private setPace(percent: number): void {
@@ -264,13 +285,14 @@ export class Board {
 
   private setGait(gait: string): void {
     this.state.gait.value = gait;
+    if (!this.isWalking) this.isDriven = false;
     this.restoreDeadmanIfIdle();
     this.robot.startCycle();
   }
 
   /** Restores the robot's own `deadman` setting if the robot neither walks nor will soon walk. */
   private restoreDeadmanIfIdle(): void {
-    if (!this.mayWalk) this.deadman.restore();
+    if (!this.mayWalk) void this.deadman.restore();
   }
 
   /** Sends a line and returns its answer, or null after an error; the error is shown unless the line is quiet. */
@@ -293,24 +315,31 @@ export class Board {
         if (stopCount !== this.stopCount) return null;
         if (!isConfirmed) throw new Error(`"${line}" was not sent, because the robot did not confirm its deadman setting`);
       }
-      const isRestored = deadman.prepareForUserLine(command);
-      const pendingAnswer = this.dialogue.ask(line, isQuiet, timeoutMs);
-      if (isRestored && this.mayWalk) void deadman.engage();
+      mayHaveStarted = isDrive;
+      const needsRobotSetting = this.isReal && Deadman.needsRobotSetting(command);
+      const wasEngaged = deadman.isEngaged;
+      const send = () => this.dialogue.ask(line, isQuiet, timeoutMs);
+      const pendingAnswer = needsRobotSetting ? deadman.sendWithRobotSetting(command, send) : send();
+      if (needsRobotSetting && wasEngaged && this.mayWalk) void deadman.engage();
       const answer = await pendingAnswer;
       if (!isQuiet) this.listener.onProblem('line', null);
+      // The page does not know all gaits of a board with another robot; the next status tells whether it walks.
+      mayHaveStarted &&= answer.ok;
       deadman.observeUserLine(command, answer.ok);
       return answer;
     } catch (error) {
+      deadman.observeUserLine(command, null);
       const isDropped = error instanceof DroppedRequest;
       // Only the answer may be lost; the robot's next status tells whether it walks.
-      mayHaveStarted = !isDropped;
+      mayHaveStarted &&= !isDropped;
       // A quiet line is sent again later; until then, the page shows that the robot is silent.
       if (!isQuiet && !isDropped) this.listener.onProblem('line', `${getMessage(error)}.`);
       return null;
     } finally {
       if (isDrive) {
         this.pendingDriveCount -= 1;
-        if (!mayHaveStarted) this.restoreDeadmanIfIdle();
+        if (mayHaveStarted) this.isDriven = true;
+        else this.restoreDeadmanIfIdle();
       }
     }
   }
@@ -361,9 +390,12 @@ export class Board {
     return Promise.race([answer, link.wait(STOP_TIMEOUT_MS)]).then(Boolean);
   }
 
-  /** Stops a board, and sends no other line to it afterwards; returns the result of `stop`. */
-  leave(): Promise<boolean> {
-    this.leftLink = this.link;
-    return this.stop();
+  /** Stops a board, restores its own `deadman` and sends no other line to it; returns the result of `stop`. */
+  async leave(): Promise<boolean> {
+    const { deadman, link } = this;
+    this.leftLink = link;
+    const hasStopped = await this.stop();
+    if (hasStopped) await Promise.race([deadman.restore(), link.wait(STOP_TIMEOUT_MS)]);
+    return hasStopped;
   }
 }

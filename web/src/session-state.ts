@@ -23,7 +23,10 @@ export class SessionState {
   readonly link = signal<Link | null>(null);
   /** The board's firmware and robot; undefined until known. */
   readonly banner = signal<BoardBanner | undefined>(undefined);
-  /** Number of received banners; each banner after the first means a restart, which loses unsaved settings. */
+  /**
+   * Number of received banners, and of restarts whose banner the link has lost. Each increment after the first banner
+   * means a restart, which loses unsaved settings.
+   */
   readonly bannerCount = signal(0);
   /** The robot's activity, a gait or a command; empty if it is unknown. */
   readonly gait = signal('');

@@ -22,7 +22,7 @@ async function openPicked(module, options) {
   return radio.page;
 }
 
-async function openWalking(module) {
+async function openWithWalkingRobot(module) {
   const page = await openPicked(module);
   await radio.runUntil('the robot is found', async () => (await readText(page, '#where')).includes(`board at ${module.name} that has not restarted`));
   await radio.runUntil('the robot stands', async () => (await readGait(page)) === 'stand');
@@ -32,7 +32,7 @@ async function openWalking(module) {
 }
 
 for (const module of [HM10, NORDIC]) {
-  testPage(`a robot is driven and stopped through the module ${module.name}`, () => openWalking(module), async (page) => {
+  testPage(`a robot is driven and stopped through the module ${module.name}`, () => openWithWalkingRobot(module), async (page) => {
     await radio.run(3000);
     assert.equal(await readGait(page), 'walk', 'the page reports the walk');
     assert.ok((await readPageMs(page)) - (await page.evaluate(() => window.lastMoveMs)) < 100, 'its servos move');
@@ -48,7 +48,7 @@ for (const module of [HM10, NORDIC]) {
   });
 }
 
-testPage('a robot whose link is cut stops, and the page reconnects by itself', () => openWalking(HM10), async (page) => {
+testPage('a robot whose link is cut stops, and the page reconnects by itself', () => openWithWalkingRobot(HM10), async (page) => {
   await radio.run(1000);
   const cutMs = await readPageMs(page);
   await radio.takeOutOfRange();
@@ -66,7 +66,52 @@ testPage('a robot whose link is cut stops, and the page reconnects by itself', (
   await radio.runUntil('the robot walks again', async () => (await readGait(page)) === 'walk');
 });
 
-testPage('the page does not connect again to a module that it has left out of range', () => openWalking(HM10), async (page) => {
+testPage('the alarm remains if the module is back in range but its robot does not answer', () => openWithWalkingRobot(HM10), async (page) => {
+  await page.evaluate(() => (window.attachedBoard.onByte = () => {}));
+  await radio.run(1500);
+  assert.ok(await page.locator('#alarm').isVisible());
+  await radio.takeOutOfRange();
+  await radio.run(500);
+  await radio.bringIntoRange();
+  await radio.run(3000);
+  assert.ok(await page.locator('#alarm').isVisible());
+});
+
+/** Walks the robot, and waits until the page's drawing of it has moved by 5 mm. */
+async function assertFollowed(page) {
+  const readForwardMm = () => page.evaluate(() => window.lizard.robot.last?.place.y ?? 0);
+  const startMm = await readForwardMm();
+  await findGaitButton(page, 'walk').click();
+  await radio.runUntil('the drawing has moved by 5 mm', async () => (await readForwardMm()) - startMm > 5);
+}
+
+testPage('the page notices a restart whose banner the module has garbled, and follows the robot again', () => openWithWalkingRobot(HM10), async (page) => {
+  const readRestartCount = () => page.evaluate(() => window.lizard.state.bannerCount.value);
+  const restartCount = await readRestartCount();
+  await radio.run(2000);
+  await page.evaluate(() => window.attachedBoard.reset('external'));
+  await radio.runUntil('the robot stands', async () => (await readGait(page)) === 'stand');
+  assert.equal((await readRestartCount()) - restartCount, 1);
+  await assertFollowed(page);
+});
+
+test('the page follows a robot although the first line that requests its poses was lost', async () => {
+  radio = await Radio.open(HM10);
+  const { page } = radio;
+  await page.evaluate(() => {
+    const { attachedBoard } = window;
+    const { send } = attachedBoard;
+    attachedBoard.send = (bytes) => {
+      if (!String.fromCharCode(...bytes).includes('watch')) return send.call(attachedBoard, bytes);
+      attachedBoard.send = send;
+    };
+  });
+  await radio.pick();
+  await radio.runUntil('the robot stands', async () => (await readGait(page)) === 'stand');
+  await assertFollowed(page);
+});
+
+testPage('the page does not connect again to a module that it has left out of range', () => openWithWalkingRobot(HM10), async (page) => {
   await radio.takeOutOfRange();
   await radio.run(1000);
   await page.locator('#connect').click();
@@ -76,7 +121,7 @@ testPage('the page does not connect again to a module that it has left out of ra
   assert.equal(await page.evaluate(() => window.notifyingCharacteristic.service.device.gatt.connected), false);
 });
 
-testPage('after a failed attempt to reconnect, each byte is received once', () => openWalking(HM10), async (page) => {
+testPage('after a failed attempt to reconnect, each byte is received once', () => openWithWalkingRobot(HM10), async (page) => {
   await radio.takeOutOfRange();
   await radio.run(1000);
   await page.evaluate(() => {
@@ -106,7 +151,7 @@ testPage('a trim that was set out of range returns to the robot\'s value when th
   await radio.runUntil('the trim is read again', async () => (await trim.inputValue()) === '0');
 });
 
-testPage('after a stop that is pressed out of range, "stop" is the first line that the robot receives', () => openWalking(HM10), async (page) => {
+testPage('after a stop that is pressed out of range, "stop" is the first line that the robot receives', () => openWithWalkingRobot(HM10), async (page) => {
   await radio.takeOutOfRange();
   await radio.run(300);
   await page.keyboard.press('Escape');
@@ -135,33 +180,33 @@ test('cancelling the choice of a Bluetooth module reports no problem', async () 
 });
 
 test('the page reports a machine without Bluetooth', async () => {
-  radio = await Radio.open(HM10, { adapter: 'absent' });
+  radio = await Radio.open(HM10, { adapterState: 'absent' });
   await radio.page.locator('#radio').click();
   await radio.page.locator('#problems', { hasText: 'No board is connected: Bluetooth is missing on this machine, or it is switched off.' }).waitFor();
 });
 
 test('the page names the setting that allows forbidden Bluetooth', async () => {
-  radio = await Radio.open(HM10, { isAllowed: false, hasRobot: false });
+  radio = await Radio.open(HM10, { isBluetoothAllowed: false, hasRobot: false });
   const { page } = radio;
   await page.locator('#radio').click();
   await page.locator('#problems', { hasText: 'The browser may not use Bluetooth: allow it in the settings of the browser' }).waitFor();
   assert.match(await readText(page, '#problems'), /disallowed by permissions policy/, 'the browser itself has refused it');
 });
 
-testPage('a phone stops its robot when its screen goes off', () => openWalking(HM10), async (page) => {
+testPage('a phone stops its robot when its screen goes off', () => openWithWalkingRobot(HM10), async (page) => {
   await radio.run(1000);
   await hidePage(page);
   const hiddenMs = await page.evaluate(() => window.readBoardMs());
   await radio.run(60);
-  await radio.sleep(3000);
+  await radio.simulatePhoneSleep(3000);
   const [lastMoveMs, receivedText] = await page.evaluate(() => [window.lastMoveBoardMs, window.receivedText]);
   assert.match(receivedText, /stop\n(deadman 0\n)?$/);
   assert.ok(lastMoveMs - hiddenMs < 400, `movement afterwards: ${lastMoveMs - hiddenMs} ms`);
 });
 
-testPage('a robot stops when its phone falls asleep without warning, and the page reports the stop afterwards', () => openWalking(HM10), async (page) => {
+testPage('a robot stops when its phone falls asleep without warning, and the page reports the stop afterwards', () => openWithWalkingRobot(HM10), async (page) => {
   const sleepMs = await page.evaluate(() => window.readBoardMs());
-  await radio.sleep(3000);
+  await radio.simulatePhoneSleep(3000);
   const lastMoveMs = await page.evaluate(() => window.lastMoveBoardMs);
   assert.ok(lastMoveMs - sleepMs > 300 && lastMoveMs - sleepMs <= 901 + 40, `movement afterwards: ${lastMoveMs - sleepMs} ms`);
   await page.clock.fastForward(3000);

@@ -41,7 +41,7 @@ export async function openWithDeafBoard() {
 }
 
 /** Advances the page's clock until `condition` returns true. */
-export const runUntil = (page, waitName, condition, stepMs = 100) => repeatUntil(waitName, condition, () => page.clock.runFor(stepMs));
+export const runUntil = (page, awaitedEvent, condition, stepMs = 100) => repeatUntil(awaitedEvent, condition, () => page.clock.runFor(stepMs));
 
 /** Advances the page's clock until the text of an element matches. */
 export const waitForText = (page, selector, pattern, stepMs) =>

@@ -1,4 +1,4 @@
-// A board on USB that is new, has another firmware, or is disconnected while it walks.
+// A board on USB: the page identifies it, follows it through changes and resets, and stops it before leaving it.
 import assert from 'node:assert/strict';
 
 import { readText, unfold, useBrowser, chooseRobot, testPage, readPlace, findGaitButton } from './browser.js';
@@ -6,11 +6,11 @@ import { openWithBoard, openWithDeafBoard, openWithErasedBoard, runUntil, waitFo
 
 useBrowser();
 
-/** Waits until the log has `count` lines that match. */
-const waitForLine = (page, line, count = 1) =>
-  runUntil(page, `${line} is logged ${count} times`, async () => (await page.locator('#log div', { hasText: line }).count()) >= count);
+/** Waits until at least `count` lines of the log match `pattern`. */
+const waitForLine = (page, pattern, count = 1) =>
+  runUntil(page, `${pattern} is logged ${count} times`, async () => (await page.locator('#log div', { hasText: pattern }).count()) >= count);
 
-async function openWalking() {
+async function openWithWalkingBoard() {
   const page = await openWithBoard('robot', 4000);
   await findGaitButton(page, 'walk').click();
   await waitForLine(page, /^ok walk$/);
@@ -59,7 +59,7 @@ testPage('the page queries and tracks a board that its port does not reset', () 
   assert.equal(await page.locator('#problems').isVisible(), false);
 });
 
-testPage('choosing another robot keeps the board connected', openWalking, async (page) => {
+testPage('choosing another robot keeps the board connected', openWithWalkingBoard, async (page) => {
   await chooseRobot(page, 'large');
   assert.match(await readText(page, '#where'), /^on a board on USB with another robot, robot paper [0-9a-f]{8}: choose that robot, or write this robot$/);
   await page.locator('#connect', { hasText: 'Back to the simulation' }).waitFor();
@@ -99,7 +99,7 @@ testPage('the alarm for a board that is out of range ends when the board is gone
   assert.equal(await page.locator('#alarm').isHidden(), true);
 });
 
-testPage('disconnecting a board stops it', openWalking, async (page) => {
+testPage('disconnecting a board stops it', openWithWalkingBoard, async (page) => {
   await page.locator('#connect').click();
   await page.clock.runFor(1500);
   await page.locator('#log div', { hasText: /^ok stop$/ }).waitFor();
@@ -107,7 +107,7 @@ testPage('disconnecting a board stops it', openWalking, async (page) => {
   assert.match(await readText(page, '#where'), /simulated UNO/);
 });
 
-testPage('a gait that is pressed while the page leaves a board is not sent', openWalking, async (page) => {
+testPage('a gait that is pressed while the page leaves a board is not sent', openWithWalkingBoard, async (page) => {
   await page.evaluate(() => {
     const { attachedBoard } = window;
     const { send } = attachedBoard;
@@ -122,7 +122,7 @@ testPage('a gait that is pressed while the page leaves a board is not sent', ope
   assert.match(await page.evaluate(() => window.sentText), /stop\n(deadman 0\n)?$/);
 });
 
-testPage('pressing Back to the simulation again while the port is closing has no effect', openWalking, async (page) => {
+testPage('pressing Back to the simulation again while the port is closing has no effect', openWithWalkingBoard, async (page) => {
   await page.evaluate(async () => {
     const port = await navigator.serial.requestPort();
     const { close } = port;
@@ -137,7 +137,7 @@ testPage('pressing Back to the simulation again while the port is closing has no
   assert.equal(await page.locator('#problems').isVisible(), false);
 });
 
-testPage('the simulated UNO has the robot that was changed while the port was closing', openWalking, async (page) => {
+testPage('the simulated UNO has the robot that was changed while the port was closing', openWithWalkingBoard, async (page) => {
   await page.evaluate(async () => {
     const port = await navigator.serial.requestPort();
     const { close } = port;
@@ -172,14 +172,14 @@ testPage('the panel of the calibration shows the settings of a board after its r
   await runUntil(page, 'the trim is read again', async () => (await trim.inputValue()) === '0');
 });
 
-testPage('the page reports a board that does not confirm the stop', openWalking, async (page) => {
+testPage('the page reports a board that does not confirm the stop', openWithWalkingBoard, async (page) => {
   await page.evaluate(() => (window.attachedBoard.send = () => {}));
   await page.locator('#connect').click();
   await page.clock.runFor(3000);
   await page.locator('#problems', { hasText: 'did not confirm its stop' }).waitFor();
 });
 
-testPage('closing the page stops a walking board, and the browser asks for confirmation', openWalking, async (page) => {
+testPage('closing the page stops a walking board, and the browser asks for confirmation', openWithWalkingBoard, async (page) => {
   const dialogEvent = page.waitForEvent('dialog');
   // This call returns only after the dialog is answered.
   const reload = page.evaluate(() => location.reload());
@@ -191,7 +191,7 @@ testPage('closing the page stops a walking board, and the browser asks for confi
   await page.locator('#log div', { hasText: /^ok stop$/ }).waitFor();
 });
 
-testPage('the page tracks the board again after a reset', openWalking, async (page) => {
+testPage('the page tracks the board again after a reset', openWithWalkingBoard, async (page) => {
   const watchCount = await page.locator('#log div', { hasText: /^ok watch 2$/ }).count();
   await page.locator('#reset').click();
   await waitForLine(page, /^ok watch 2$/, watchCount + 1);
@@ -201,7 +201,7 @@ testPage('the page tracks the board again after a reset', openWalking, async (pa
   await runUntil(page, 'the page\'s robot has walked 5 mm', async () => (await readPlace(page)).y - startY > 5);
 });
 
-testPage('the page tracks a board again that restarted during an answer', () => openWithBoard('robot', 4000), async (page) => {
+testPage('the page again tracks a board that restarted during an answer', () => openWithBoard('robot', 4000), async (page) => {
   await waitForLine(page, /^ok watch 2$/);
   // The page asks for the status twice a second.
   await page.evaluate(() => {
@@ -252,7 +252,7 @@ testPage('a HEX file of another program is written only after the user confirms'
   await page.locator('#setup', { hasText: 'The board on USB is a UNO according to its boot loader, without this firmware.' }).waitFor();
 });
 
-testPage('the page removes the refusal by a board when the board is gone', openWithBoard, async (page) => {
+testPage('the page clears a board\'s refusal when the board is gone', openWithBoard, async (page) => {
   await page.evaluate(() => void window.lizard.board.drive('pose 0 0 0 0'));
   await waitForText(page, '#drive-message', /^pose 0 0 0 0: /);
   await page.evaluate(() => window.unplug());

@@ -39,10 +39,10 @@ const FIREFOX = {
 export const TIMEOUT_MS = Number(process.env.PATIENCE ?? 300_000);
 
 /** Awaits a promise; rejects with the name of the wait if the promise does not settle in time. */
-export function withTimeout(waitName, promise) {
+export function withTimeout(awaitedEvent, promise) {
   let timer;
   const timeout = new Promise((_, reject) => {
-    const message = `timed out after ${TIMEOUT_MS / 1000} s while waiting for this: ${waitName}`;
+    const message = `timed out after ${TIMEOUT_MS / 1000} s while waiting for this: ${awaitedEvent}`;
     timer = setTimeout(() => reject(new Error(message)), TIMEOUT_MS);
   });
   return Promise.race([promise, timeout]).finally(() => clearTimeout(timer));
@@ -52,12 +52,12 @@ export function withTimeout(waitName, promise) {
  * Repeats `step` until `condition` returns true. The limit applies to real time and not to the number of steps, because
  * a step may be slow on a busy machine.
  */
-export async function repeatUntil(waitName, condition, step) {
+export async function repeatUntil(awaitedEvent, condition, step) {
   let isWaiting = true;
   const repeat = async () => {
     while (isWaiting && !(await condition())) await step();
   };
-  await withTimeout(waitName, repeat()).finally(() => (isWaiting = false));
+  await withTimeout(awaitedEvent, repeat()).finally(() => (isWaiting = false));
 }
 
 /** Adds a time limit to methods that have none in Playwright. */

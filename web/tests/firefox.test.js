@@ -41,6 +41,7 @@ testPage('every step of the first connection can be tried with the simulated boa
     await page.waitForFunction(() => document.querySelector('#setup-content').textContent.length > 40);
     assert.doesNotMatch(await readText(page, '#setup-content'), /No robot/);
   }
+  // The third step, Horns, moves every servo to its middle position.
   await page.evaluate(() => document.querySelectorAll('#setup-steps button')[2].click());
   await page.evaluate(() => [...document.querySelectorAll('#setup-content button')].find(({ textContent }) => /middle/.test(textContent)).click());
   for (let n = 0; n < 40 && (await readText(page, '#setup-message')) === ''; n++) await advance(page, 250);

@@ -27,7 +27,7 @@ async function measureCost(page, readCpuMs) {
   return { shortestMs, passedMs };
 }
 
-async function openWalking() {
+async function openWithWalkingRobot() {
   // The page's Content Security Policy would block the injected style.
   const page = await openPage({ viewport: { width: 1400, height: 1000 }, bypassCSP: true }, () => {});
   await page.clock.runFor(3000);
@@ -42,7 +42,7 @@ async function openWalking() {
   return { page, readCpuMs };
 }
 
-testPage('at sixty frames a second the processor is idle most of the time', openWalking, async ({ page, readCpuMs }, t) => {
+testPage('at sixty frames a second the processor is idle most of the time', openWithWalkingRobot, async ({ page, readCpuMs }, t) => {
   const fullCost = await measureCost(page, readCpuMs);
   // The simulation keeps real time: no frame exceeded its budget.
   const realMs = FRAME_COUNT * FRAME_MS * RUN_COUNT;
@@ -55,7 +55,7 @@ testPage('at sixty frames a second the processor is idle most of the time', open
   assert.ok(computeCost.shortestMs < FRAME_MS / 3, `${computeCost.shortestMs} ms without rendering`);
 });
 
-testPage('changing the spring force does not block rendering', openWalking, async ({ page, readCpuMs }) => {
+testPage('changing the spring force does not block rendering', openWithWalkingRobot, async ({ page, readCpuMs }) => {
   await page.addStyleTag({ content: 'canvas { display: none !important }' });
   await page.getByLabel('Driven by').selectOption('strut');
   await page.getByLabel('Pull in the strut').fill('0.5');

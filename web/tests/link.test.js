@@ -36,13 +36,13 @@ async function pressEscapeAndAdvance(page, ms) {
   await page.clock.runFor(ms);
 }
 
-async function openWalking() {
+async function openWithWalkingRobot() {
   const page = await openWithBoard();
   await startWalk(page);
   return page;
 }
 
-testPage('"stop" is sent at once, and drops a line that waits for a lost answer', openWalking, async (page) => {
+testPage('"stop" is sent at once, and drops a line that waits for a lost answer', openWithWalkingRobot, async (page) => {
   await dropLines(page, ['status']);
   await runUntil(page, 'a status request is lost', () => page.evaluate(() => window.droppedCount > 0), 20);
   await findGaitButton(page, 'left').click();
@@ -54,7 +54,7 @@ testPage('"stop" is sent at once, and drops a line that waits for a lost answer'
   assert.equal(await readText(page, '#doing'), 'stop');
 });
 
-testPage('a lost "stop" is repeated until the robot answers, and the page is red until then', openWalking, async (page) => {
+testPage('a lost "stop" is repeated until the robot answers, and the page is red until then', openWithWalkingRobot, async (page) => {
   await dropLines(page, []);
   await pressEscapeAndAdvance(page, 600);
   assert.ok(await isStopping(page));
@@ -78,7 +78,7 @@ testPage('a robot that rests gets no repeated "stop"', openWithBoard, async (pag
   assert.equal(await isStopping(page), false);
 });
 
-testPage('a refusal that the radio has truncated is not mistaken for the answer to "stop"', openWalking, async (page) => {
+testPage('a refusal that the radio has truncated is not mistaken for the answer to "stop"', openWithWalkingRobot, async (page) => {
   await dropLines(page, ['stop']);
   await page.keyboard.press('Escape');
   await page.evaluate(() => {
@@ -90,13 +90,8 @@ testPage('a refusal that the radio has truncated is not mistaken for the answer 
   await runUntil(page, 'the stop is answered', async () => !(await isStopping(page)));
 });
 
-testPage('answers to repeated stops are not mistaken for answers to the next lines', openWalking, async (page) => {
-  await page.evaluate(() => {
-    const board = window.attachedBoard;
-    const { onByte } = board;
-    // The robot's lines arrive a second late.
-    board.onByte = (byte) => setTimeout(() => onByte(byte), 1000);
-  });
+testPage('answers to repeated stops are not mistaken for answers to the next lines', openWithWalkingRobot, async (page) => {
+  await delayReceivedLines(page, 1000);
   await pressEscapeAndAdvance(page, 1100);
   assert.ok((await readTextReceivedByBoard(page)).split('stop').length > 4, '"stop" was sent again');
   await findGaitButton(page, 'left').click();
@@ -105,7 +100,7 @@ testPage('answers to repeated stops are not mistaken for answers to the next lin
   assert.equal(await readText(page, '#doing'), 'stop');
 });
 
-testPage('the page reports a silence of 0.8 s with its duration', openWalking, async (page) => {
+testPage('the page reports a silence of 0.8 s with its duration', openWithWalkingRobot, async (page) => {
   await dropLines(page, []);
   await page.evaluate(() => (window.attachedBoard.onByte = () => {}));
   await page.clock.runFor(600);
@@ -115,7 +110,7 @@ testPage('the page reports a silence of 0.8 s with its duration', openWalking, a
   await page.locator('#age', { hasText: /^[12]\.\d s ago$/ }).waitFor();
 });
 
-testPage('a gait that ended during a silence is shown as ended', openWalking, async (page) => {
+testPage('a gait that ended during a silence is shown as ended', openWithWalkingRobot, async (page) => {
   await page.evaluate(() => {
     const board = window.attachedBoard;
     const { onByte } = board;
@@ -163,7 +158,7 @@ async function runAndDetectMovement(page, ms) {
   return observedWidths.some((widths) => widths.some((width, servo) => Math.abs(width - observedWidths[0][servo]) > 1));
 }
 
-testPage('while a user drives, the page sets deadman to 901 ms and sends at least three lines in that time', openWalking, async (page) => {
+testPage('while a user drives, the page sets deadman to 901 ms and sends at least three lines in that time', openWithWalkingRobot, async (page) => {
   const lines = (await readTextReceivedByBoard(page)).split('\n');
   assert.ok(lines.indexOf('deadman 901') > 0 && lines.indexOf('deadman 901') < lines.indexOf('walk'), 'deadman is set before the walk');
   await recordLineGaps(page);
@@ -174,7 +169,7 @@ testPage('while a user drives, the page sets deadman to 901 ms and sends at leas
   assert.ok(!(await readText(page, '#log')).includes('deadman 901'), 'the log does not show the page\'s own lines');
 });
 
-testPage('a robot out of range stops, and reports the reason when it is in range again', openWalking, async (page) => {
+testPage('a robot out of range stops, and reports the reason when it is in range again', openWithWalkingRobot, async (page) => {
   assert.ok(await runAndDetectMovement(page, 500));
   await dropLines(page, []);
   await page.clock.runFor(901 + 40);
@@ -201,7 +196,7 @@ testPage('stopping the robot restores its own deadman', openWithBoard, async (pa
   assert.match(await readTextReceivedByBoard(page), /deadman 901\n[^]*save\n[^]*deadman 901\n[^]*stop\n[^]*deadman 5000\n(status\n)*$/);
 });
 
-testPage('a board gets its own deadman back after a walk in which its settings were replaced', openWalking, async (page) => {
+testPage('a board gets its own deadman back after a walk in which its settings were replaced', openWithWalkingRobot, async (page) => {
   await sendToBoard(page, 'factory');
   await page.clock.runFor(1000);
   await pressEscapeAndAdvance(page, 1000);
@@ -222,18 +217,32 @@ testPage('the page sets deadman again if it reads the settings before a walk is 
   assert.match(await readTextReceivedByBoard(page), /\nwalk\n[^]*deadman 0\ncal\n[^]*deadman 901\n/);
 });
 
-testPage('a walk whose answer is lost keeps its deadman until it ends', openWithBoard, async (page) => {
-  await page.evaluate(() => {
+/** Drops the robot's lines that begin with `start`. */
+const dropReceivedLines = (page, start) =>
+  page.evaluate((start) => {
     const { attachedBoard } = window;
     const { onByte } = attachedBoard;
+    window.originalOnByte ??= onByte;
     let line = [];
     attachedBoard.onByte = (byte) => {
       line.push(byte);
       if (byte !== 10) return;
-      if (!String.fromCharCode(...line).startsWith('ok walk')) line.forEach(onByte);
+      if (!String.fromCharCode(...line).startsWith(start)) line.forEach(onByte);
       line = [];
     };
-  });
+  }, start);
+
+/** Delays the robot's lines by `ms`. */
+const delayReceivedLines = (page, ms) =>
+  page.evaluate((ms) => {
+    const { attachedBoard } = window;
+    const { onByte } = attachedBoard;
+    // The port may be closed meanwhile.
+    attachedBoard.onByte = (byte) => void new Promise((resolve) => setTimeout(resolve, ms, byte)).then(onByte).catch(() => {});
+  }, ms);
+
+testPage('a walk whose answer is lost keeps its deadman until it ends', openWithBoard, async (page) => {
+  await dropReceivedLines(page, 'ok walk');
   await findGaitButton(page, 'walk').click();
   await waitForText(page, '#problems', /no answer to "walk"/);
   await waitForText(page, '#doing', /^walk$/);
@@ -243,20 +252,120 @@ testPage('a walk whose answer is lost keeps its deadman until it ends', openWith
   assert.match(await readTextReceivedByBoard(page), /\nstop\n[^]*deadman 0\n/);
 });
 
-testPage('a deadman left behind by a page is not mistaken for the robot\'s own', openWithBoard, async (page) => {
+testPage('a gait that only the board\'s robot has keeps the page\'s deadman', () => openWithBoard('own-gaits'), async (page) => {
+  await sendToBoard(page, 'stride');
+  await page.clock.runFor(2000);
+  assert.equal(await readGait(page), 'stride');
+  assert.doesNotMatch(await readTextReceivedByBoard(page), /\nstride\n[^]*deadman 0\n/);
+  await dropLines(page, []);
+  await page.clock.runFor(901 + 40);
+  assert.equal(await runAndDetectMovement(page, 500), false);
+});
+
+testPage('a walking robot gets the page\'s deadman again if the link lost it after the settings were read', openWithWalkingRobot, async (page) => {
+  await dropLines(page, ['deadman 901']);
+  await page.evaluate(() => void window.lizard.board.ask('cal', true));
+  await page.clock.runFor(3500);
+  await restoreLink(page);
+  // A line without an answer is sent again after three seconds.
+  await page.clock.runFor(5000);
+  assert.ok(await runAndDetectMovement(page, 500));
+  await dropLines(page, []);
+  await page.clock.runFor(901 + 40);
+  assert.equal(await runAndDetectMovement(page, 500), false);
+});
+
+const BLUETOOTH_SERVICE = '00001101-0000-1000-8000-00805f9b34fb';
+/** Opens the page with a board whose settings the page has not read, because no set-up opens for a radio. */
+const openWithUnreadBoard = () => openWithBoard('robot', 4000, { boardKeepsRunning: true, bluetoothService: BLUETOOTH_SERVICE });
+
+/** Opens the page with such a board, in which a page that was closed during a walk has left its `deadman`. */
+async function openWithLeftBoard() {
+  const page = await openWithUnreadBoard();
   await page.evaluate(() => window.attachedBoard.send([...'deadman 901\n'].map((character) => character.charCodeAt(0))));
   await page.clock.runFor(500);
+  return page;
+}
+
+testPage('a deadman left behind by a page is not mistaken for the robot\'s own', openWithLeftBoard, async (page) => {
   await findGaitButton(page, 'walk').click();
   await page.clock.runFor(1000);
   await pressEscapeAndAdvance(page, 1000);
   assert.match(await readTextReceivedByBoard(page), /stop\n[^]*deadman 0\n(status\n)*$/);
 });
 
+testPage('a deadman left behind by a page is not saved', openWithLeftBoard, async (page) => {
+  await sendToBoard(page, 'save');
+  assert.match(await readTextReceivedByBoard(page), /deadman 901\n[^]*deadman 0\n(status\n)*save\n/);
+});
+
+testPage('no gait starts while the robot\'s own deadman is unknown, because it could not be restored', openWithUnreadBoard, async (page) => {
+  await dropReceivedLines(page, '# deadman');
+  await findGaitButton(page, 'walk').click();
+  await waitForText(page, '#problems', /"walk" was not sent, because the robot did not confirm its deadman setting/);
+  assert.doesNotMatch(await readTextReceivedByBoard(page), /deadman|walk/);
+});
+
+testPage('a lost line that restores the robot\'s own deadman is sent again', openWithWalkingRobot, async (page) => {
+  await dropLines(page, ['deadman 0']);
+  await pressEscapeAndAdvance(page, 4500);
+  await restoreLink(page);
+  await page.clock.runFor(4000);
+  assert.match(await readTextReceivedByBoard(page), /stop\n[^]*deadman 0\n/);
+});
+
+testPage('the robot gets its own deadman back after a second stop', openWithWalkingRobot, async (page) => {
+  await delayReceivedLines(page, 600);
+  await pressEscapeAndAdvance(page, 700);
+  await pressEscapeAndAdvance(page, 5000);
+  assert.match(await readTextReceivedByBoard(page), /stop\n[^]*deadman 0\n/);
+});
+
+testPage('a second stop does not drop the pace that a released stick restores', openWithBoard, async (page) => {
+  await sendToBoard(page, 'speed 50');
+  await page.evaluate(() => ['stop', 'speed 100', 'stop'].forEach((line) => void window.lizard.board.drive(line)));
+  await page.clock.runFor(2000);
+  assert.match(await readTextReceivedByBoard(page), /stop\n[^]*speed 100\n/);
+});
+
+testPage('nothing is saved until the robot has confirmed its own deadman', openWithWalkingRobot, async (page) => {
+  // The answer to the last repetition of the page's own line arrives after the lost line.
+  await delayReceivedLines(page, 400);
+  await runUntil(page, 'the page repeats its line after a status', async () => (await readTextReceivedByBoard(page)).endsWith('status\ndeadman 901\n'), 20);
+  await dropLines(page, ['deadman 0']);
+  await page.evaluate(() => void window.lizard.board.ask('save'));
+  await page.clock.runFor(4500);
+  assert.doesNotMatch(await readTextReceivedByBoard(page), /save/);
+  assert.match(await readText(page, '#problems'), /"save" was not sent, because the robot did not confirm its own deadman setting\./);
+  await restoreLink(page);
+  await page.clock.runFor(4000);
+  await page.evaluate(() => void window.lizard.board.ask('save'));
+  await page.clock.runFor(2000);
+  assert.match(await readTextReceivedByBoard(page), /deadman 0\n(status\n)*save\n/);
+});
+
+testPage('a deadman that the user has set is restored even if its answer was lost', openWithWalkingRobot, async (page) => {
+  await pressEscapeAndAdvance(page, 1500);
+  await dropReceivedLines(page, 'ok deadman 5000');
+  await page.evaluate(() => void window.lizard.board.ask('deadman 5000'));
+  await waitForText(page, '#problems', /no answer to "deadman 5000"/);
+  await page.evaluate(() => (window.attachedBoard.onByte = window.originalOnByte));
+  await startWalk(page);
+  await pressEscapeAndAdvance(page, 1500);
+  assert.match(await readTextReceivedByBoard(page), /deadman 901\n[^]*stop\n[^]*deadman 5000\n(status\n)*$/);
+});
+
+testPage('a robot that the page leaves over a slow link gets its own deadman back', openWithWalkingRobot, async (page) => {
+  await delayReceivedLines(page, 300);
+  await page.locator('#connect').click();
+  await waitForText(page, '#where', /simulated UNO/);
+  assert.match(await readTextReceivedByBoard(page), /stop\n[^]*deadman 0\n$/);
+});
+
 test('the page treats an HC-05 at a serial port with 9600 baud as a radio', async () => {
-  const bluetoothService = '00001101-0000-1000-8000-00805f9b34fb';
-  const page = await openWithBoard('robot', 0, { boardKeepsRunning: true, moduleBaud: 9600, bluetoothService });
+  const page = await openWithBoard('robot', 0, { boardKeepsRunning: true, moduleBaud: 9600, bluetoothService: BLUETOOTH_SERVICE });
   await waitForText(page, '#where', /^on a board on Bluetooth that has not restarted/);
-  assert.deepEqual(await page.evaluate(() => window.portRequest.allowedBluetoothServiceClassIds), [bluetoothService]);
+  assert.deepEqual(await page.evaluate(() => window.portRequest.allowedBluetoothServiceClassIds), [BLUETOOTH_SERVICE]);
   assert.match(await readTextReceivedByBoard(page), /^(status\n)+watch 10\n/, 'the page does not wait for a reset');
   const baudRate = await page.evaluate(() => window.attachedBoard.uno.usart.baudRate);
   assert.ok(Math.abs(baudRate / 9600 - 1) < 0.03, `the chip has not found the baud rate: ${baudRate} baud`);
@@ -266,7 +375,7 @@ test('the page treats an HC-05 at a serial port with 9600 baud as a radio', asyn
   await waitForText(page, '#doing', /^stop$/);
 });
 
-testPage('a hidden page stops the robot', openWalking, async (page) => {
+testPage('a hidden page stops the robot', openWithWalkingRobot, async (page) => {
   await hidePage(page);
   await page.clock.runFor(500);
   assert.equal(await readGait(page), 'stop');
@@ -291,7 +400,7 @@ testPage('no gait starts on a hidden page', openWithBoard, async (page) => {
 /** Resets the board as a power failure does: the boot loader starts the program at once. */
 const cutSupply = (page) => page.evaluate(() => window.attachedBoard.reset('power'));
 
-testPage('a gait that waits for an answer does not start after a restart of the robot', openWalking, async (page) => {
+testPage('a gait that waits for an answer does not start after a restart of the robot', openWithWalkingRobot, async (page) => {
   await dropLines(page, ['trim']);
   await page.evaluate(() => void window.lizard.board.ask('trim 1 1'));
   await findGaitButton(page, 'left').click();
@@ -301,7 +410,7 @@ testPage('a gait that waits for an answer does not start after a restart of the 
   assert.equal(await readGait(page), 'stand');
 });
 
-testPage('after a restart of a walking robot, the page sends no line that would cancel its boot action', openWalking, async (page) => {
+testPage('after a restart of a walking robot, the page sends no line that would cancel its boot action', openWithWalkingRobot, async (page) => {
   await cutSupply(page);
   await page.clock.runFor(3500);
   assert.equal(await readGait(page), 'stand');
@@ -330,7 +439,7 @@ testPage('after a lost confirmation of deadman, the next press of a gait starts 
   assert.equal(await readText(page, '#doing'), 'left');
 });
 
-testPage('a hidden page stops sending the lines that keep a robot walking', openWalking, async (page) => {
+testPage('a hidden page stops sending the lines that keep a robot walking', openWithWalkingRobot, async (page) => {
   await dropLines(page, ['stop']);
   await hidePage(page);
   await page.clock.runFor(3000);

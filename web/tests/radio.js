@@ -44,7 +44,7 @@ function prepareRadio() {
   window.powerOnBoard = () => {
     const { board: pageBoard, robot } = window.lizard;
     const board = new pageBoard.link.board.constructor(robot.image, null, null);
-    // A new module, with its default name.
+    // A new module has its default rate of 9600 baud.
     board.baud = 9600;
     board.run(16_000 * 4000);
     const output = [];
@@ -81,16 +81,16 @@ export class Radio {
   }
 
   /**
-   * Opens the page with a module in range. `adapter` is the state of the browser's radio; `hasRobot` is true if a robot
-   * is at the module's serial line, and `isAllowed` if the page may use Bluetooth.
+   * Opens the page with a module in range. `adapterState` is the state of the browser's radio; `hasRobot` is true if a
+   * robot is at the module's serial line, and `isBluetoothAllowed` if the page may use Bluetooth.
    */
-  static async open(module, { adapter = 'powered-on', hasRobot = true, isAllowed = true } = {}) {
-    const page = isAllowed ? await openPage({}, prepareRadio) : await openForbidden('bluetooth', prepareRadio);
+  static async open(module, { adapterState = 'powered-on', hasRobot = true, isBluetoothAllowed = true } = {}) {
+    const page = isBluetoothAllowed ? await openPage({}, prepareRadio) : await openForbidden('bluetooth', prepareRadio);
     const browserSession = await openDevTools();
-    await browserSession.send('BluetoothEmulation.enable', { state: adapter, leSupported: true });
+    await browserSession.send('BluetoothEmulation.enable', { state: adapterState, leSupported: true });
     const radio = new Radio(page, browserSession, await page.context().newCDPSession(page), module);
     if (hasRobot) await page.evaluate(() => window.powerOnBoard());
-    if (adapter !== 'powered-on') return radio;
+    if (adapterState !== 'powered-on') return radio;
     const { name, service } = module;
     await browserSession.send('BluetoothEmulation.simulatePreconnectedPeripheral', { address: MODULE_ADDRESS, name, manufacturerData: [], knownServiceUuids: [service] });
     // A response may fail after the page was closed. If one fails earlier, the test times out.
@@ -144,11 +144,11 @@ export class Radio {
   }
 
   /** Advances the page's clock until `condition` returns true. */
-  runUntil(waitName, condition) {
-    return repeatUntil(waitName, condition, () => this.run(STEP_MS));
+  runUntil(awaitedEvent, condition) {
+    return repeatUntil(awaitedEvent, condition, () => this.run(STEP_MS));
   }
 
-  /** Presses the button, and picks the module or cancels. */
+  /** Presses the page's button for Bluetooth, and picks the module or cancels. */
   async pick(isModulePicked = true) {
     const prompt = new Promise((resolve) => this.pageSession.once('DeviceAccess.deviceRequestPrompted', resolve));
     await this.page.locator('#radio').click();
@@ -158,7 +158,7 @@ export class Radio {
   }
 
   /** Simulates a phone that sleeps: the page's timers stop, but the robot continues. */
-  async sleep(ms) {
+  async simulatePhoneSleep(ms) {
     await this.page.evaluate((ms) => {
       for (let remainingMs = ms; remainingMs > 0; remainingMs -= 2) window.attachedBoard.run(16_000 * 2);
     }, ms);

@@ -47,7 +47,7 @@ async function openTwoPages() {
     const bytesToBoard = await radioPage.evaluate(() => window.bytesToBoard.splice(0));
     await cablePage.evaluate((bytes) => bytes.length > 0 && window.attachedBoard.send(bytes), bytesToBoard);
   };
-  const runUntil = (waitName, condition) => repeatUntil(waitName, condition, step);
+  const runUntil = (awaitedEvent, condition) => repeatUntil(awaitedEvent, condition, step);
   await radioPage.locator('#connect').click();
   await runUntil('the second page finds the robot', async () => (await readText(radioPage, '#where')).includes('on Bluetooth'));
   return { cablePage, radioPage, runUntil };

@@ -1,4 +1,4 @@
-// Writing only the robot's section, behind the firmware that is already on the board.
+// Writing to a board: the robot's section alone, or firmware and robot, also after interruptions.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -35,7 +35,7 @@ async function assertFlash(page, start, expected) {
 testPage('a robot is written within 2.5 s, and firmware and saved settings stay unchanged', () => openWithBoard('large'), async (page) => {
   await page.evaluate(() => window.lizard.board.ask('trim 1 2').then(() => window.lizard.board.ask('save')) && null);
   await page.clock.runFor(1500);
-  const codeBytes = await readFlash(page, 0, SECTION_START);
+  const firmwareBytes = await readFlash(page, 0, SECTION_START);
   const savedEeprom = await page.evaluate(() => Array.from(window.attachedBoard.eeprom));
   assert.ok(savedEeprom.some((byte) => byte !== 0xff), 'settings are saved');
   await pressAndWait(page, '#flash-robot', /^written and verified in [\d.]+ s$/);
@@ -43,7 +43,7 @@ testPage('a robot is written within 2.5 s, and firmware and saved settings stay 
   assert.ok(seconds > 0.5 && seconds < 2.5, `${seconds} s`);
   await waitForText(page, '#where', /^on a board on USB, robot paper [0-9a-f]{8}$/);
   await assertFlash(page, SECTION_START, await makeSection('robot'));
-  assert.deepEqual(await readFlash(page, 0, SECTION_START), codeBytes);
+  assert.deepEqual(await readFlash(page, 0, SECTION_START), firmwareBytes);
   assert.deepEqual(await page.evaluate(() => Array.from(window.attachedBoard.eeprom)), savedEeprom);
 });
 
@@ -98,7 +98,7 @@ testPage('a foreign program that is replaced at once is not reported', openWithB
   assert.match(await readText(page, '#flash-message'), /^written and verified in [\d.]+ s$/);
 });
 
-testPage('a board walks with an edited gait after it was written', openWithBoard, async (page) => {
+testPage('a board walks with an edited gait once the gait is written to it', openWithBoard, async (page) => {
   await unfold(page, '#gait-editor');
   await page.waitForFunction(() => /mm$/.test(document.querySelector('#gait-distance').textContent));
   await page.locator('#gait-name').fill('stride');
@@ -150,7 +150,7 @@ testPage('the robot alone is written to a board that has not restarted', () => o
   await assertFlash(page, SECTION_START, await makeSection('robot'));
 });
 
-testPage('a board unplugged during a write has no robot, reports that, moves nothing, and can be written again', () => openWithBoard('large'), async (page) => {
+testPage('a board unplugged while its robot is written reports no robot, moves nothing, and can be written again', () => openWithBoard('large'), async (page) => {
   await page.locator('#flash-robot').click();
   await waitUntilPartIsWritten(page);
   await page.evaluate(() => window.unplug());
@@ -222,7 +222,7 @@ testPage('the page reports an older Nano that is unplugged while its baud rate i
   assert.match(await readText(page, '#where'), /simulated UNO/);
 });
 
-testPage('a write to the simulated UNO ends if the robot is changed meanwhile', () => openUnfolded('#flash'), async (page) => {
+testPage('a write to the simulated UNO fails if the robot is changed meanwhile', () => openUnfolded('#flash'), async (page) => {
   const findMessage = (pattern) => page.locator('#flash-message', { hasText: pattern });
   await page.locator('#flash-write').click();
   await findMessage(/^reading/).waitFor();

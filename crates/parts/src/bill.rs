@@ -76,7 +76,6 @@ pub struct Item {
 }
 
 impl Item {
-    /// Creates the row of a printed part.
     fn printed(part: &Part) -> Self {
         let density = match part.is_flexible {
             true => PAD_DENSITY,

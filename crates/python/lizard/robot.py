@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import re
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from queue import Empty, SimpleQueue
 from typing import Self
 
+from lizard._exchange import Exchange
 from lizard._ports import FRAME_PERIOD, Port, SerialPort, SimulatedPort
 from lizard.model import Model
-from lizard.status import Frame, NoAnswer, RobotError, Status
+from lizard.status import Frame, NoAnswer, RobotError, Status, parse_deadman
 
 BANNER_PREFIX = "# lizard "
 BANNER_TIMEOUT = 3.0
@@ -33,7 +33,7 @@ DRIVING_DEADMAN = 901
 still has it from an earlier program."""
 
 
-class Robot:
+class Robot(Exchange):
     """A robot on a serial port, which belongs to a board or to a radio module.
 
     Opening the port of a UNO resets the board. A `with` block stops the robot at its end. While a gait runs,
@@ -59,17 +59,10 @@ class Robot:
         return robot
 
     def _start(self, port: Port) -> None:
-        self._port = port
-        # Held while a line waits for its answer.
-        self._exchange_lock = threading.RLock()
-        # Guards the fields that the listener changes.
-        self._condition = threading.Condition()
-        self._answers: list[str] = []
-        self._notes: list[str] = []
+        self._open_exchange(port)
         self._watchers: list[SimpleQueue[Frame]] = []
         # None while a gait runs; afterwards the reason for an early end, or "".
         self._end_reason: str | None = ""
-        self._port_error: OSError | None = None
         self._is_connected = False
         self._reset_count = 0
         # While `go` waits for the answer to its line: how this answer begins. Otherwise None.
@@ -77,7 +70,6 @@ class Robot:
         # `deadman` before and while this program drives the robot, ms.
         self._own_deadman: int | None = None
         self._driving_deadman: int | None = None
-        self._closing = threading.Event()
         self._listener = threading.Thread(target=self._listen, daemon=True)
         self._keep_alive = threading.Thread(target=self._send_keep_alives, daemon=True)
         self._listener.start()
@@ -299,68 +291,13 @@ class Robot:
                 if time.monotonic() >= deadline:
                     raise
 
-    def _send(self, line: str, timeout: float) -> list[str]:
-        line = line.strip().lower()
-        if not (line.isascii() and line.isprintable() and line):
-            raise ValueError(f"a console line must be printable ASCII, got {line!r}")
-        word = line.split(" ")[0]
-        start = "ok gait=" if word == "status" else f"ok {word}"
-        # A refusal of which a radio has lost a part is no answer.
-        pattern = re.compile(rf"{re.escape(start)}|err \d+ ")
-        with self._exchange_lock:
-            self._check_open()
-            with self._condition:
-                self._answers, self._notes = [], []
-            self._write(line)
-
-            def find_answers() -> list[str]:
-                return [text for text in self._answers if pattern.match(text)]
-
-            if not self._wait_until(lambda: find_answers() != [], timeout):
-                raise NoAnswer(f"the robot does not answer `{line}`")
-            answer = find_answers()[0]
-            if answer.startswith("err "):
-                raise RobotError.parse(line, answer)
-            return [*self._notes, answer]
-
-    def _write(self, line: str) -> None:
-        try:
-            self._port.write(f"{line}\n".encode("ascii"))
-        except OSError as error:
-            self._port_error = error
-            self._check_open()
-
-    def _wait_until(self, is_ready: Callable[[], bool], timeout: float | None) -> bool:
-        """Waits until `is_ready` is true; returns False after `timeout` seconds. Raises an error if the port closes."""
-        with self._condition:
-            was_ready = self._condition.wait_for(
-                lambda: is_ready() or self._is_closed, timeout
-            )
-            self._check_open()
-            return was_ready
-
-    @property
-    def _is_closed(self) -> bool:
-        return self._port_error is not None or self._closing.is_set()
-
-    def _check_open(self) -> None:
-        if self._port_error is not None:
-            raise ConnectionError(
-                "the port is gone: the board was unplugged, or its cable is loose"
-            ) from self._port_error
-        if self._closing.is_set():
-            raise RobotError("this robot is closed")
-
     def _set_deadman(self) -> None:
         while self._driving_deadman is None:
             reset_count = self._reset_count
             own_deadman = self._own_deadman
             if own_deadman is None:
                 notes = self._send_until_answered("cal")
-                match = re.search(r"^# deadman (\d+)$", "\n".join(notes), re.MULTILINE)
-                if match is None:
-                    raise NoAnswer("the answer to `cal` has no `deadman`")
-                own_deadman = int(match[1])
+                own_deadman = parse_deadman(notes)
                 if own_deadman == DRIVING_DEADMAN:
                     own_deadman = 0
                 with self._condition:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -119,3 +120,21 @@ class Status:
 def parse_angles(text: str) -> tuple[float, ...]:
     """Parses the angles in `pose=`, deg."""
     return tuple(float(angle) for angle in text.split(",") if angle)
+
+
+def make_answer_pattern(line: str) -> re.Pattern[str]:
+    """Makes the pattern of the answers to a console line; raises ValueError for a line that cannot be sent."""
+    if not (line.isascii() and line.isprintable() and line):
+        raise ValueError(f"a console line must be printable ASCII, got {line!r}")
+    word = line.split(" ")[0]
+    start = "ok gait=" if word == "status" else f"ok {word}"
+    # A refusal of which a radio has lost a part is no answer.
+    return re.compile(rf"{re.escape(start)}|err \d+ ")
+
+
+def parse_deadman(notes: list[str]) -> int:
+    """Parses the robot's `deadman`, ms, in the answer to `cal`; raises NoAnswer if a radio has lost it."""
+    match = re.search(r"^# deadman (\d+)$", "\n".join(notes), re.MULTILINE)
+    if match is None:
+        raise NoAnswer("the answer to `cal` has no `deadman`")
+    return int(match[1])

@@ -73,8 +73,7 @@ impl Robot {
     /// # Errors
     /// Fails if the table is invalid, if the gait violates a limit, or if the robot's section is too large.
     pub fn with_gait(&self, table: &str) -> Result<Self, Error> {
-        // The message of a syntax error may contain a second line number, which is not corrected below. The table is
-        // therefore first parsed alone.
+        // The table is first parsed alone: below, the second line number in a message would not be corrected.
         file::parse(table, |_| Ok(()))?;
         let robot = file::parse(&format!("{STAND}{table}"), |document| {
             let root = Table::root(document, &["gait"])?;

@@ -16,12 +16,11 @@ use lizard_robot::{Robot as FileRobot, STEPS_PER_DEGREE};
 
 use crate::sections;
 
-/// Runs a test for every robot. The test gets the robot's name, the robot that the core reads, the robot from its file,
-/// and the flash.
+/// Runs a test for every robot, with its name, the robot that the core reads, the robot from its file, and the flash.
 fn for_each_robot(mut test: impl FnMut(&'static str, &Robot, &'static FileRobot, Region<'static>)) {
     for (NamedRobot { name, robot }, section) in sections() {
         let flash = Region::new(section);
-        let core_robot = Robot::open(flash).unwrap_or_else(|reason| panic!("{name}: {reason:?}"));
+        let core_robot = Robot::open(flash).expect(name);
         test(name, &core_robot, robot, flash);
     }
 }

@@ -72,6 +72,8 @@ const getFirstWord = (line: string) => line.trim().toLowerCase().split(/\s/)[0];
 /** Returns true if an answer can belong to `line`, and is not a late answer to another line. */
 function canAnswer(answer: string, line: string): boolean {
   const word = getFirstWord(line);
+  // The robot also answers each repetition of `deadman`, which has another value.
+  if (word === WORDS.deadman && answer.startsWith('ok')) return answer === `ok ${word} ${Number(line.trim().split(/\s+/)[1])}`;
   const expected = { [WORDS.status]: 'gait=', '?': WORDS.help }[word] ?? word;
   return answer.startsWith('err') || answer.startsWith(`ok ${expected}`);
 }
@@ -86,7 +88,8 @@ export class Dialogue {
   private pendingStop: PendingStop | null = null;
   /** Pending while answers to repetitions of `stop` may arrive; no other line is sent meanwhile. */
   private lateAnswerPeriod: Promise<void> | null = null;
-  private isSilent = false;
+  /** True while a line has had no answer for `SILENCE_MS`. */
+  isSilent = false;
   /**
    * The line that is repeated independently of other lines; null for none. An object, so that a new repetition of the
    * same line differs from the previous one.
@@ -138,13 +141,16 @@ export class Dialogue {
     request?.reject(new DroppedRequest());
   }
 
-  private dropQueuedRequests(): void {
-    for (const { reject } of this.queuedRequests.splice(0)) reject(new DroppedRequest());
+  private dropQueuedRequests(isKept: (request: Request) => boolean = () => false): void {
+    for (const request of this.queuedRequests.splice(0)) {
+      if (isKept(request)) this.queuedRequests.push(request);
+      else request.reject(new DroppedRequest());
+    }
   }
 
-  /** Sends `stop`, and drops the queued lines, which could make the robot walk again. */
+  /** Sends `stop`, and drops the queued lines, which could make the robot walk again; a pace cannot. */
   private sendStop(callbacks: PromiseCallbacks): void {
-    this.dropQueuedRequests();
+    this.dropQueuedRequests(({ line }) => getFirstWord(line) === WORDS.speed);
     if (this.pendingStop) return void this.pendingStop.callers.push(callbacks);
     const stop = (this.pendingStop = { callers: [callbacks], sendCount: 0 });
     this.listener.onSent(WORDS.stop);

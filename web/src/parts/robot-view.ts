@@ -59,7 +59,7 @@ export class RobotView {
     this.renderer = new three.WebGLRenderer({ canvas, antialias: true, powerPreference: 'low-power' });
     this.renderBudget = new RenderBudget(this.renderer.getContext() as WebGL2RenderingContext);
     this.camera.up.set(0, 0, 1);
-    // The sun is behind the viewer, a little to the side.
+    // The sun shines from the camera: these millimetres, in the camera's axes, hardly change its direction.
     this.sun.position.set(-0.6, 0.9, 1.2);
     this.camera.add(this.sun);
     this.scene.add(this.camera, new three.AmbientLight(0xffffff, 1.1));
@@ -187,10 +187,10 @@ export class RobotView {
     this.needsRendering = true;
   }
 
-  /** Places every mount; `places` has four numbers per mount: x and y in mm, cosine and sine of the angle. */
-  placeMounts(places: Float64Array): void {
+  /** Places every mount; `mountPlaces` has four numbers per mount: x and y in mm, cosine and sine of the angle. */
+  placeMounts(mountPlaces: Float64Array): void {
     this.mounts.forEach((mount, index) => {
-      const [x = 0, y = 0, cos = 1, sin = 0] = places.subarray(4 * index, 4 * index + 4);
+      const [x = 0, y = 0, cos = 1, sin = 0] = mountPlaces.subarray(4 * index, 4 * index + 4);
       mount.matrix.set(cos, -sin, 0, x, sin, cos, 0, y, 0, 0, 1, 0, 0, 0, 0, 1);
       mount.matrixWorldNeedsUpdate = true;
     });
@@ -254,7 +254,10 @@ const KIND_COLOURS: Partial<Record<BodyEntry['kind'], string>> = {
   fitting: '#8a6d4b',
 };
 
-/** Returns a body's colour: that of its servo, or else of the plate, for a printed part; that of its kind otherwise. */
+/**
+ * Returns a body's colour. A printed part has the colour of its servo or, without a servo, of the plate; any other body
+ * has that of its kind.
+ */
 function chooseColour({ kind, servo }: BodyEntry): string {
   const { 'skin-edge': plate, tube, steel } = getPalette();
   if (kind === 'printed') return servo === null ? plate : getServoColour(servo);

@@ -245,7 +245,7 @@ impl Description {
             supply: [board.slow_mv, board.stop_mv, board.rest_mv].map(|mv| f64::from(mv) / 1000.0),
             floor: Floor::for_robot(robot),
             models: ServoModelEntry::list_all(robot),
-            words: words.map(|word| word.text()).collect(),
+            words: words.map(|word| word.spelling()).collect(),
         }
     }
 }

@@ -21,6 +21,8 @@ export interface Status {
   phase: number;
   /** Pace, percent; null if there is no robot in the flash. */
   pace: number | null;
+  /** Number of frames since the program started. */
+  frames: number;
   /** Smallest margin; null if there is no robot in the flash. */
   margin: number | null;
   /** True if the guard holds the robot in its last safe pose. */

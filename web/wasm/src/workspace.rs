@@ -41,26 +41,28 @@ impl Workspace {
         let five_bar = robot.lizard().end(end);
         let half_base = five_bar.base / 2.0;
         let crank_length = five_bar.left_crank_length.max(five_bar.right_crank_length);
-        let [left, right] = [five_bar.left_coupler_length, five_bar.right_coupler_length];
-        let reach = half_base + crank_length + left.max(right);
+        let coupler_length = five_bar
+            .left_coupler_length
+            .max(five_bar.right_coupler_length);
+        let reach = half_base + crank_length + coupler_length;
         let spacing = 2.0 * reach / f64::from(STEPS_ACROSS);
         let point_at =
             |column: i32, row: i32| [f64::from(column) * spacing, f64::from(row) * spacing];
-        let steps = -(STEPS_ACROSS / 2)..=STEPS_ACROSS / 2;
+        let indices = -(STEPS_ACROSS / 2)..=STEPS_ACROSS / 2;
         // Returns row and column of each point, in ascending order.
         let points_in = |rows: &RangeInclusive<i32>, columns: &RangeInclusive<i32>| {
             let columns = columns.clone();
             let points_of_row = move |row| columns.clone().map(move |column| (row, column));
             rows.clone().flat_map(points_of_row)
         };
-        let allowed_points: Vec<(i32, i32)> = points_in(&steps, &steps)
+        let allowed_points: Vec<(i32, i32)> = points_in(&indices, &indices)
             .filter(|(row, column)| is_point_allowed(robot, end, point_at(*column, *row)))
             .collect();
         // Returns the range of rows or columns with allowed points, with the rim on both sides.
         let find_range_with_rim = |to_index: fn(&(i32, i32)) -> i32| {
-            let indices = allowed_points.iter().map(to_index);
-            let smallest = indices.clone().min().unwrap_or(0);
-            (smallest - RIM_WIDTH)..=(indices.max().unwrap_or(0) + RIM_WIDTH)
+            let allowed_indices = allowed_points.iter().map(to_index);
+            let smallest = allowed_indices.clone().min().unwrap_or(0);
+            (smallest - RIM_WIDTH)..=(allowed_indices.max().unwrap_or(0) + RIM_WIDTH)
         };
         let rows = find_range_with_rim(|(row, _)| *row);
         let columns = find_range_with_rim(|(_, column)| *column);
@@ -77,7 +79,8 @@ impl Workspace {
     }
 }
 
-/// Returns the end point of head or tail in the neutral pose, mm, in the end's own frame.
+/// Returns the end point of head or tail in the neutral pose, mm, in the end's own frame; the origin if that pose has
+/// no solution.
 pub fn compute_neutral_point(robot: &Robot, end: End) -> [f64; 2] {
     let solution = robot.lizard().solve(&robot.neutral_pose());
     let point = solution.map(|solution| solution.end(end).end_point);

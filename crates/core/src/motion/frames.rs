@@ -354,8 +354,7 @@ impl Motion {
         self.next_target = None;
     }
 
-    /// Starts the next motion if the current one stands still, and advances the motion by a frame. Freezes the last
-    /// pose if the new pose is unsafe.
+    /// Advances the motion, or the next one after a standstill, by a frame. Freezes the last pose before an unsafe one.
     // Not inlined, because in `advance_frame` its registers would cost more than the call.
     #[inline(never)]
     fn advance_motion(&mut self) {
