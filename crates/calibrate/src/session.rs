@@ -84,8 +84,9 @@ impl<C: Console> Session<C> {
     /// Fails if the robot does not answer, or if its answer has an unknown format.
     pub async fn read_again(&mut self) -> Result<(), C> {
         let has_changes = self.has_unsaved_changes();
-        self.may_be_outdated = true;
-        self.refresh().await?;
+        // If this fails, the session is unchanged, and the next call decides again.
+        self.active = read_settings(&mut self.console).await?;
+        self.may_be_outdated = false;
         if !has_changes {
             self.saved = self.active.clone();
         }

@@ -2,8 +2,8 @@
 //!
 //! A tick (every 20 ms), a received byte, or a transmit buffer that becomes empty wakes the main loop. Each step does
 //! one task, and a tick has priority, so a frame waits for at most one byte or one line. The loop reads no input while
-//! it writes the EEPROM (3.4 ms per byte), or while a line waits for room in the transmit buffer; but frames and EEPROM
-//! writes continue even if nobody reads the output.
+//! it writes the EEPROM (3.4 ms per byte), or while an answer or a notice waits for room in the transmit buffer; it
+//! does while only a report of the pose waits. Frames and EEPROM writes continue even if nobody reads the output.
 //!
 //! The loop computes one frame per tick. If several ticks have passed, the loop still computes only one frame: of
 //! several frames only the last would be played, and the servos would jump. While the pulses run, the loop also skips a
@@ -207,8 +207,8 @@ impl Main {
         StepResult::Worked
     }
 
-    /// Stores the state of the servos for the run after a reset. A run without a robot leaves the stored state as it is,
-    /// because it knows nothing about the servos: an upload of the robot may have been interrupted.
+    /// Stores the state of the servos for the run after a reset. A run without a robot leaves the stored state as it
+    /// is, because it knows nothing about the servos: an upload of the robot may have been interrupted.
     fn store_servo_state<B: Board>(&self, board: &mut B) {
         if self.control.motion().robot().is_none() {
             return;

@@ -233,7 +233,7 @@ class Robot(Exchange):
         with self._condition:
             self._watchers.append(frames)
         try:
-            self.send(f"watch {every}")
+            self._send_until_answered(f"watch {every}")
             while True:
                 try:
                     frame = frames.get(timeout=every * FRAME_PERIOD + ANSWER_TIMEOUT)
@@ -283,8 +283,8 @@ class Robot(Exchange):
         while True:
             timeout = ANSWER_TIMEOUT / 2
             if self._driving_deadman is not None:
-                # The lines that keep the gait alive wait for this line.
-                timeout = min(timeout, self._driving_deadman / 2000)
+                # The lines that keep the gait alive wait for this line. At 9600 baud an answer takes 0.2 s.
+                timeout = min(timeout, max(0.3, self._driving_deadman / 2000))
             try:
                 return self._send(line, timeout)
             except NoAnswer:

@@ -142,7 +142,12 @@ def test_the_robots_own_deadman_survives_a_lost_answer(robot, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "call", [lambda robot: robot.status(), lambda robot: robot.speed(50)]
+    "call",
+    [
+        lambda robot: robot.status(),
+        lambda robot: robot.speed(50),
+        lambda robot: next(robot.watch()),
+    ],
 )
 def test_a_lost_line_does_not_stop_a_walking_robot(robot, monkeypatch, call):
     robot.walk()

@@ -183,7 +183,7 @@ def test_the_node_publishes_joints_and_follows_velocity_commands(monkeypatch):
         send_velocity()
         send_velocity()
         assert node.robot.is_going
-        node.robot.send = lambda line: (_ for _ in ()).throw(
+        node.robot._send = lambda *_: (_ for _ in ()).throw(
             lizard.RobotError("refused")
         )
         callbacks["cmd_vel"](Message(linear=Message(x=-0.03), angular=Message(z=0.0)))
@@ -212,7 +212,7 @@ def test_the_node_publishes_joints_and_follows_velocity_commands(monkeypatch):
     from lizard_ros.node import main
 
     main()
-    # The errors are from `watch`, from `cmd_vel`, from the refused gait, and from the refused pace at shutdown.
+    # The errors are from `watch`, from `cmd_vel`, from the refused pace, and from the refused stop at shutdown.
     assert logged == [
         "the robot no longer sends its poses",
         "the robot was reset",

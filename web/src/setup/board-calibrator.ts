@@ -85,7 +85,12 @@ export class BoardCalibrator {
       if (this.mayBeOutdated) {
         // A line that is sent meanwhile sets it again.
         this.mayBeOutdated = false;
-        await this.calibrator.readAgain();
+        try {
+          await this.calibrator.readAgain();
+        } catch (error) {
+          this.mayBeOutdated = true;
+          throw error;
+        }
       }
       return await action(this.calibrator);
     } finally {

@@ -169,7 +169,7 @@ export class SetupDialog {
   private async leave(): Promise<void> {
     if (this.isLeaving) return;
     this.isLeaving = true;
-    if (this.calibrator?.isCurrent) await this.runningAction;
+    if (this.calibrator?.isCurrent) await this.runningAction.catch(() => {});
     let message = '';
     const { calibrator } = this;
     if (calibrator?.isCurrent) {
@@ -201,10 +201,12 @@ export class SetupDialog {
   /** Writes the page's robot, alone or with the firmware. */
   readonly write = (content: WriteContent): void => {
     this.runAction(async () => {
-      // Writing restarts the board, which loses unsaved settings: a reversed sign, for example, is wrong again.
-      if (this.calibrator?.isChanged) this.doneSteps.clear();
+      const wasChanged = this.calibrator?.isChanged;
       this.calibrator = null;
-      if (await this.writer.write(content, 'setup')) this.markDone('Firmware');
+      const isWritten = await this.writer.write(content, 'setup');
+      // Writing restarts the board, which loses unsaved settings: a reversed sign, for example, is wrong again.
+      if (isWritten && wasChanged) this.doneSteps.clear();
+      if (isWritten) this.markDone('Firmware');
       return this.message.textContent ?? '';
     });
   };

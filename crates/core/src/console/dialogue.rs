@@ -1,8 +1,8 @@
 //! The console's dialogue: one line in, one answer out.
 //!
-//! While the console has nothing to write, the caller passes received bytes to it. When the transmit buffer has room
-//! for a whole line, the caller lets the console write a line. Therefore nothing blocks: a long list is written line by
-//! line between the frames, and a slow receiver never delays a frame.
+//! While no line waits, or only a report of the pose, the caller passes received bytes to the console. When the
+//! transmit buffer has room for a whole line, the caller lets the console write a line. Therefore nothing blocks: a
+//! long list is written line by line between the frames, and a slow receiver never delays a frame.
 
 use crate::console::answer::{AnswerPart, Counters};
 use crate::console::autobaud::RateDetector;
@@ -84,7 +84,6 @@ impl Console {
         if self.blocks_input(control) {
             self.rate_detector.record_unread_bytes();
         }
-        // Counted only now: a report that becomes due in this frame has not delayed the reading of any byte.
         self.watch.count_frame();
         let rate = self.rate_detector.end_frame()?;
         // The next line end may complete a line that began at the previous rate.
@@ -97,8 +96,10 @@ impl Console {
         self.next_pending_line(control).is_some()
     }
 
-    /// True while a line waits to be written before the next line is received: an answer may quote the received line, and
-    /// a notice precedes the answers to later lines. A report of the pose may wait.
+    /// True while a line waits that must be written before the next line is received. An answer may quote the
+    /// received
+    /// line, so the caller passes no byte meanwhile; banner, notices and the reason of a hold precede the answers to
+    /// later lines. Only a report of the pose may wait.
     pub const fn blocks_input(&self, control: &Controller) -> bool {
         !matches!(
             self.next_pending_line(control),

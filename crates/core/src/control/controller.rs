@@ -272,7 +272,7 @@ impl Controller {
             Reaction::Freeze => self.stop(),
             Reaction::EndPulses => {
                 self.stop();
-                // The pose of a robot that rests already is saved, or not known.
+                // If the robot rests already, its pose is saved, waits to be saved, or is not known.
                 if !self.motion.is_resting() {
                     self.rest();
                 }

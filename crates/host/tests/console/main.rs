@@ -379,7 +379,9 @@ fn a_full_standard_error_does_not_end_a_command() {
         let mut child = child.expect("the program starts");
         assert_eq!(wait_for_exit(&mut child).code(), Some(0), "{line}");
     }
-    assert!(folder.path().join("b.toml").exists());
+    for file in ["a.toml", "b.toml"] {
+        assert!(folder.path().join(file).exists(), "{file}");
+    }
 }
 
 /// Opens a device to which nothing can be written.

@@ -173,7 +173,10 @@ fn a_stop_before_the_end_of_the_console_is_sent_and_repeated_until_the_robot_ans
     device.stop();
     let lines: Vec<String> = lines.iter().collect();
     assert_eq!(lines[..5], ["cal", "deadman 901", "walk", "stop", "stop"]);
-    session.read_output();
+    TIME_LIMIT.wait_for("the message", || {
+        session.read_output();
+        session.new_text.contains("has not confirmed")
+    });
     assert!(!session.new_text.contains("continues its gait"));
 }
 

@@ -29,12 +29,12 @@ export const limitsStep: Step = {
       ...(limit
         ? [
             row(
-              button('Set ↺ limit here', () => setLimit(dialog, from, currentAngle)),
-              button('Set ↻ limit here', () => setLimit(dialog, currentAngle, to)),
+              button('Set ↺ limit here', () => setLimit(dialog, 1, currentAngle)),
+              button('Set ↻ limit here', () => setLimit(dialog, 0, currentAngle)),
             ),
             row(
-              makeBox('From, degrees', from, (value) => setLimit(dialog, value, to)),
-              makeBox('to, degrees', to, (value) => setLimit(dialog, from, value)),
+              makeBox('From, degrees', from, (value) => setLimit(dialog, 0, value)),
+              makeBox('to, degrees', to, (value) => setLimit(dialog, 1, value)),
             ),
           ]
         : []),
@@ -52,9 +52,12 @@ function turnServo(dialog: SetupDialog, commandedDegrees: number): void {
   });
 }
 
-function setLimit({ servo, run, markDone }: SetupDialog, from: number, to: number): void {
+/** Sets an end of the travel, 0 for the first or 1 for the second, and keeps the other end. */
+function setLimit({ servo, run, markDone }: SetupDialog, end: 0 | 1, angle: number): void {
   run(async (calibrator) => {
-    await calibrator.setLimit(servo, from, to);
+    // Another part of the page may have changed the other end since the buttons were drawn.
+    const [from, to] = calibrator.calibration.servos[servo].limit;
+    await calibrator.setLimit(servo, end === 0 ? angle : from, end === 1 ? angle : to);
     markDone('Limits');
     const [min, max] = calibrator.calibration.servos[servo].limit;
     return `A${servo + 1} travels from ${min.toFixed(2)}° to ${max.toFixed(2)}°.`;

@@ -10,7 +10,7 @@ use lizard_core::console::word::Word;
 
 /// The `deadman` while a person drives, ms, unless the robot's own is shorter. Users set round numbers; a robot with
 /// this value therefore got it from a program that ended without restoring the setting.
-const DRIVING_DEADMAN_MS: u16 = 901;
+pub(super) const DRIVING_DEADMAN_MS: u16 = 901;
 /// Interval between the lines that keep the robot walking, even while an answer is outstanding. It is so short that two
 /// of three lines may be lost, even if the robot's own setting is somewhat shorter than [`DRIVING_DEADMAN_MS`].
 pub(super) const LINE_INTERVAL: Duration = Duration::from_millis(200);

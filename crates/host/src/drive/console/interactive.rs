@@ -147,7 +147,12 @@ impl Dialogue {
         let sent = self.send_script(&mut board, first_line, is_reset_by_opening);
         if sent.is_err() {
             // The port may be gone.
-            let _ = board.link.send("stop");
+            if board.link.send("stop").is_ok() {
+                let _ = self.record(Event::Sent("stop".to_owned()));
+            }
+            if let Some(recorder) = &mut self.recorder {
+                let _ = recorder.flush();
+            }
         }
         sent?;
         self.session.check_all_accepted()
@@ -254,7 +259,6 @@ impl Dialogue {
         // stays set, so that the robot stops by itself.
         let has_quit = fatal_failure.is_none() && terminal::is_open();
         let mut is_restored = true;
-        let was_stopping = self.session.is_stopping();
         if has_quit && let Some(board) = &mut board {
             // The terminal may be closed.
             let _ = screen.draw("waiting for the robot", &prompt);
@@ -263,8 +267,7 @@ impl Dialogue {
         }
         drop(screen);
         history::save(prompt.history());
-        // The latest status may be older than a `stop`.
-        let is_walking = !was_stopping && self.session.status().is_some_and(Status::is_walking);
+        let is_walking = self.session.status().is_some_and(Status::is_walking);
         let is_stopping = self.session.is_stopping();
         let has_message = is_walking || is_stopping || !is_restored;
         if has_quit && has_message && board.is_some() && !finder.is_simulated() {

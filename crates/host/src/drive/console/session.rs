@@ -1,9 +1,9 @@
 //! The dialogue with the robot: the next line to send, the lines to show, and the events to record.
 //!
 //! The robot answers each line once and in order, and prints other lines in between. For the screen's status line, the
-//! console sends `status` twice a second, and more often while a person drives; the answers are not shown, and a user's
-//! line waits for at most one of them. `stop` does not wait: it is sent at once and repeated until the robot answers,
-//! because a link may lose a line or its answer. Failed lines are counted for the exit code of a script.
+//! console sends `status` twice a second. While a person drives, it sends `status` more often, even if an answer is
+//! outstanding. The answers are not shown. `stop` does not wait: it is sent at once and repeated until the robot
+//! answers, because a link may lose a line or its answer. Failed lines are counted for the exit code of a script.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -124,6 +124,13 @@ impl Session {
     pub fn restore_deadman(&mut self) -> Option<String> {
         if self.is_stopping() {
             return None;
+        }
+        let is_restore_pending = matches!(
+            self.pending_request,
+            Some((Request::Deadman(DeadmanLine::Restore), ..))
+        );
+        if is_restore_pending && let Some(deadman) = &mut self.deadman {
+            deadman.record_unconfirmed();
         }
         let deadman = self.deadman.as_mut();
         let overridden = deadman.filter(|deadman| deadman.is_overridden)?;
@@ -344,16 +351,21 @@ impl Session {
     /// Ends the repetition of `stop` after its answer; returns the line to show, or `None` if no `stop` is unanswered.
     fn receive_stop_answer(&mut self, line: &str) -> Option<String> {
         let stop = self.unanswered_stop.take()?;
+        // The latest status is older than this answer.
+        self.status = None;
         if stop.sent_count == 1 {
             self.late_answers_until = stop.request_time;
         }
         // Answers come in order; the answer to the line before `stop` is therefore lost.
         match self.pending_request.take() {
             Some((Request::Line(sent_line), ..)) => self.record_failure(sent_line, "no answer"),
-            Some((Request::Deadman(line), ..)) if line != DeadmanLine::RestoreForOneLine => {
-                if let (DeadmanLine::Restore, Some(deadman)) = (line, &mut self.deadman) {
+            // The next status in which the robot does not walk restores the setting.
+            Some((Request::Deadman(DeadmanLine::Restore), ..)) => {
+                if let Some(deadman) = &mut self.deadman {
                     deadman.record_unconfirmed();
                 }
+            }
+            Some((Request::Deadman(line), ..)) if line != DeadmanLine::RestoreForOneLine => {
                 self.queue.push_front(Request::Deadman(line));
             }
             _ => {}

@@ -5,9 +5,9 @@
 //! compiler, in the board's code or in the code for the pulses.
 //!
 //! The time when main reads a received byte must be reconstructed. Main reads a byte when the UNO has received it
-//! completely and the transmit buffer has room for the longest answer; the free room follows from the length of the
-//! text written so far. Main also waits while it writes the EEPROM; these waits are not reconstructed and take no time
-//! here.
+//! completely and no answer or notice waits for room in the transmit buffer; the free room follows from the length of
+//! the text written so far. Main also waits while it writes the EEPROM; these waits are not reconstructed and take no
+//! time here.
 
 use lizard_core::console::MAX_OUTPUT_LINE_BYTES;
 use lizard_core::numbers::robot::Robot;
@@ -61,7 +61,7 @@ fn tick(run: &mut RunningRobot, cycle: u64) -> [u16; 4] {
 }
 
 /// Returns the cycle from which the transmit buffer has room for the longest answer, so that main writes waiting lines
-/// and reads waiting bytes; `None` if nothing waits.
+/// and then reads the bytes that had to wait; `None` if nothing waits.
 fn compute_next_wake_cycle(run: &RunningRobot) -> Option<u64> {
     let is_waiting = run.board.unread_count() > 0 || run.has_output();
     let idle_from_cycle = run.board.transmitter.idle_from_cycle();

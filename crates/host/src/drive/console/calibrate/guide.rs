@@ -9,7 +9,7 @@ use lizard_calibrate::{ConsoleError, ReplyError, SCALE_TURNS_DEG, SIGN_TURNS_DEG
 use lizard_robot::Status;
 use pollster::block_on;
 
-use super::super::deadman::limit_deadman_ms;
+use super::super::deadman::{DRIVING_DEADMAN_MS, limit_deadman_ms};
 use super::super::link::{BANNER_START, Link, LinkError};
 use step::{Step, list_steps};
 pub use view::StepView;
@@ -53,8 +53,9 @@ pub struct Guide<'a, P> {
     /// True if the user has skipped the steps for scales and limits.
     has_skipped_scales_and_limits: bool,
     is_walking: bool,
-    /// True while `deadman` is set for the test walk, so that the robot stops if its cable is pulled out.
-    is_deadman_set: bool,
+    /// The robot's own `deadman`, ms, while another value is set for the test walk, so that the robot stops if its cable
+    /// is pulled out; otherwise `None`.
+    own_deadman_ms: Option<u16>,
     /// True once the user has saved a calibration.
     has_saved: bool,
     /// The result of the last key, in words.
@@ -70,6 +71,11 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// Fails if there is no answer, or the robot cannot stand.
     pub fn new(link: &'a mut Link<P>) -> std::result::Result<Self, LinkError> {
         let mut robot = block_on(lizard_calibrate::Session::begin(link))?;
+        if robot.calibration().deadman == DRIVING_DEADMAN_MS {
+            // A program that ended during a drive has left this value.
+            block_on(send_command(robot.console(), "deadman 0"))?;
+            block_on(robot.read_again())?;
+        }
         let neutral_angles = block_on(robot.stand())?;
         Ok(Self {
             robot,
@@ -79,7 +85,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             moved_degrees: None,
             has_skipped_scales_and_limits: false,
             is_walking: false,
-            is_deadman_set: false,
+            own_deadman_ms: None,
             has_saved: false,
             message: String::new(),
         })
@@ -194,10 +200,16 @@ impl<'a, P: Read + Write> Guide<'a, P> {
 
     /// Restores the robot's own `deadman` after a test walk.
     fn restore_deadman(&mut self) -> Result<()> {
-        if self.is_deadman_set {
-            let line = format!("deadman {}", self.robot.calibration().deadman);
-            block_on(send_command(self.robot.console(), &line))?;
-            self.is_deadman_set = false;
+        if let Some(own_ms) = self.own_deadman_ms {
+            block_on(send_command(
+                self.robot.console(),
+                &format!("deadman {own_ms}"),
+            ))?;
+            self.own_deadman_ms = None;
+            // After a reset, the settings were read while `deadman` was set.
+            if self.robot.calibration().deadman != own_ms {
+                block_on(self.robot.read_again())?;
+            }
         }
         Ok(())
     }
@@ -283,8 +295,8 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         if self.is_walking {
             return self.stand();
         }
-        let deadman_ms = limit_deadman_ms(self.robot.calibration().deadman);
-        self.is_deadman_set = true;
+        let own_ms = self.robot.calibration().deadman;
+        let deadman_ms = limit_deadman_ms(*self.own_deadman_ms.get_or_insert(own_ms));
         block_on(send_command(
             self.robot.console(),
             &format!("deadman {deadman_ms}"),

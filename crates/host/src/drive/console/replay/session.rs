@@ -17,7 +17,7 @@ const MAX_HELD_FRAMES: usize = 50;
 /// Largest difference between the robot's frame count and this machine's clock, in frames. A line may arrive late, and
 /// a simulated robot lags behind on a slow machine.
 const MAX_CLOCK_DIFFERENCE_FRAMES: usize = 10;
-/// Time of the last event that is read, ms: a day.
+/// Largest time of an event that is read, ms: a day. Later events are ignored.
 const MAX_SESSION_MS: u64 = 86_400_000;
 
 /// A recorded session.
@@ -28,8 +28,9 @@ pub(super) struct RecordedSession {
 }
 
 impl RecordedSession {
-    /// Parses a session's file. A partial last line, left by a killed program or a full disk, is ignored, and so
-    /// are the events after [`MAX_SESSION_MS`]. The error says which line is not an event or is out of place, or that the file is not a session or has another format.
+    /// Parses a session's file. A partial last line, left by a killed program or a full disk, is ignored, and so are the
+    /// events after [`MAX_SESSION_MS`]. The error says which line is not an event or is out of place, or that the file
+    /// is not a session or has another format.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let not_a_session = format!(
             "this is not a session of `lizard console --record`: \"{FORMAT}\" is missing from its \

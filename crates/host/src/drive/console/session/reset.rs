@@ -2,12 +2,12 @@
 
 use std::time::Instant;
 
-use super::super::deadman::Deadman;
+use super::super::deadman::{Deadman, DeadmanLine};
 use super::Session;
 use super::request::{Request, UnansweredStop};
 
 impl Session {
-    /// Starts over with a board that was plugged in again. An unanswered `stop` is repeated. A board that was not reset
+    /// Starts over with a board that was connected again. An unanswered `stop` is repeated. A board that was not reset
     /// may still have the `deadman` for driving. The user's other waiting lines are dropped; returns a message about
     /// each of them.
     pub fn restart(&mut self, now: Instant, watches_poses: bool, is_reset: bool) -> Vec<String> {
@@ -53,8 +53,8 @@ impl Session {
         }
     }
 
-    /// Notices a reset whose banner the link has lost: the robot then reports fewer frames than before. The known
-    /// `deadman` is kept as unconfirmed, because the link may also have damaged the number.
+    /// Notices a reset whose banner the link has lost: the robot then reports fewer frames than before. The link may
+    /// also have damaged the number, so a robot that was driven stays driven: `deadman` is set again.
     pub(super) fn receive_frame_count(&mut self, frame_count: u64) {
         let is_reset = frame_count < self.frame_count;
         self.frame_count = frame_count;
@@ -62,10 +62,21 @@ impl Session {
             return;
         }
         self.is_watch_due = self.watches_poses;
+        let was_driven = self.is_driven();
+        let read = Request::Deadman(DeadmanLine::Read);
+        let is_read_due = self
+            .queue
+            .iter()
+            .any(|request| matches!(request, Request::Deadman(DeadmanLine::Read)));
         if let Some(deadman) = &mut self.deadman {
             deadman.record_unconfirmed();
-            deadman.is_gait_under_way = false;
         }
         self.plan_queue_again();
+        if was_driven {
+            self.queue.push_front(Request::Deadman(DeadmanLine::Set));
+        }
+        if is_read_due {
+            self.queue.push_front(read);
+        }
     }
 }

@@ -1,6 +1,7 @@
 use super::*;
 
 mod driving;
+mod lost_lines;
 
 const WALKING_STATUS: &str = "ok gait=walk phase=0 pose=1,2,3,4 margin=0.5 guard=clear fault=none";
 
