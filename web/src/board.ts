@@ -228,6 +228,7 @@ export class Board {
   private handleBanner(line: string): void {
     const { dialogue } = this;
     // First, because `setGait` would send the robot's own `deadman`.
+    this.deadman.reset();
     this.handleRestart();
     const bannerNumber = this.state.bannerCount.value;
     this.setGait(STAND);
@@ -245,10 +246,9 @@ export class Board {
     });
   }
 
-  /** Forgets the robot's settings, which a restart has undone. */
+  /** Records a restart, which has undone the robot's settings. */
   private handleRestart(): void {
     this.state.bannerCount.value += 1;
-    this.deadman.reset();
     this.isWatching = false;
     this.frameCount = 0;
   }
@@ -256,8 +256,12 @@ export class Board {
   /** Handles a status as soon as its line is received, because it could later overwrite a newer state. */
   private handleStatus(status: Status): void {
     // The link has lost the banner of a restart: the firmware sends it at a baud rate that not every radio module uses.
-    if (status.frames < this.frameCount) this.handleRestart();
-    this.frameCount = status.frames;
+    // The number is 0 if the link has damaged it.
+    if (status.frames > 0 && status.frames < this.frameCount) {
+      this.deadman.handleUnseenRestart();
+      this.handleRestart();
+    }
+    if (status.frames > 0) this.frameCount = status.frames;
     if (this.isReal && this.banner && this.mayAsk && !this.isWatching) void this.watch();
     if (status.pace !== null) this.setPace(status.pace);
     // A fault lasts until the robot moves again, but is reported only once.
@@ -323,8 +327,9 @@ export class Board {
       if (needsRobotSetting && wasEngaged && this.mayWalk) void deadman.engage();
       const answer = await pendingAnswer;
       if (!isQuiet) this.listener.onProblem('line', null);
-      // The page does not know all gaits of a board with another robot; the next status tells whether it walks.
+      // The page does not know all gaits of a board with another robot.
       mayHaveStarted &&= answer.ok;
+      if (mayHaveStarted && parseActivity(answer.text, this.robot.description) === null) this.setGait(command.replace(/ \d+$/, ''));
       deadman.observeUserLine(command, answer.ok);
       return answer;
     } catch (error) {

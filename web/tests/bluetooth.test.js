@@ -71,8 +71,11 @@ testPage('the alarm remains if the module is back in range but its robot does no
   await radio.run(1500);
   assert.ok(await page.locator('#alarm').isVisible());
   await radio.takeOutOfRange();
-  await radio.run(500);
+  const isOutOfRange = async () => (await readText(page, '#problems')).includes('out of range');
+  await radio.runUntil('the loss of the link is shown', isOutOfRange);
   await radio.bringIntoRange();
+  await radio.runUntil('the module is connected again', async () => !(await isOutOfRange()));
+  assert.ok(await page.locator('#alarm').isVisible(), 'right after the reconnection');
   await radio.run(3000);
   assert.ok(await page.locator('#alarm').isVisible());
 });
@@ -93,6 +96,27 @@ testPage('the page notices a restart whose banner the module has garbled, and fo
   await radio.runUntil('the robot stands', async () => (await readGait(page)) === 'stand');
   assert.equal((await readRestartCount()) - restartCount, 1);
   await assertFollowed(page);
+});
+
+testPage('a robot that restarts while it walks gets its own deadman back, although the banner was garbled', () => openWithWalkingRobot(HM10), async (page) => {
+  await page.evaluate(() => void window.lizard.board.ask('stop'));
+  await radio.runUntil('the robot is stopped', async () => (await readGait(page)) === 'stop');
+  await page.evaluate(() => void window.lizard.board.ask('deadman 2000'));
+  await radio.run(1500);
+  await page.evaluate(() => void window.lizard.board.ask('save'));
+  await radio.run(1500);
+  await findGaitButton(page, 'walk').click();
+  await radio.runUntil('the robot walks', async () => (await readGait(page)) === 'walk');
+  await radio.run(2000);
+  await page.evaluate(() => {
+    window.receivedText = '';
+    window.attachedBoard.reset('external');
+  });
+  await radio.runUntil('the robot stands', async () => (await readGait(page)) === 'stand');
+  await radio.run(2000);
+  const lines = (await page.evaluate(() => window.receivedText)).match(/deadman \d+/g);
+  assert.equal(lines?.at(-1), 'deadman 2000');
+  assert.ok(!lines?.includes('deadman 0'), `${lines}`);
 });
 
 test('the page follows a robot although the first line that requests its poses was lost', async () => {

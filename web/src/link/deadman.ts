@@ -42,6 +42,7 @@ export class Deadman {
     const { endCount } = this;
     await this.userLine;
     await this.restoration;
+    if (endCount !== this.endCount) return this.confirmation ?? false;
     if (this.robotSettingMs === null) await this.readSetting();
     // Meanwhile the robot has restarted, or a user's line needs the robot's own setting. A later call may be pending.
     if (endCount !== this.endCount) return this.confirmation ?? false;
@@ -144,6 +145,15 @@ export class Deadman {
       return isConfirmed;
     });
     return (this.restoration = restoration);
+  }
+
+  /**
+   * Handles a restart whose banner was lost; sends no line. A repeated line may have set the page's setting in the
+   * restarted robot, so a known setting of its own is restored later.
+   */
+  handleUnseenRestart(): void {
+    this.end();
+    if (!this.isOverridden) this.robotSettingMs = null;
   }
 
   /** Resets this object's state after a restart of the robot; sends no line. */

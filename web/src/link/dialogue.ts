@@ -73,7 +73,7 @@ const getFirstWord = (line: string) => line.trim().toLowerCase().split(/\s/)[0];
 function canAnswer(answer: string, line: string): boolean {
   const word = getFirstWord(line);
   // The robot also answers each repetition of `deadman`, which has another value.
-  if (word === WORDS.deadman && answer.startsWith('ok')) return answer === `ok ${word} ${Number(line.trim().split(/\s+/)[1])}`;
+  if (word === WORDS.deadman && answer.startsWith('ok')) return answer === `ok ${line.trim().toLowerCase()}`;
   const expected = { [WORDS.status]: 'gait=', '?': WORDS.help }[word] ?? word;
   return answer.startsWith('err') || answer.startsWith(`ok ${expected}`);
 }

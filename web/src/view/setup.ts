@@ -201,11 +201,15 @@ export class SetupDialog {
   /** Writes the page's robot, alone or with the firmware. */
   readonly write = (content: WriteContent): void => {
     this.runAction(async () => {
-      const wasChanged = this.calibrator?.isChanged;
+      const { calibrator } = this;
+      const { board } = this.session;
+      const { banner } = board;
       this.calibrator = null;
       const isWritten = await this.writer.write(content, 'setup');
-      // Writing restarts the board, which loses unsaved settings: a reversed sign, for example, is wrong again.
-      if (isWritten && wasChanged) this.doneSteps.clear();
+      const mayHaveRestarted = isWritten || board.banner !== banner;
+      // A restart loses unsaved settings: a reversed sign, for example, is wrong again.
+      if (mayHaveRestarted && calibrator?.isChanged) this.doneSteps.clear();
+      if (!mayHaveRestarted && calibrator?.isCurrent) this.calibrator = calibrator;
       if (isWritten) this.markDone('Firmware');
       return this.message.textContent ?? '';
     });
