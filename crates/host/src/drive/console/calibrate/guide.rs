@@ -53,8 +53,8 @@ pub struct Guide<'a, P> {
     /// True if the user has skipped the steps for scales and limits.
     has_skipped_scales_and_limits: bool,
     is_walking: bool,
-    /// The robot's own `deadman`, ms, while another value is set for the test walk, so that the robot stops if its cable
-    /// is pulled out; otherwise `None`.
+    /// The robot's own `deadman`, ms, while another value is set for the test walk, so that the robot stops if its
+    /// cable is pulled out; otherwise `None`.
     own_deadman_ms: Option<u16>,
     /// True once the user has saved a calibration.
     has_saved: bool,

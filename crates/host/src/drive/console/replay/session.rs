@@ -28,9 +28,9 @@ pub(super) struct RecordedSession {
 }
 
 impl RecordedSession {
-    /// Parses a session's file. A partial last line, left by a killed program or a full disk, is ignored, and so are the
-    /// events after [`MAX_SESSION_MS`]. The error says which line is not an event or is out of place, or that the file
-    /// is not a session or has another format.
+    /// Parses a session's file. A partial last line, left by a killed program or a full disk, is ignored, and so are
+    /// the events after [`MAX_SESSION_MS`]. The error says which line is not an event or is out of place, or that the
+    /// file is not a session or has another format.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let not_a_session = format!(
             "this is not a session of `lizard console --record`: \"{FORMAT}\" is missing from its \
