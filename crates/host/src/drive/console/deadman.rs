@@ -11,8 +11,8 @@ use lizard_core::console::word::Word;
 /// The `deadman` while a person drives, ms, unless the robot's own is shorter. Users set round numbers; a robot with
 /// this value therefore got it from a program that ended without restoring the setting.
 pub(super) const DRIVING_DEADMAN_MS: u16 = 901;
-/// Interval between the lines that keep the robot walking, even while an answer is outstanding. It is so short that two
-/// of three lines may be lost, even if the robot's own setting is somewhat shorter than [`DRIVING_DEADMAN_MS`].
+/// Interval between the lines that keep the robot walking. It is so short that two of three lines may be lost, even if
+/// the robot's own setting is somewhat shorter than [`DRIVING_DEADMAN_MS`].
 pub(super) const LINE_INTERVAL: Duration = Duration::from_millis(200);
 
 /// Returns the `deadman` while a person drives a robot with this setting of its own, both in ms.
@@ -54,6 +54,13 @@ pub(super) struct Deadman {
 }
 
 impl Deadman {
+    /// The interval of the additional lines while an answer is outstanding, a little less than a third of the setting.
+    /// Shorter intervals would fill a link at 9600 baud.
+    pub(super) fn extra_line_interval(&self) -> Duration {
+        let third_ms = u64::from(limit_deadman_ms(self.own_ms.unwrap_or(0))) / 3;
+        LINE_INTERVAL.max(Duration::from_millis(third_ms.saturating_sub(20)))
+    }
+
     /// Returns the lines to send before and after a user's line, and records if they override the setting.
     pub(super) fn plan_lines(
         &mut self,

@@ -216,11 +216,14 @@ impl Session {
     /// Takes an additional `status` while an answer is outstanding and `deadman` is set: the link may have lost the
     /// answer, and the robot would end its gait before the end of the wait.
     fn take_extra_status(&mut self, now: Instant) -> Option<String> {
-        let is_overridden = (self.deadman.as_ref()).is_some_and(|deadman| deadman.is_overridden);
-        if !self.polls_status || !is_overridden || now < self.next_status_time {
+        let overridden = self
+            .deadman
+            .as_ref()
+            .filter(|deadman| deadman.is_overridden)?;
+        if !self.polls_status || now < self.next_status_time {
             return None;
         }
-        self.next_status_time = now + deadman::LINE_INTERVAL;
+        self.next_status_time = now + overridden.extra_line_interval();
         Some("status".to_owned())
     }
 
